@@ -1,0 +1,57 @@
+"""Stairwright: can a wheel-legged robot roll over these stairs, and how?"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .library import load_robot, load_terrain, robots, terrains
+    from .planning.certificate import certify
+    from .planning.plan import Plan
+    from .planning.planner import plan
+    from .robot.description import Robot
+    from .simulation.result import Rollout
+    from .simulation.rollout import rollout
+    from .terrain.profile import Terrain
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "Plan",
+    "Robot",
+    "Rollout",
+    "Terrain",
+    "certify",
+    "load_robot",
+    "load_terrain",
+    "plan",
+    "robots",
+    "rollout",
+    "terrains",
+]
+
+# Loaded on first use: `stairwright --help` and the web process need neither CasADi nor MuJoCo.
+_HOMES = {
+    "Plan": "planning.plan",
+    "Robot": "robot.description",
+    "Rollout": "simulation.result",
+    "Terrain": "terrain.profile",
+    "certify": "planning.certificate",
+    "load_robot": "library",
+    "load_terrain": "library",
+    "plan": "planning.planner",
+    "robots": "library",
+    "rollout": "simulation.rollout",
+    "terrains": "library",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(importlib.import_module(f".{_HOMES[name]}", __name__), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

@@ -1,0 +1,97 @@
+"""Documents: the validated, hashable data that files, REST bodies and Python objects share."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any, TypeVar
+
+import yaml
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from .errors import InputError
+
+MAX_FILE_BYTES = 64 * 2**20
+
+
+class Model(BaseModel):
+    """A frozen record without unknown fields, NaN or infinities."""
+
+    model_config = ConfigDict(
+        frozen=True,
+        extra="forbid",
+        allow_inf_nan=False,
+        populate_by_name=True,
+        serialize_by_alias=True,
+        protected_namespaces=(),
+    )
+
+
+M = TypeVar("M", bound=BaseModel)
+
+
+def parse(model: type[M], data: Any) -> M:
+    """Validate `data` as `model`.
+
+    Raises:
+        InputError: For the first bad value, with its field path.
+    """
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        raise _first_error(error, model) from None
+
+
+def _first_error(error: ValidationError, model: type[BaseModel]) -> InputError:
+    first = error.errors(include_url=False, include_input=False, include_context=True)[0]
+    cause = first.get("ctx", {}).get("error")
+    if isinstance(cause, InputError):
+        return cause.within(*first["loc"])
+    message = str(first["msg"])
+    if first["type"] == "extra_forbidden":
+        names = ", ".join(field.alias or name for name, field in model.model_fields.items())
+        message = f"unknown field; {model.__name__} has: {names}"
+    return InputError(message, tuple(first["loc"]))
+
+
+def load_mapping(path: Path) -> dict[str, Any]:
+    """Read one YAML or JSON file that holds a mapping.
+
+    Raises:
+        InputError: If the file is missing, too large, not text or not a mapping.
+    """
+    try:
+        if path.stat().st_size > MAX_FILE_BYTES:
+            raise InputError(f"{path} is larger than {MAX_FILE_BYTES >> 20} MiB")
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path} is not UTF-8 text") from None
+    return parse_mapping(text, str(path))
+
+
+def parse_mapping(text: str, origin: str) -> dict[str, Any]:
+    """Parse YAML (of which JSON is a part) that must hold a mapping; aliases are refused."""
+    try:
+        if text.lstrip().startswith("{"):
+            data = json.loads(text)
+        else:
+            if any(isinstance(token, yaml.AliasToken) for token in yaml.scan(text)):
+                raise InputError(f"{origin} uses YAML aliases, which are not accepted here")
+            data = yaml.safe_load(text)
+    except (yaml.YAMLError, json.JSONDecodeError, RecursionError) as error:
+        reason = " ".join(str(error).split())[:200]
+        raise InputError(f"{origin} is neither valid YAML nor JSON: {reason}") from None
+    if not isinstance(data, dict):
+        raise InputError(f"{origin} must hold a mapping of names to values")
+    return data
+
+
+def content_hash(data: Any) -> str:
+    """``sha256:`` and 16 hex digits of the canonical JSON of plain data or of a model."""
+    if isinstance(data, BaseModel):
+        data = data.model_dump(mode="json")
+    text = json.dumps(data, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return "sha256:" + hashlib.sha256(text.encode()).hexdigest()[:16]

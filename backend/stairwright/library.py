@@ -1,0 +1,71 @@
+"""Named data files: the presets under ``terrains/`` and ``robots/``, or a path, or a mapping."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel
+
+from .documents import load_mapping, parse
+from .errors import InputError
+from .resources import data_folder
+from .robot.description import Robot
+from .terrain.profile import Terrain
+
+D = TypeVar("D", bound=BaseModel)
+
+
+def load_terrain(source: str | os.PathLike[str] | Mapping[str, Any] | Terrain) -> Terrain:
+    """A terrain from a preset's name, a YAML or JSON file, or a mapping.
+
+    Raises:
+        InputError: If there is no such preset or file, or a value is bad.
+    """
+    return _load(Terrain, "terrains", source)
+
+
+def load_robot(source: str | os.PathLike[str] | Mapping[str, Any] | Robot) -> Robot:
+    """A robot from its name, a YAML or JSON file, or a mapping.
+
+    Raises:
+        InputError: If there is no such robot or file, or a value is bad.
+    """
+    return _load(Robot, "robots", source)
+
+
+def terrains() -> list[str]:
+    """Names of the terrain presets."""
+    return _names("terrains")
+
+
+def robots() -> list[str]:
+    """Names of the robots."""
+    return _names("robots")
+
+
+def _names(folder: str) -> list[str]:
+    return sorted(path.stem for path in data_folder(folder).glob("*.yaml"))
+
+
+def _load(
+    model: type[D], folder: str, source: str | os.PathLike[str] | Mapping[str, Any] | D
+) -> D:
+    if isinstance(source, model):
+        return source
+    if isinstance(source, Mapping):
+        return parse(model, dict(source))
+    if not isinstance(source, (str, os.PathLike)):
+        raise InputError(f"expected a name, a path or a mapping, got {type(source).__name__}")
+    if str(source) in _names(folder):
+        return parse(model, load_mapping(data_folder(folder) / f"{source}.yaml"))
+    path = Path(source)
+    if path.suffix.lower() in (".yaml", ".yml", ".json"):
+        return parse(model, load_mapping(path))
+    kind = folder.removesuffix("s")
+    raise InputError(
+        f"no {kind} is called {str(source)!r}; there are: {', '.join(_names(folder))} "
+        "(or give a .yaml or .json file)"
+    )

@@ -1,0 +1,130 @@
+"""The plan document: poses along the course, their margins, and what stops the robot if anything."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from ..documents import Model, content_hash
+from ..robot.description import Robot
+from ..terrain.profile import Terrain
+
+Method = Literal["path", "critical", "nominal"]
+Vector2 = tuple[float, float]
+Vector4 = tuple[float, float, float, float]
+
+
+class Margins(Model):
+    """How far a pose is from failing. More is better; negative is violated."""
+
+    clearance: float = Field(description="least distance of trunk and links from the terrain [m]")
+    com: float = Field(description="CoM shift in x, the smaller way, that keeps equilibrium [m]")
+    friction: float = Field(description="friction there is minus friction needed")
+    torque: float = Field(description="limit minus the largest static joint torque [Nm]")
+
+
+class Pose(Model):
+    """One pose of the robot in the x-z plane; world frame, SI units."""
+
+    progress: float = Field(description="mean arc length of the wheels since the start [m]")
+    time: float = Field(0.0, description="planned time since the start [s]")
+    x_c: float = Field(description="trunk point [m]")
+    z_c: float = Field(description="trunk point [m]")
+    pitch: float = Field(description="about +y: nose-up is negative [rad]")
+    q: Vector4 = Field(description="front thigh, front calf, rear thigh, rear calf [rad]")
+    wheels: tuple[Vector2, Vector2] = Field(description="wheel centres, front and rear [m]")
+    wheel_progress: Vector2 = Field(description="arc length along the wheel-centre curve [m]")
+    contacts: tuple[Vector2, Vector2] = Field(description="contact points, front and rear [m]")
+    com: Vector2 = Field(description="centre of mass of the whole robot [m]")
+    collision_points: list[Vector2] = Field(description="trunk, front leg, rear leg [m]")
+    forces: tuple[Vector2, Vector2] | None = Field(
+        None, description="static (tangential, normal) force of each wheel pair [N]"
+    )
+    margins: Margins
+
+
+class Limit(Model):
+    """The quantity that is missing: what would be needed, and what there is."""
+
+    needed: float
+    available: float
+    quantity: str = ""
+    unit: str = ""
+
+
+class Problem(Model):
+    """What stops the robot, where, and by how much."""
+
+    kind: Literal["reach", "clearance", "statics", "torque", "joint_limit", "start", "goal"]
+    at: Vector2 = Field(description="place on the terrain [m]")
+    progress: float = Field(description="how far the plan gets [m]")
+    message: str
+    limit: Limit | None = None
+
+
+class Timing(Model):
+    """Planned duration, and the time of every pose."""
+
+    total: float = Field(description="[s]")
+    rule: Literal["limits", "paper"] = Field("limits", description="paper: eqs 25-26")
+
+
+class Check(Model):
+    """One line of the certificate: the worst value, the bound it must keep, and where."""
+
+    name: str
+    value: float
+    bound: float
+    unit: str
+    passed: bool
+    progress: float | None = Field(None, description="where the worst value stands [m]")
+
+
+class Certificate(Model):
+    """Outcome of the independent exact check of the poses and of the motion between them."""
+
+    passed: bool
+    scope: Literal["motion", "poses"] = "motion"
+    checks: list[Check] = []
+
+
+class Plan(Model):
+    """A plan (``stairwright/plan/1``); `id` is a hash of everything that went into it."""
+
+    schema_: Literal["stairwright/plan/1"] = Field("stairwright/plan/1", alias="schema")
+    id: str
+    method: Method
+    terrain: Terrain
+    terrain_hash: str
+    robot: str
+    robot_hash: str
+    robot_description: Robot
+    friction: float
+    weights: dict[str, float] = {}
+    status: Literal["feasible", "infeasible"]
+    problem: Problem | None = None
+    poses: list[Pose] = []
+    critical: list[int] = Field([], description="indices of the key poses")
+    timing: Timing
+    solve_time: float = Field(description="[s]")
+    certificate: Certificate | None = None
+
+    @property
+    def feasible(self) -> bool:
+        """Whether the robot can do it, as far as the planner and the certificate can tell."""
+        return self.status == "feasible"
+
+    def save(self, path: str) -> None:
+        """Write the plan; the ending of `path` picks the format (json, csv, npz, mcap, mjcf)."""
+        from ..export.formats import save_plan  # exports lie to the right of planning
+
+        save_plan(self, path)
+
+
+def plan_id(
+    terrain: Terrain, robot: Robot, friction: float, method: Method, weights: dict[str, Any]
+) -> str:
+    """Content hash that names a plan: the same question has the same id."""
+    key = [terrain.hash, robot.hash, friction, method, weights]
+    return "p-" + content_hash(key).removeprefix("sha256:")

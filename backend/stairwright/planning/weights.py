@@ -1,0 +1,90 @@
+"""Cost weights of the planners, with bounds and units: the page builds its sliders from them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import Field
+
+from ..documents import Model, parse
+from ..errors import InputError
+from .plan import Method
+
+
+def _weight(default: float, low: float, high: float, unit: str, title: str, text: str) -> Any:
+    return Field(
+        default,
+        ge=low,
+        le=high,
+        title=title,
+        description=text,
+        json_schema_extra={"unit": unit, "scale": "log"},
+    )
+
+
+class CriticalWeights(Model):
+    """Diagonal of Q (eq 18) and the regularisation that makes the optimum unique."""
+
+    com_x: float = _weight(
+        100.0, 0.01, 1e4, "m⁻²", "Trunk x", "Pull of the trunk to its place along x (eq 18)"
+    )
+    com_z: float = _weight(
+        5.0, 0.01, 1e4, "m⁻²", "Trunk z", "Pull to the nominal height; far below x (eq 18)"
+    )
+    pitch: float = _weight(0.01, 1e-4, 100.0, "rad⁻²", "Pitch", "Pull to a level trunk")
+    posture: float = _weight(
+        0.001, 1e-5, 10.0, "rad⁻²", "Posture", "Pull of the joints to the standing pose"
+    )
+
+
+class PathWeights(Model):
+    """What the path planner trades off along the course."""
+
+    com_margin: float = _weight(
+        1.0, 0.01, 100.0, "1", "CoM margin", "Room for the centre of mass inside the friction cones"
+    )
+    clearance: float = _weight(
+        1.0, 0.01, 100.0, "1", "Clearance", "Distance of trunk and links from the terrain"
+    )
+    torque: float = _weight(1.0, 0.01, 100.0, "1", "Torque", "Low static joint torque")
+    smoothness: float = _weight(
+        1.0, 0.01, 100.0, "1", "Smoothness", "Even motion of the trunk along the course"
+    )
+    pitch: float = _weight(1.0, 0.01, 100.0, "1", "Pitch", "Trunk near the terrain's slope")
+    speed: float = Field(
+        0.12,
+        ge=0.02,
+        le=1.0,
+        title="Speed",
+        description="Wheel speed along the course where limits and margins allow",
+        json_schema_extra={"unit": "m/s", "scale": "log"},
+    )
+
+
+class NominalWeights(Model):
+    """The baseline optimises nothing; only its speed can be set."""
+
+    speed: float = PathWeights.model_fields["speed"]  # type: ignore[assignment]
+
+
+MODELS: dict[Method, type[Model]] = {
+    "path": PathWeights,
+    "critical": CriticalWeights,
+    "nominal": NominalWeights,
+}
+
+
+def parse_weights(method: Method, weights: Mapping[str, Any] | Model | None) -> Any:
+    """The method's weights with defaults filled in.
+
+    Raises:
+        InputError: For an unknown name or a value out of bounds.
+    """
+    model = MODELS[method]
+    if isinstance(weights, model):
+        return weights
+    try:
+        return parse(model, dict(weights or {}))
+    except InputError as error:
+        raise error.within("weights") from None

@@ -1,0 +1,132 @@
+"""Closed-form kinematics of the robot in the x-z plane (numpy, any batch shape).
+
+A leg at absolute angle `a` points along (-sin a, -cos a): down at zero, and a positive angle (about
++y) swings it backward. Absolute thigh angle = pitch + thigh joint; absolute calf angle adds the
+calf joint.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .description import Robot
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Points of one or many poses in the world [m]; each array is (..., 2, 2): front/rear, x/z."""
+
+    hips: Floats
+    knees: Floats
+    wheels: Floats
+
+
+def along(angle: Floats) -> Floats:
+    """Unit vector (..., 2) of a link at absolute `angle` (...)."""
+    return np.stack([-np.sin(angle), -np.cos(angle)], axis=-1)
+
+
+def rotate(pitch: Floats, vector: Floats) -> Floats:
+    """Turn (x, z) vectors (..., 2) of the trunk frame by `pitch` (...) about +y."""
+    c, s = np.cos(pitch), np.sin(pitch)
+    x, z = vector[..., 0], vector[..., 1]
+    return np.stack([c * x + s * z, -s * x + c * z], axis=-1)
+
+
+def hips(robot: Robot, x_c: Floats, z_c: Floats, pitch: Floats) -> Floats:
+    """Hip axes (..., 2, 2) in the world [m]."""
+    trunk = np.stack([np.asarray(x_c, float), np.asarray(z_c, float)], axis=-1)
+    offsets = np.array([robot.hips.front, robot.hips.rear])
+    return trunk[..., None, :] + rotate(np.asarray(pitch)[..., None], offsets)
+
+
+def forward(robot: Robot, x_c: Floats, z_c: Floats, pitch: Floats, q: Floats) -> Frames:
+    """Hips, knees and wheel centres of poses: trunk (...) and planar joints `q` (..., 4)."""
+    q = np.asarray(q, float)
+    hip = hips(robot, x_c, z_c, pitch)
+    thigh = np.asarray(pitch)[..., None] + q[..., 0::2]
+    knee = hip + robot.thigh.length * along(thigh)
+    wheel = knee + robot.calf.length * along(thigh + q[..., 1::2])
+    return Frames(hip, knee, wheel)
+
+
+def inverse(robot: Robot, x_c: Floats, z_c: Floats, pitch: Floats, wheels: Floats) -> Floats:
+    """Planar joints (..., 4) that put the wheel centres at `wheels` (..., 2, 2).
+
+    The knee bends the way its limits say; the thigh angle is the representative nearest to the
+    middle of its range. NaN where a wheel is out of reach. Limits are not applied.
+    """
+    leg = np.asarray(wheels, float) - hips(robot, x_c, z_c, pitch)
+    l1, l2 = robot.thigh.length, robot.calf.length
+    square = np.sum(leg**2, axis=-1)
+    cosine = (square - l1 * l1 - l2 * l2) / (2 * l1 * l2)
+    knee = np.array([robot.joints.front.knee, robot.joints.rear.knee])
+    with np.errstate(invalid="ignore"):
+        calf = knee * np.arccos(np.where(np.abs(cosine) <= 1.0, cosine, np.nan))
+    bearing = np.arctan2(-leg[..., 0], -leg[..., 1])
+    thigh = bearing - np.arctan2(l2 * np.sin(calf), l1 + l2 * np.cos(calf))
+    middle = np.array([np.mean(robot.joints.front.thigh), np.mean(robot.joints.rear.thigh)])
+    thigh = thigh - np.asarray(pitch)[..., None] - middle
+    thigh = middle + (thigh + math.pi) % (2 * math.pi) - math.pi
+    return np.stack([thigh, calf], axis=-1).reshape(*thigh.shape[:-1], 4)
+
+
+def com(robot: Robot, x_c: Floats, z_c: Floats, frames: Frames) -> Floats:
+    """Centre of mass (..., 2) of the whole robot in the world [m]."""
+    p = robot.planar
+    trunk = np.stack([np.asarray(x_c, float), np.asarray(z_c, float)], axis=-1)
+    hip, knee, wheel = frames.hips, frames.knees, frames.wheels
+    legs = (
+        p.thigh_mass * (hip + p.thigh_com * (knee - hip))
+        + p.calf_mass * (knee + p.calf_com * (wheel - knee))
+        + p.wheel_mass * wheel
+    )
+    return (p.trunk_mass * trunk + legs.sum(axis=-2)) / p.mass
+
+
+def wheel_jacobians(robot: Robot, pitch: Floats, q: Floats) -> Floats:
+    """d(wheel centre)/d(thigh, calf) (..., 2, 2, 2): leg, x/z, joint; trunk held. The J of eq 14."""
+    thigh = np.asarray(pitch)[..., None] + np.asarray(q)[..., 0::2]
+    calf = thigh + np.asarray(q)[..., 1::2]
+    # d along(a)/da = (-cos a, sin a)
+    upper = np.stack([-np.cos(thigh), np.sin(thigh)], axis=-1) * robot.thigh.length
+    lower = np.stack([-np.cos(calf), np.sin(calf)], axis=-1) * robot.calf.length
+    return np.stack([upper + lower, lower], axis=-1)
+
+
+def collision_points(robot: Robot, x_c: Floats, z_c: Floats, pitch: Floats, q: Floats) -> Floats:
+    """The collision points (..., n, 2): trunk, front thigh, front calf, rear thigh, rear calf."""
+    layout = robot.collision_points
+    frames = forward(robot, x_c, z_c, pitch, q)
+    trunk = np.stack([np.asarray(x_c, float), np.asarray(z_c, float)], axis=-1)
+    size = np.array([robot.trunk.size[0], robot.trunk.size[2]])
+    parts = [
+        trunk[..., None, :]
+        + rotate(np.asarray(pitch)[..., None], np.asarray(layout.trunk, float) * size)
+    ]
+    for leg in range(2):
+        hip, knee, wheel = (f[..., leg, None, :] for f in (frames.hips, frames.knees, frames.wheels))
+        parts.append(hip + np.asarray(layout.thigh, float)[:, None] * (knee - hip))
+        parts.append(knee + np.asarray(layout.calf, float)[:, None] * (wheel - knee))
+    return np.concatenate(parts, axis=-2)
+
+
+def standing_joints(robot: Robot) -> Floats:
+    """Planar joints (4,) of the nominal pose: wheels below the hips, trunk level."""
+    offsets = np.array([robot.hips.front, robot.hips.rear])
+    ground = robot.wheel.radius - robot.nominal_height
+    wheels = np.stack([offsets[:, 0], np.full(2, ground)], axis=-1)
+    zero = np.zeros(())
+    return inverse(robot, zero, zero, zero, wheels)
+
+
+def limits(robot: Robot) -> Floats:
+    """Limits (4, 2) of the planar joints [rad]."""
+    front, rear = robot.joints.front, robot.joints.rear
+    return np.array([front.thigh, front.calf, rear.thigh, rear.calf])
