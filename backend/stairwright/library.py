@@ -50,9 +50,7 @@ def _names(folder: str) -> list[str]:
     return sorted(path.stem for path in data_folder(folder).glob("*.yaml"))
 
 
-def _load(
-    model: type[D], folder: str, source: str | os.PathLike[str] | Mapping[str, Any] | D
-) -> D:
+def _load(model: type[D], folder: str, source: str | os.PathLike[str] | Mapping[str, Any] | D) -> D:
     if isinstance(source, model):
         return source
     if isinstance(source, Mapping):

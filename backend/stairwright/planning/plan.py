@@ -1,4 +1,4 @@
-"""The plan document: poses along the course, their margins, and what stops the robot if anything."""
+"""The plan document: poses along the course, their margins, and what stops the robot."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from ..documents import Model, content_hash
-from ..robot.description import Robot
-from ..terrain.profile import Terrain
+from stairwright.documents import Model, content_hash
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
 
 Method = Literal["path", "critical", "nominal"]
 Vector2 = tuple[float, float]
@@ -117,7 +117,7 @@ class Plan(Model):
 
     def save(self, path: str) -> None:
         """Write the plan; the ending of `path` picks the format (json, csv, npz, mcap, mjcf)."""
-        from ..export.formats import save_plan  # exports lie to the right of planning
+        from stairwright.export.formats import save_plan  # exports lie to the right of planning
 
         save_plan(self, path)
 

@@ -6,11 +6,12 @@ import os
 from collections.abc import Mapping
 from typing import Any, get_args
 
-from ..documents import Model
-from ..errors import InputError
-from ..library import load_robot, load_terrain
-from ..robot.description import Robot
-from ..terrain.profile import Terrain
+from stairwright.documents import Model
+from stairwright.errors import InputError
+from stairwright.library import load_robot, load_terrain
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
+
 from .plan import Method, Plan
 from .weights import parse_weights
 

@@ -7,8 +7,9 @@ from typing import Any
 
 from pydantic import Field
 
-from ..documents import Model, parse
-from ..errors import InputError
+from stairwright.documents import Model, parse
+from stairwright.errors import InputError
+
 from .plan import Method
 
 

@@ -13,8 +13,8 @@ from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field, model_validator
 
-from ..documents import Model, content_hash
-from ..errors import InputError
+from stairwright.documents import Model, content_hash
+from stairwright.errors import InputError
 
 LEGS = ("FL", "FR", "RL", "RR")
 JOINTS = tuple(f"{leg}_{part}" for leg in LEGS for part in ("thigh", "calf", "wheel"))
@@ -74,7 +74,9 @@ class LegLimits(Model):
         for name in ("thigh", "calf"):
             lower, upper = getattr(self, name)
             if lower >= upper:
-                raise InputError(f"lower limit {lower:g} must be below the upper {upper:g}", (name,))
+                raise InputError(
+                    f"lower limit {lower:g} must be below the upper {upper:g}", (name,)
+                )
         if self.calf[0] < 0.0 < self.calf[1]:
             raise InputError(
                 "the range must not contain 0 (a straight leg): the knee bends one way", ("calf",)
@@ -221,7 +223,7 @@ class Robot(Model):
 
 
 class Planar(NamedTuple):
-    """The robot in the x-z plane: SI units; thigh, calf and wheel masses are those of a leg pair."""
+    """The robot in the x-z plane, SI units; link and wheel masses are those of a leg pair."""
 
     hip_front_x: float
     hip_front_z: float

@@ -87,11 +87,12 @@ def com(robot: Robot, x_c: Floats, z_c: Floats, frames: Frames) -> Floats:
         + p.calf_mass * (knee + p.calf_com * (wheel - knee))
         + p.wheel_mass * wheel
     )
-    return (p.trunk_mass * trunk + legs.sum(axis=-2)) / p.mass
+    total: Floats = (p.trunk_mass * trunk + legs.sum(axis=-2)) / p.mass
+    return total
 
 
 def wheel_jacobians(robot: Robot, pitch: Floats, q: Floats) -> Floats:
-    """d(wheel centre)/d(thigh, calf) (..., 2, 2, 2): leg, x/z, joint; trunk held. The J of eq 14."""
+    """J of eq 14: d(wheel centre)/d(thigh, calf) (..., 2, 2, 2) by leg, x/z, joint; trunk held."""
     thigh = np.asarray(pitch)[..., None] + np.asarray(q)[..., 0::2]
     calf = thigh + np.asarray(q)[..., 1::2]
     # d along(a)/da = (-cos a, sin a)
@@ -111,7 +112,9 @@ def collision_points(robot: Robot, x_c: Floats, z_c: Floats, pitch: Floats, q: F
         + rotate(np.asarray(pitch)[..., None], np.asarray(layout.trunk, float) * size)
     ]
     for leg in range(2):
-        hip, knee, wheel = (f[..., leg, None, :] for f in (frames.hips, frames.knees, frames.wheels))
+        hip, knee, wheel = (
+            f[..., leg, None, :] for f in (frames.hips, frames.knees, frames.wheels)
+        )
         parts.append(hip + np.asarray(layout.thigh, float)[:, None] * (knee - hip))
         parts.append(knee + np.asarray(layout.calf, float)[:, None] * (wheel - knee))
     return np.concatenate(parts, axis=-2)

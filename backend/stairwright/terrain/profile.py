@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from ..documents import Model, content_hash
-from ..errors import InputError
+from stairwright.documents import Model, content_hash
+from stairwright.errors import InputError
 
 Floats = NDArray[np.float64]
 Coordinate = Annotated[float, Field(ge=-100.0, le=100.0)]

@@ -10,6 +10,7 @@ tangent (a, b), or an arc (kind 1) round the corner (x, z) that starts at angle 
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -17,7 +18,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
+from stairwright.errors import InputError
+
 from .profile import Terrain
 
 Floats = NDArray[np.float64]
@@ -112,7 +114,7 @@ def _raw_pieces(p: Floats, r: float) -> Floats:
 
 def _concave_corners(pieces: Floats, r: float) -> Floats:
     found = []
-    for before, after in zip(pieces[:-1], pieces[1:], strict=True):
+    for before, after in itertools.pairwise(pieces):
         _, _, ax, az = piece_at(before, r, before[2])
         _, _, bx, bz = piece_at(after, r, 0.0)
         if ax * bz - az * bx > _KINK:  # the normal jumps anticlockwise: a dent
@@ -134,16 +136,16 @@ def piece_at(piece: Floats, r: float, d: float) -> tuple[float, float, float, fl
 def parameter(piece: Floats, r: float, x: float, z: float) -> float:
     """Distance along `piece` of the point of its line or circle nearest to (x, z)."""
     if piece[0] == 0.0:
-        return (x - piece[3]) * piece[5] + (z - piece[4]) * piece[6]
+        return float((x - piece[3]) * piece[5] + (z - piece[4]) * piece[6])
     turn = piece[5] - math.atan2(z - piece[4], x - piece[3])
     turn -= 2 * math.pi * math.floor((turn + math.pi / 2) / (2 * math.pi))
-    return turn * r
+    return float(r * turn)
 
 
 @nb.njit(cache=True)
 def curve_at(pieces: Floats, r: float, s: float) -> tuple[float, float, float, float]:
     """Centre and normal (x, z, nx, nz) at arc length `s`; the end pieces are continued."""
-    k = np.searchsorted(pieces[:, 1], s, side="right") - 1
+    k = int(np.searchsorted(pieces[:, 1], s, side="right")) - 1
     k = min(max(k, 0), len(pieces) - 1)
     return piece_at(pieces[k], r, s - pieces[k, 1])
 
@@ -161,7 +163,7 @@ def sample(pieces: Floats, r: float, s: Floats) -> Floats:
 def project(pieces: Floats, r: float, x: float, z: float, lo: float, hi: float) -> float:
     """Arc length in [lo, hi] whose centre is nearest to (x, z)."""
     best, found = 1e18, lo
-    first = max(0, np.searchsorted(pieces[:, 1], lo, side="right") - 1)
+    first = max(0, int(np.searchsorted(pieces[:, 1], lo, side="right")) - 1)
     for k in range(first, len(pieces)):
         piece = pieces[k]
         if piece[1] > hi:
@@ -179,7 +181,7 @@ def project(pieces: Floats, r: float, x: float, z: float, lo: float, hi: float) 
 def distance_to_profile(p: Floats, x: float, z: float, reach: float) -> float:
     """Distance from (x, z) to the polyline `p`, or `reach` where nothing is nearer."""
     best = reach
-    first = max(0, np.searchsorted(p[:, 0], x - reach, side="left") - 1)
+    first = max(0, int(np.searchsorted(p[:, 0], x - reach, side="left")) - 1)
     for i in range(first, len(p) - 1):
         if p[i, 0] > x + reach:
             break
@@ -194,7 +196,7 @@ def distance_to_profile(p: Floats, x: float, z: float, reach: float) -> float:
 def ground_height(p: Floats, x: float) -> float:
     """Upper height of the polyline at `x`; -inf beyond its ends."""
     best = -np.inf
-    first = max(0, np.searchsorted(p[:, 0], x, side="left") - 1)
+    first = max(0, int(np.searchsorted(p[:, 0], x, side="left")) - 1)
     for i in range(first, len(p) - 1):
         if p[i, 0] > x:
             break
@@ -267,7 +269,7 @@ def _trim(raw: Floats, p: Floats, r: float) -> Floats:
     cuts = np.empty(4 * n + 2)
     for i in range(n):
         cuts[0], cuts[1], k = 0.0, raw[i, 2], 2
-        for j in range(np.searchsorted(reach, lo[i] - 1e-9), n):
+        for j in range(int(np.searchsorted(reach, lo[i] - 1e-9)), n):
             if ahead[j] > hi[i] + 1e-9:
                 break
             if j == i or lo[j] > hi[i] + 1e-9 or hi[j] < lo[i] - 1e-9:

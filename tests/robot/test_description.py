@@ -1,0 +1,49 @@
+"""Robot files: Table I of the paper, and errors that name the field."""
+
+import pytest
+
+from stairwright.errors import InputError
+from stairwright.library import load_robot, robots
+
+
+def test_table_one():
+    robot = load_robot("a1_wheeled")
+    assert robot.mass == pytest.approx(11.84)
+    assert robot.trunk.size == (0.247, 0.194, 0.114)
+    assert robot.trunk.inertia == (0.0214, 0.0535, 0.0443)
+    assert (robot.thigh.length, robot.calf.length, robot.wheel.radius) == (0.2, 0.2, 0.05)
+    assert robot.actuators.leg.torque == 33.5
+    assert robot.actuators.leg.speed == 21.0
+    assert robot.collision_points.count == 25
+    assert robot.nominal_height == 0.33
+
+
+def test_knees():
+    assert robots() == ["a1_wheeled", "a1_wheeled_x"]
+    both_back, facing = load_robot("a1_wheeled"), load_robot("a1_wheeled_x")
+    assert (both_back.planar.knee_front, both_back.planar.knee_rear) == (-1, -1)
+    assert (facing.planar.knee_front, facing.planar.knee_rear) == (1, -1)
+    assert both_back.hash != facing.hash
+
+
+@pytest.mark.parametrize(
+    ("where", "value", "path"),
+    [
+        (("joints", "front", "calf"), [-1.0, 1.0], "joints.front.calf"),
+        (("joints", "rear", "thigh"), [1.0, -1.0], "joints.rear.thigh"),
+        (("hips", "rear"), [-0.2, 0.0], "hips.rear"),
+        (("hips", "front"), [-0.2, 0.0], "hips.front"),
+        (("nominal_height",), 0.5, "nominal_height"),
+        (("thigh", "mass"), -1, "thigh.mass"),
+        (("wheel", "radius"), "big", "wheel.radius"),
+    ],
+)
+def test_bad_robot_is_refused_at_its_field(where, value, path):
+    data = load_robot("a1_wheeled").model_dump(mode="json")
+    inner = data
+    for key in where[:-1]:
+        inner = inner[key]
+    inner[where[-1]] = value
+    with pytest.raises(InputError) as caught:
+        load_robot(data)
+    assert caught.value.path == path
