@@ -1,0 +1,151 @@
+"""What tests share: the order they run in, a real server and a real browser."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import httpx
+import pytest
+from hypothesis import settings
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+# No deadlines: tests never judge wall-clock time. CI repeats the same examples in every run.
+settings.register_profile("default", deadline=None)
+settings.register_profile("ci", deadline=None, derandomize=True)
+settings.load_profile("ci" if os.environ.get("CI") else "default")
+
+START_LIMIT = 120.0  # s until a server must answer, kernels compiled or not
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+CHROMIUM_FLAGS = (
+    "--no-sandbox",  # containers and root have none
+    "--disable-dev-shm-usage",
+    "--use-angle=swiftshader",  # WebGL without a graphics card
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-quic",
+    "--no-first-run",
+)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Quick tests first, then the slow ones, then the browser's."""
+
+    def rank(item: pytest.Item) -> int:
+        if item.get_closest_marker("browser"):
+            return 2
+        return 1 if item.get_closest_marker("slow") else 0
+
+    items.sort(key=rank)
+
+
+@dataclass(frozen=True)
+class Server:
+    """A running `stairwright serve`: where it answers, and the folder it keeps its data in."""
+
+    url: str
+    data: Path
+    process: subprocess.Popen[bytes]
+    log: Path
+
+
+@contextlib.contextmanager
+def _serve(data: Path, **variables: str) -> Iterator[Server]:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    url = f"http://127.0.0.1:{port}"
+    log = data.with_name(f"{data.name}-{port}.log")
+    command = [sys.executable, "-m", "stairwright.cli", "serve"]
+    command += ["--host", "127.0.0.1", "--port", str(port)]
+    env = os.environ | {"STAIRWRIGHT_DATA": str(data)} | variables
+    with log.open("wb") as output:
+        process = subprocess.Popen(
+            command, env=env, stdout=output, stderr=subprocess.STDOUT, start_new_session=True
+        )
+    try:
+        _wait_until_ready(url, process, log)
+        yield Server(url, data, process, log)
+    finally:
+        process.terminate()
+        try:
+            process.wait(15)
+        finally:  # workers that outlived the server too
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+
+
+def _wait_until_ready(url: str, process: subprocess.Popen[bytes], log: Path) -> None:
+    give_up = time.monotonic() + START_LIMIT
+    while time.monotonic() < give_up:
+        if process.poll() is not None:
+            break
+        with contextlib.suppress(httpx.TransportError):
+            if httpx.get(f"{url}/api/v1/healthz", timeout=5).status_code == 200:
+                return
+        time.sleep(0.1)
+    pytest.fail(f"The server did not start:\n{log.read_text(errors='replace')[-5000:]}")
+
+
+@pytest.fixture
+def start_server(
+    tmp_path: Path,
+) -> Callable[..., contextlib.AbstractContextManager[Server]]:
+    """A server of the test's own: `with start_server(STAIRWRIGHT_TOKEN="t") as server: ...`.
+
+    Servers that one test starts share one data folder, so a restart finds what was saved.
+    """
+    return lambda **variables: _serve(tmp_path / "data", **variables)
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """One real server for all tests that do not mind what other tests saved there."""
+    with _serve(tmp_path_factory.mktemp("server") / "data") as running:
+        yield running
+
+
+@pytest.fixture(scope="session")
+def browser_path() -> str:
+    """Where Chromium is; without one the test fails, since a skipped test proves nothing."""
+    named = os.environ.get("STAIRWRIGHT_BROWSER")
+    found = named or next(filter(None, map(shutil.which, BROWSERS)), None)
+    if found is None:
+        pytest.fail("No Chromium here: run ./dev test, or install one, or set STAIRWRIGHT_BROWSER.")
+    return found
+
+
+@pytest.fixture(scope="session")
+def browser(browser_path: str) -> Iterator[Browser]:
+    """A headless Chromium."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        launched = playwright.chromium.launch(
+            executable_path=browser_path, args=list(CHROMIUM_FLAGS)
+        )
+        yield launched
+        launched.close()
+
+
+@pytest.fixture
+def page(browser: Browser, server: Server) -> Iterator[Page]:
+    """An empty tab with a profile of its own; `page.goto("/")` opens the product."""
+    with browser.new_context(
+        base_url=server.url, viewport={"width": 1440, "height": 900}, accept_downloads=True
+    ) as context:
+        yield context.new_page()
