@@ -1,0 +1,184 @@
+"""Generators of common terrain, and the building codes that say which stairs exist."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from stairwright.errors import InputError
+
+from .profile import Terrain
+
+Direction = Literal["up", "down", "up-down"]
+
+MAX_STEPS = 200
+
+
+@dataclass(frozen=True)
+class StairCode:
+    """Limits of a building code for straight flights, in m.
+
+    Attributes:
+        name: Document and section.
+        rise: Least and largest height of a step.
+        run: Least and largest depth of a tread (going); infinite where the code has no bound.
+    """
+
+    name: str
+    rise: tuple[float, float]
+    run: tuple[float, float]
+
+    def allows(self, rise: float, run: float) -> bool:
+        """Whether steps of this `rise` and `run` [m] keep the code, to a millimetre."""
+        slack = 1e-3
+        return (
+            self.rise[0] - slack <= rise <= self.rise[1] + slack
+            and self.run[0] - slack <= run <= self.run[1] + slack
+        )
+
+
+STAIR_CODES = (
+    StairCode("US IBC 1011.5.2, public buildings", (0.102, 0.178), (0.279, math.inf)),
+    StairCode("US IRC R311.7.5, dwellings", (0.0, 0.196), (0.254, math.inf)),
+    StairCode("US OSHA 1910.25(c), workplaces", (0.0, 0.241), (0.241, math.inf)),
+    StairCode("UK Approved Document K, private", (0.150, 0.220), (0.220, 0.300)),
+    StairCode("UK Approved Document K, general access", (0.150, 0.170), (0.250, 0.400)),
+    StairCode("DIN 18065, buildings in general", (0.140, 0.190), (0.260, 0.370)),
+)
+RAMP_CODES = {
+    "US ADA 405.2, new ramps": 1 / 12,
+    "US ADA 405.2, existing sites, rise up to 76 mm": 1 / 8,
+}
+"""Steepest slope (rise over run) of accessible ramps."""
+
+
+def codes_allowing(rise: float, run: float) -> list[str]:
+    """Names of the building codes that allow steps of `rise` and `run` [m]."""
+    return [code.name for code in STAIR_CODES if code.allows(rise, run)]
+
+
+def flat(length: float = 4.0, name: str = "flat", friction: float = 0.6) -> Terrain:
+    """Level ground of `length` [m], centred on x = 0."""
+    _positive(length=length)
+    return _terrain(
+        name, f"Level ground, {length:g} m.", [(-length / 2, 0.0), (length / 2, 0.0)], friction
+    )
+
+
+def ramp(
+    rise: float,
+    slope: float,
+    *,
+    direction: Direction = "up",
+    approach: float = 1.5,
+    platform: float = 2.0,
+    name: str | None = None,
+    friction: float = 0.6,
+) -> Terrain:
+    """One inclined plane from x = 0, with level ground before and after.
+
+    Args:
+        rise: Height gained or lost [m].
+        slope: Angle from the horizontal [rad], above 0 and below pi/2.
+        direction: ``up-down`` goes up, over a platform, and down again.
+        approach: Level ground before it [m].
+        platform: Level ground on top and, going down again, after it [m].
+        name: Name of the terrain; made from the measures by default.
+        friction: Coulomb friction, wheel on terrain.
+
+    Raises:
+        InputError: If a measure is out of range.
+    """
+    if not 0.0 < slope < math.pi / 2:
+        raise InputError("must lie between 0 and pi/2 rad", ("slope",))
+    return stair(
+        rise,
+        count=1,
+        direction=direction,
+        face_angle=slope,
+        approach=approach,
+        platform=platform,
+        name=name or f"ramp-{math.degrees(slope):.0f}deg-{rise:g}-{direction}",
+        friction=friction,
+    )
+
+
+def stair(
+    rise: float,
+    run: float = 0.30,
+    count: int = 1,
+    *,
+    direction: Direction = "up",
+    face_angle: float = math.pi / 2,
+    approach: float = 1.5,
+    platform: float = 2.0,
+    name: str | None = None,
+    friction: float = 0.6,
+) -> Terrain:
+    """A flight of `count` equal steps whose first face starts at x = 0.
+
+    Args:
+        rise: Height of a step [m].
+        run: Horizontal distance between the edges of two steps [m].
+        count: Number of steps; of each flight for ``up-down``.
+        direction: ``up``, ``down``, or ``up-down`` over a platform.
+        face_angle: Of the faces from the horizontal [rad]; pi/2 is vertical.
+        approach: Level ground before the flight [m].
+        platform: Level ground on top and, going down again, after it [m].
+        name: Name of the terrain; made from the measures by default.
+        friction: Coulomb friction, wheel on terrain.
+
+    Raises:
+        InputError: If a measure is out of range, or the faces are longer than the run.
+    """
+    _positive(rise=rise, approach=approach, platform=platform)
+    if direction not in get_args(Direction):
+        raise InputError(f"must be one of: {', '.join(get_args(Direction))}", ("direction",))
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MAX_STEPS:
+        raise InputError(f"must be a whole number from 1 to {MAX_STEPS}", ("count",))
+    if not 0.0 < face_angle <= math.pi / 2:
+        raise InputError("must be above 0 and at most pi/2 rad", ("face_angle",))
+    depth = 0.0 if face_angle > math.pi / 2 - 1e-9 else rise / math.tan(face_angle)
+    if count > 1:
+        _positive(run=run)
+        if depth > run:
+            raise InputError(f"must be at least the depth of a face, {depth:.4g} m", ("run",))
+
+    points: list[tuple[float, float]] = [(-approach, 0.0)]
+    x = z = 0.0
+    flights = {"up": (1,), "down": (-1,), "up-down": (1, -1)}[direction]
+    for sign in flights:
+        for _ in range(count):
+            points.append((x, z))
+            z += sign * rise
+            points.append((x + depth, z))
+            x += run
+        x += depth + platform - run
+    points.append((x, z))
+    rounded = [(round(px, 9) + 0.0, round(pz, 9) + 0.0) for px, pz in points]
+    steps = "One step" if count == 1 else f"{count} steps"
+    tread = "" if count == 1 else f", run {run:g} m"
+    angle = "" if depth == 0.0 else f", faces at {math.degrees(face_angle):.3g} degrees"
+    return _terrain(
+        name or f"stair-{rise:g}-{run:g}-x{count}-{direction}",
+        f"{steps} {direction}, rise {rise:g} m{tread}{angle}.",
+        rounded,
+        friction,
+    )
+
+
+def _terrain(
+    name: str, description: str, points: list[tuple[float, float]], friction: float
+) -> Terrain:
+    if not 0.0 < friction <= 5.0:
+        raise InputError("must be above 0 and at most 5", ("friction",))
+    if any(abs(value) > 100.0 for point in points for value in point):
+        raise InputError("the terrain would reach further than 100 m", ("count",))
+    return Terrain(name=name, description=description, points=points, friction=friction)
+
+
+def _positive(**values: float) -> None:
+    for name, value in values.items():
+        if not 0.0 < value <= 100.0:
+            raise InputError("must be above 0 and at most 100 m", (name,))
