@@ -1,0 +1,252 @@
+"""Setting up, shipping: locks, container files, the wheel, `./dev` and CI's script."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import importlib.util
+import os
+import re
+import shutil
+import socket
+import subprocess
+import sys
+import tomllib
+import zipfile
+from importlib.machinery import SourceFileLoader
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+ROOT = Path(__file__).resolve().parents[1]
+LOCKS = [ROOT / name for name in ("requirements.lock", "requirements-dev.lock")]
+ALL_LOCKS = [*LOCKS, ROOT / "requirements-node.lock"]
+# put together here, so that this file does not contain what it looks for
+REGISTRY_HOSTS = [
+    "pypi" + ".org",
+    "files.python" + "hosted.org",
+    "registry.npm" + "js.org",
+    "registry.yarn" + "pkg.com",
+    "deb.deb" + "ian.org",
+    "docker" + ".io/",
+]
+
+
+def run(*command: str | Path, **options: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command, capture_output=True, text=True, check=False, **options)
+
+
+def locked(path: Path) -> dict[str, str]:
+    """Package names and versions in a lock."""
+    return {
+        canonicalize_name(name): version
+        for name, version in re.findall(r"^([\w.-]+)==([^\s;]+)", path.read_text(), re.MULTILINE)
+    }
+
+
+@pytest.fixture(scope="module")
+def dev() -> ModuleType:
+    """The script ./dev, as a module."""
+    loader = SourceFileLoader("stairwright_dev", str(ROOT / "dev"))
+    spec = importlib.util.spec_from_loader(loader.name, loader)
+    assert spec is not None
+    module = importlib.util.module_from_spec(spec)
+    loader.exec_module(module)
+    return module
+
+
+# ---------------------------------------------------------------- locks
+
+
+@pytest.mark.parametrize("path", ALL_LOCKS, ids=lambda path: path.name)
+def test_every_locked_package_has_hashes_and_no_address(path: Path, dev: ModuleType) -> None:
+    blocks = dev.lock_blocks(path)
+    assert "".join(blocks) == path.read_text()
+    for block in blocks:
+        assert re.match(r"[\w.-]+==[\w.]+", block), block
+        assert "--hash=sha256:" in block
+    assert "://" not in path.read_text()
+    assert "index" not in re.findall(r"^\s*--(\w+)", path.read_text(), re.MULTILINE)
+
+
+def test_locks_satisfy_what_the_package_asks_for() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    dev_group = [r for r in project["dependency-groups"]["dev"] if isinstance(r, str)]
+    serving, everything = locked(LOCKS[0]), locked(LOCKS[0]) | locked(LOCKS[1])
+    for text in project["project"]["dependencies"] + project["dependency-groups"]["build"]:
+        requirement = Requirement(text)
+        assert requirement.specifier.contains(serving[canonicalize_name(requirement.name)]), text
+    for text in dev_group:
+        requirement = Requirement(text)
+        assert requirement.specifier.contains(everything[canonicalize_name(requirement.name)]), text
+    assert not locked(LOCKS[0]).keys() & locked(LOCKS[1]).keys()
+
+
+def test_what_is_installed_is_what_is_locked() -> None:
+    for name in ("numpy", "mujoco", "viser", "casadi", "numba", "fastapi", "pytest"):
+        assert importlib.metadata.version(name) == {**locked(LOCKS[0]), **locked(LOCKS[1])}[name]
+
+
+def test_no_tracked_file_names_a_registry_host() -> None:
+    listing = run("git", "ls-files", "-z", cwd=ROOT)
+    assert listing.returncode == 0, listing.stderr
+    files = [ROOT / name for name in listing.stdout.split("\0") if name]
+    assert len(files) > 20
+    named = [
+        f"{path.relative_to(ROOT)}: {host}"
+        for path in files
+        if path.is_file()
+        for host in REGISTRY_HOSTS
+        if host.encode() in path.read_bytes()
+    ]
+    assert not named
+
+
+# ---------------------------------------------------------------- containers
+
+
+def test_compose_file_meets_its_schema() -> None:
+    check = run(
+        sys.executable, "-m", "check_jsonschema", "--builtin-schema", "vendor.compose-spec",
+        ROOT / "docker-compose.yml",
+    )  # fmt: skip
+    assert check.returncode == 0, check.stdout + check.stderr
+
+
+def test_dockerfile_passes_hadolint() -> None:
+    check = run(Path(sys.executable).with_name("hadolint"), ROOT / "Dockerfile")
+    assert check.returncode == 0, check.stdout + check.stderr
+
+
+def test_docker_context_holds_what_the_dockerfile_copies() -> None:
+    copied = re.findall(
+        r"^COPY (?!--from)(?:--\S+ )*(.+) \S+$", (ROOT / "Dockerfile").read_text(), re.M
+    )
+    allowed = set(re.findall(r"^!(\S+)$", (ROOT / ".dockerignore").read_text(), re.M))
+    sources = {source.split("/")[0] for line in copied for source in line.split()}
+    assert sources == allowed
+    assert all((ROOT / source).exists() for source in sources)
+
+
+# ---------------------------------------------------------------- the wheel
+
+
+@pytest.mark.slow
+def test_wheel_brings_its_terrains_robots_and_page(tmp_path: Path) -> None:
+    """Built from the tracked files plus the page; used without the checkout."""
+    source = tmp_path / "source"
+    files = run("git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", cwd=ROOT)
+    for name in filter(None, files.stdout.split("\0")):
+        if (ROOT / name).is_file():
+            (source / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, source / name)
+    build = (sys.executable, "-m", "hatchling", "build", "--target", "wheel")
+    without_page = run(*build, cwd=source)
+    assert without_page.returncode != 0
+    assert "./dev build" in without_page.stderr
+
+    assert (ROOT / "frontend" / "dist" / "index.html").is_file(), (
+        "build the page first: ./dev build"
+    )
+    shutil.copytree(ROOT / "frontend" / "dist", source / "frontend" / "dist")
+    built = run(*build, cwd=source)
+    assert built.returncode == 0, built.stderr
+    (wheel,) = (source / "dist").glob("*.whl")
+    unpacked = tmp_path / "unpacked"
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(unpacked)
+    assert (unpacked / "stairwright" / "page" / "index.html").is_file()
+    assert (unpacked / "stairwright" / "py.typed").is_file()
+    program = "import stairwright as sw; print(sw.__file__, *sw.robots(), *sw.terrains())"
+    env = os.environ | {"PYTHONPATH": str(unpacked), "NUMBA_CACHE_DIR": str(tmp_path / "numba")}
+    used = run(sys.executable, "-c", program, cwd=tmp_path, env=env)
+    assert used.returncode == 0, used.stderr
+    place, *names = used.stdout.split()
+    assert place.startswith(str(unpacked))
+    assert {"a1_wheeled", "a1_wheeled_x", "single-stair-036", "three-stairs-up-down"} <= {*names}
+
+
+# ---------------------------------------------------------------- ./dev and .ci/run
+
+
+def test_a_step_runs_again_only_when_what_it_read_has_changed(
+    dev: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(dev, "ROOT", tmp_path)
+    source, stamp = tmp_path / "source", tmp_path / "state" / "stamp"
+
+    def needed(content: str, *, done: bool = True) -> bool:
+        source.write_text(content)
+        with dev.step("a step", stamp, dev.digest([source], "fact"), done=done) as answer:
+            return bool(answer)
+
+    assert needed("one")
+    assert not needed("one")
+    assert needed("two")
+    assert needed("two", done=False)
+    assert not needed("two")
+    with pytest.raises(RuntimeError), dev.step("fails", stamp, dev.digest([source])):
+        raise RuntimeError
+    assert needed("two"), "a failed step must not count as done"
+
+
+def test_renaming_a_source_changes_the_hash(
+    dev: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(dev, "ROOT", tmp_path)
+    first, second = tmp_path / "a", tmp_path / "b"
+    first.write_text("same")
+    before = dev.digest([first])
+    first.rename(second)
+    assert dev.digest([second]) != before
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [(["frobnicate"], "knows no 'frobnicate'"), (["setup", "x"], "takes no arguments")],
+)
+def test_dev_says_in_one_line_what_is_wrong(arguments: list[str], says: str) -> None:
+    answer = run(sys.executable, ROOT / "dev", *arguments)
+    assert answer.returncode == 1
+    assert says in answer.stderr
+    assert len(answer.stderr.splitlines()) == 1
+
+
+def test_up_tells_at_once_that_the_port_is_taken() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        answer = run(sys.executable, ROOT / "dev", "up", "--port", port)
+    assert answer.returncode == 1
+    assert f"port {port}" in answer.stderr
+    assert len(answer.stderr.splitlines()) == 1
+
+
+def test_missing_node_is_replaced_only_when_missing(
+    dev: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, text in (("node", "#!/bin/sh\necho v18.19.0\n"), ("npm", "#!/bin/sh\n")):
+        (tmp_path / name).write_text(text)
+        (tmp_path / name).chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert dev.node_version() == (18, 19, 0)
+    assert dev.node_version() < dev.NODE_MINIMUM
+    (tmp_path / "npm").unlink()
+    assert dev.node_version() == ()
+
+
+@pytest.mark.parametrize("status", [0, 1])
+def test_ci_passes_the_exit_status_on_and_ends_with_pytests_closing_line(
+    tmp_path: Path, status: int
+) -> None:
+    closing = "===== 1 failed, 41 passed, 1 skipped in 63.20s (0:01:03) ====="
+    (tmp_path / ".ci").mkdir()
+    shutil.copy(ROOT / ".ci" / "run", tmp_path / ".ci" / "run")
+    (tmp_path / "dev").write_text(f'#!/bin/sh\necho "{closing}"\necho later\nexit {status}\n')
+    (tmp_path / "dev").chmod(0o755)
+    answer = run("bash", ".ci/run", cwd=tmp_path, stdin=subprocess.DEVNULL)
+    assert answer.returncode == status
+    assert answer.stdout.splitlines()[-1] == closing
