@@ -1,0 +1,166 @@
+"""Every error as ``application/problem+json`` (RFC 9457), with a field path for each bad value."""
+
+from __future__ import annotations
+
+import json
+import logging
+import re
+from collections.abc import Mapping, Sequence
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel, Field
+from starlette.exceptions import HTTPException
+from starlette.responses import Response
+
+from ..errors import InputError
+
+MEDIA_TYPE = "application/problem+json"
+MAX_ERRORS = 20
+_LONGEST = 500  # characters of a message or path that may repeat what the client sent
+
+logger = logging.getLogger(__name__)
+
+
+class FieldError(BaseModel):
+    """One bad value."""
+
+    field: str = Field(description="path to the value, e.g. terrain.points.3", max_length=1000)
+    message: str = Field(description="what is wrong with it", max_length=1000)
+
+
+class ProblemDocument(BaseModel):
+    """RFC 9457: what went wrong."""
+
+    type: str = Field(description="names the kind of problem", examples=["about:blank"])
+    title: str = Field(examples=["Unprocessable Content"])
+    status: int = Field(examples=[422], ge=400, le=599)
+    detail: str = Field(examples=["terrain.points.3: x must never decrease"])
+    errors: list[FieldError] = []
+
+
+class Problem(Exception):
+    """Raised anywhere in the service to answer with a problem document."""
+
+    def __init__(
+        self,
+        status: int,
+        detail: str,
+        *,
+        kind: str = "",
+        errors: Sequence[FieldError] = (),
+        headers: Mapping[str, str] | None = None,
+    ) -> None:
+        super().__init__(detail)
+        self.status = status
+        self.detail = detail
+        self.kind = kind
+        self.errors = list(errors)
+        self.headers = dict(headers or {})
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The problem as plain data."""
+        return {
+            "type": f"urn:stairwright:problem:{self.kind}" if self.kind else "about:blank",
+            "title": HTTPStatus(self.status).phrase,
+            "status": self.status,
+            "detail": printable(self.detail),
+            "errors": [error.model_dump() for error in self.errors],
+        }
+
+    def response(self) -> Response:
+        """The answer to send."""
+        body = json.dumps(self.document).encode()
+        return Response(body, self.status, self.headers, media_type=MEDIA_TYPE)
+
+
+def not_found(kind: str, name: str) -> Problem:
+    """404 for a thing of some kind."""
+    return Problem(404, f"there is no {kind} {printable(name)!r}", kind="not-found")
+
+
+def from_input_error(error: InputError, *prefix: str) -> Problem:
+    """422 for a value that our own checks refuse."""
+    shown = error.within(*prefix) if prefix else error
+    field = FieldError(field=_path(shown.field), message=printable(shown.message))
+    return Problem(422, printable(str(shown)), kind="bad-input", errors=[field])
+
+
+def printable(text: str) -> str:
+    """`text` without lone surrogates and control characters, and not endless."""
+    clean = re.sub(r"[\x00-\x1f\x7f\ud800-\udfff]", "\N{REPLACEMENT CHARACTER}", text)
+    return clean if len(clean) <= _LONGEST else clean[: _LONGEST - 1] + "…"
+
+
+def _path(loc: Sequence[str | int]) -> str:
+    """A dotted path; the tags of unions, which start with ``~``, are no part of it."""
+    return printable(".".join(str(part) for part in loc if not str(part).startswith("~")))
+
+
+def _field_error(error: Mapping[str, Any]) -> FieldError:
+    loc = list(error["loc"])
+    source = loc.pop(0) if loc and loc[0] in ("body", "query", "path", "header") else ""
+    message, cause = str(error["msg"]), error.get("ctx", {}).get("error")
+    if isinstance(cause, InputError):
+        loc, message = [*loc, *cause.field], cause.message
+    elif isinstance(cause, ValueError):
+        message = str(cause)
+    path = _path(loc) or ("" if source == "body" else str(source))
+    return FieldError(field=path, message=printable(message))
+
+
+def from_validation(errors: Sequence[Mapping[str, Any]]) -> Problem:
+    """400 if the body is no JSON at all, else 422, from pydantic's list of errors."""
+    first = errors[0]
+    if first["type"] == "json_invalid":
+        why = first.get("ctx", {}).get("error", "")
+        return Problem(400, f"the body is not valid JSON: {printable(str(why))}", kind="bad-json")
+    shown = [_field_error(error) for error in errors[:MAX_ERRORS]]
+    head = f"{shown[0].field}: {shown[0].message}" if shown[0].field else shown[0].message
+    more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
+    return Problem(422, head + more, kind="bad-input", errors=shown)
+
+
+def install(app: FastAPI) -> None:
+    """Let every exception leave as a problem document."""
+
+    @app.exception_handler(Problem)
+    async def on_problem(request: Request, error: Problem) -> Response:
+        return error.response()
+
+    @app.exception_handler(RequestValidationError)
+    async def on_validation(request: Request, error: RequestValidationError) -> Response:
+        return from_validation(error.errors()).response()
+
+    @app.exception_handler(InputError)
+    async def on_input_error(request: Request, error: InputError) -> Response:
+        return from_input_error(error).response()
+
+    @app.exception_handler(HTTPException)
+    async def on_http(request: Request, error: HTTPException) -> Response:
+        detail = str(error.detail)
+        if error.status_code == 404 and detail == "Not Found":
+            detail = f"there is nothing at {request.url.path}"
+        if error.status_code == 405:
+            detail = f"{request.method} is not allowed here"
+        return Problem(error.status_code, detail, headers=error.headers).response()
+
+    @app.exception_handler(Exception)
+    async def on_bug(request: Request, error: Exception) -> Response:
+        logger.exception("unexpected error", exc_info=error)
+        return Problem(500, "this is a bug in the service; its log says more").response()
+
+
+def describe(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """OpenAPI's `responses` for the problems that a route can answer with."""
+    schema = {"$ref": "#/components/schemas/ProblemDocument"}
+    return {
+        status: {
+            "description": HTTPStatus(status).phrase,
+            "content": {MEDIA_TYPE: {"schema": schema}},
+        }
+        for status in statuses
+    }

@@ -1,0 +1,40 @@
+"""The page: static files, built by `./dev build` or shipped in the wheel."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fastapi import FastAPI
+from starlette.exceptions import HTTPException
+from starlette.responses import PlainTextResponse, Response
+from starlette.staticfiles import StaticFiles
+from starlette.types import Scope
+
+NOT_BUILT = "The page is not built. In a checkout: ./dev build. REST works: /api/v1/docs\n"
+
+
+class Page(StaticFiles):
+    """Files with hashed names are kept by browsers for good, the others are asked for again."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(directory=folder, html=True, check_dir=False)
+        self.folder = folder
+
+    async def get_response(self, path: str, scope: Scope) -> Response:
+        """One file, or a sentence if the page has not been built."""
+        if path == "." and not (self.folder / "index.html").is_file():
+            return PlainTextResponse(NOT_BUILT, 503)
+        if "\0" in path:
+            raise HTTPException(404)
+        response = await super().get_response(path, scope)
+        forever = path.startswith("assets/") and response.status_code == 200
+        cache = "public, max-age=31536000, immutable" if forever else "no-cache"
+        response.headers["cache-control"] = cache
+        response.headers["x-content-type-options"] = "nosniff"
+        response.headers["referrer-policy"] = "same-origin"
+        return response
+
+
+def mount(app: FastAPI, folder: Path) -> None:
+    """Serve the page at /; must come after all other routes."""
+    app.mount("/", Page(folder), name="page")

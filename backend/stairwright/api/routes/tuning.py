@@ -1,0 +1,50 @@
+"""What can be tuned: schemas of the planners' weights and of the controller's settings."""
+
+from __future__ import annotations
+
+import importlib.util
+from functools import cache
+from typing import Any
+
+from fastapi import APIRouter
+
+from ...documents import Model
+from ...planning.weights import MODELS
+from ..bodies import SettingsDocument
+
+router = APIRouter(tags=["settings"])
+
+
+@router.get("/settings")
+async def settings() -> SettingsDocument:
+    """JSON Schemas; each property has title, description, default, bounds, unit and scale."""
+    return _document()
+
+
+@cache
+def _document() -> SettingsDocument:
+    weights = {method: _flat(model) for method, model in MODELS.items()}
+    return SettingsDocument(weights=weights, controller=_controller())
+
+
+def _controller() -> dict[str, Any]:
+    if importlib.util.find_spec("stairwright.control.settings") is None:
+        return {"type": "object", "properties": {}}
+    from ...control.settings import ControllerSettings
+
+    return _flat(ControllerSettings)
+
+
+def _flat(model: type[Model]) -> dict[str, Any]:
+    """The model's schema with references to shared enumerations put in place."""
+    schema = model.model_json_schema(by_alias=True)
+    shared = schema.pop("$defs", {})
+
+    def resolve(node: dict[str, Any]) -> dict[str, Any]:
+        if "$ref" not in node:
+            return node
+        target = shared[node["$ref"].rsplit("/", 1)[-1]]
+        return {**target, **{key: value for key, value in node.items() if key != "$ref"}}
+
+    schema["properties"] = {k: resolve(v) for k, v in schema.get("properties", {}).items()}
+    return schema

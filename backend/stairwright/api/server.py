@@ -1,0 +1,22 @@
+"""Run the application with uvicorn."""
+
+from __future__ import annotations
+
+import uvicorn
+
+from .app import create_app
+from .settings import Settings
+
+
+def serve(host: str | None = None, port: int | None = None) -> int:
+    """Serve until interrupted; `host` and `port` win over the environment."""
+    settings = Settings.from_env(host=host, port=port)
+    uvicorn.run(
+        create_app(settings),
+        host=settings.host,
+        port=settings.port,
+        log_level=settings.log_level,
+        ws_per_message_deflate=False,
+        server_header=False,
+    )
+    return 0

@@ -1,0 +1,116 @@
+"""Settings of the service, from the environment. The table in docs/ is written from this class."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+from ..errors import InputError
+from ..resources import data_folder
+
+LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
+
+
+def default_data_folder() -> Path:
+    """Where this platform keeps a user's data."""
+    home = Path.home()
+    if sys.platform == "darwin":
+        return home / "Library" / "Application Support" / "stairwright"
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local") / "stairwright"
+    return Path(os.environ.get("XDG_DATA_HOME") or home / ".local" / "share") / "stairwright"
+
+
+def page_folder() -> Path:
+    """The built page: inside an installed wheel, else in the checkout, where it may not exist."""
+    shipped = Path(__file__).resolve().parents[1] / "page"
+    return shipped if shipped.is_dir() else data_folder("frontend") / "dist"
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _setting(text: str, default: Any = None, *, low: float | None = None, **kwargs: Any) -> Any:
+    metadata = {"text": text, "low": low}
+    if "default_factory" in kwargs:
+        return field(default_factory=kwargs["default_factory"], metadata=metadata)
+    return field(default=default, metadata=metadata)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """Everything that can be set; each is read from ``STAIRWRIGHT_<NAME>``."""
+
+    host: str = _setting("address to serve on", "127.0.0.1")
+    port: int = _setting("port to serve on; 0 takes a free one", 8000, low=0)
+    data: Path = _setting("folder of the database and results", default_factory=default_data_folder)
+    page: Path = _setting("folder of the built page", default_factory=page_folder)
+    token: str = _setting("bearer token that everything needs; empty for none", "")
+    origins: str = _setting("further web origins that may call, separated by spaces", "")
+    plan_workers: int = _setting(
+        "processes for interactive plans", default_factory=lambda: min(4, _cores()), low=1
+    )
+    rollout_workers: int = _setting(
+        "processes for rollouts", default_factory=lambda: max(1, _cores() - 1), low=1
+    )
+    worker_memory: int = _setting("memory limit of a worker, MiB; 0 for none", 4096, low=0)
+    plan_deadline: float = _setting("longest time for one plan, s", 60.0, low=0.1)
+    rollout_deadline: float = _setting("longest time for one rollout, s", 900.0, low=0.1)
+    queue_limit: int = _setting("rollouts that may wait", 64, low=0)
+    plan_queue_limit: int = _setting("plans that may wait", 64, low=0)
+    body_limit: int = _setting("largest request body, bytes", 256 * 1024, low=1024)
+    upload_limit: int = _setting("largest uploaded terrain file, bytes", 32 * 2**20, low=1024)
+    session_idle: float = _setting("a 3D scene without use is closed after this, s", 900.0, low=1.0)
+    session_limit: int = _setting("3D scenes open at once", 100, low=1)
+    keep_days: float = _setting("results older than this are removed, days", 90.0, low=0.0)
+    keep_bytes: int = _setting("results beyond this are removed, oldest first", 20 * 2**30, low=0)
+    log_level: str = _setting("debug, info, warning or error", "info")
+
+    def __post_init__(self) -> None:
+        if self.host not in LOOPBACK and not self.token:
+            raise InputError(
+                f"serving on {self.host} lets others in: set STAIRWRIGHT_TOKEN to a secret first"
+            )
+        if self.token and (len(self.token) < 8 or not self.token.isascii()):
+            raise InputError("STAIRWRIGHT_TOKEN must be at least 8 ASCII characters")
+        if self.log_level not in ("debug", "info", "warning", "error"):
+            raise InputError("STAIRWRIGHT_LOG_LEVEL must be debug, info, warning or error")
+        for each in fields(self):
+            low, value = each.metadata["low"], getattr(self, each.name)
+            if low is not None and not value >= low:
+                raise InputError(f"STAIRWRIGHT_{each.name.upper()} must be at least {low:g}")
+
+    @property
+    def allowed_origins(self) -> frozenset[str]:
+        """Web origins allowed besides the service's own."""
+        return frozenset(self.origins.split())
+
+    @classmethod
+    def from_env(cls, environ: Mapping[str, str] | None = None, **given: Any) -> Settings:
+        """Read the environment; `given` values win over it.
+
+        Raises:
+            InputError: If a variable cannot be read as its type or is out of bounds.
+        """
+        environ = os.environ if environ is None else environ
+        values: dict[str, Any] = {}
+        for each in fields(cls):
+            text = environ.get(f"STAIRWRIGHT_{each.name.upper()}", "")
+            if text:
+                values[each.name] = _convert(each.name, str(each.type), text)
+        values.update({name: value for name, value in given.items() if value is not None})
+        return cls(**values)
+
+
+def _convert(name: str, kind: str, text: str) -> Any:
+    kinds: dict[str, Any] = {"int": int, "float": float, "str": str}
+    try:
+        return kinds[kind](text) if kind in kinds else Path(text).expanduser()
+    except ValueError:
+        wanted = {"int": "a whole number", "float": "a number"}[kind]
+        raise InputError(f"STAIRWRIGHT_{name.upper()} must be {wanted}, not {text!r}") from None
