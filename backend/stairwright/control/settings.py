@@ -1,0 +1,120 @@
+"""Settings of the controller, with bounds and units: the page builds its sliders from them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+from pydantic import Field
+
+from stairwright.documents import Model, parse
+from stairwright.errors import InputError
+
+Form = Literal["contact", "paper"]
+Solver = Literal["native", "daqp", "clarabel", "quadprog", "proxqp", "piqp", "osqp"]
+
+
+def _number(
+    default: float | None, low: float, high: float, unit: str, title: str, text: str, scale: str
+) -> Any:
+    def extra(schema: dict[str, Any]) -> None:
+        schema.update(unit=unit, scale=scale)
+        if schema.pop("anyOf", None):  # a number or empty: keep the bounds where a slider looks
+            schema.update(type=["number", "null"], minimum=low, maximum=high)
+
+    return Field(default, ge=low, le=high, title=title, description=text, json_schema_extra=extra)
+
+
+class ControllerSettings(Model):
+    """How the robot is driven along its plan. Equation numbers are the paper's."""
+
+    form: Form = Field(
+        "contact",
+        title="Form",
+        description="contact: forces at the contact points, in each wheel's own frame, wheel "
+        "torque fed forward. paper: forces at the wheel centres, wheel torque from the rolling "
+        "control alone (eqs 3-17)",
+    )
+    solver: Solver = Field(
+        "native",
+        title="QP solver",
+        description="Solves the balance QP (eqs 13-14). native is compiled into the control loop; "
+        "the others go through qpsolvers; clarabel is the reference",
+    )
+    speed: float | None = _number(
+        None, 0.02, 1.0, "m/s", "Speed", "Along the course; the plan's own timing if empty", "log"
+    )
+    joint_speed: float = _number(
+        1.5, 0.1, 10.0, "rad/s", "Joint speed", "Cap on joint rates along the plan", "log"
+    )
+    leash: float = _number(
+        0.012, 0.002, 0.2, "m", "Leash", "How far the plan may run ahead of the wheels", "log"
+    )
+    joint_stiffness: float | None = _number(
+        None, 0.0, 2000.0, "Nm/rad", "Joint stiffness", "K_p of eq 27; the robot's if empty", "log"
+    )
+    joint_damping: float | None = _number(
+        None, 0.0, 100.0, "Nm s/rad", "Joint damping", "K_d of eq 27; the robot's if empty", "log"
+    )
+    wheel_damping: float | None = _number(
+        None, 0.0, 20.0, "Nm s/rad", "Wheel damping", "K_d of eq 15; the robot's if empty", "log"
+    )
+    wheel_sync: float = _number(
+        2.0, 0.0, 20.0, "1/s", "Wheel synchronisation", "Pull of each wheel to its place", "linear"
+    )
+    yaw_damping: float = _number(
+        1.2, 0.0, 20.0, "1", "Yaw damping", "K_d of eq 17, per wheel radius and track", "linear"
+    )
+    heading_stiffness: float = _number(
+        4.0, 0.0, 40.0, "1/s", "Heading", "Turns the robot back to the course", "linear"
+    )
+    com_stiffness: float = _number(
+        40.0, 0.0, 400.0, "1/s²", "CoM stiffness", "K_p of eq 9, position", "log"
+    )
+    com_damping: float = _number(
+        8.0, 0.0, 80.0, "1/s", "CoM damping", "K_d of eq 9, position", "log"
+    )
+    pitch_stiffness: float = _number(
+        200.0, 0.0, 1000.0, "1/s²", "Pitch stiffness", "K_p of eq 9, pitch", "log"
+    )
+    pitch_damping: float = _number(
+        20.0, 0.0, 100.0, "1/s", "Pitch damping", "K_d of eq 9, pitch", "log"
+    )
+    force_weight: float = _number(
+        1.0, 0.001, 100.0, "1", "Force task", "S of eq 13 for the force rows", "log"
+    )
+    moment_weight: float = _number(
+        20.0, 0.001, 1000.0, "1/m²", "Moment task", "S of eq 13 for the moment row", "log"
+    )
+    alpha: float = _number(
+        1e-3,
+        1e-6,
+        1.0,
+        "1",
+        "Alpha",
+        "Weight of the forces (eq 13); form contact: of their distance from the plan's static ones",
+        "log",
+    )
+    beta: float = _number(
+        1e-4, 0.0, 1.0, "1", "Beta", "Weight of the change of forces (eq 13)", "linear"
+    )
+    friction_share: float = _number(
+        0.9, 0.1, 1.0, "1", "Friction used", "Part of the friction that the QP may use", "linear"
+    )
+    force_limit: float = _number(
+        150.0, 20.0, 1000.0, "N", "Force limit", "Largest normal force of a wheel (eq 14)", "log"
+    )
+
+
+def parse_settings(settings: Mapping[str, Any] | ControllerSettings | None) -> ControllerSettings:
+    """Settings with defaults filled in.
+
+    Raises:
+        InputError: For an unknown name or a value out of bounds; the field starts at `controller`.
+    """
+    if isinstance(settings, ControllerSettings):
+        return settings
+    try:
+        return parse(ControllerSettings, dict(settings or {}))
+    except InputError as error:
+        raise error.within("controller") from None

@@ -1,0 +1,262 @@
+"""The MuJoCo model of a robot on a terrain, generated from the same documents as everything else.
+
+Settings that the tests prove (`tests/robot/test_mujoco_model.py`): 1 ms, implicitfast, Newton with
+a dense Jacobian, elliptic friction cones, multi-contact CCD off. A wheel collides as a sphere: the
+terrain is extruded along y, so a sphere touches it exactly where the wheel's circle does, while
+cylinders get false upward contacts at box edges. What one sees is a cylinder with spokes.
+
+Who touches whom: everything touches the terrain; links and wheels of a front leg touch those of the
+rear leg on the same side; legs pass the trunk freely, because they move beside it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.errors import InputError
+from stairwright.terrain.profile import Terrain
+
+from .description import JOINTS, LEGS, Actuator, LegLimits, Robot
+
+Floats = NDArray[np.float64]
+
+TIMESTEP = 0.001  # s
+TERRAIN_HALF_WIDTH = 1.0  # m
+TERRAIN_DEPTH = 0.5  # m below the lowest point
+SPIKE_WIDTH = 0.002  # m; a zero-width spike becomes a prism this thick
+_VERTICAL = 1e-6  # m; a face that advances less than this is vertical
+
+# Collision bits: a pair touches when contype of one meets conaffinity of the other.
+_GROUND, _LEFT, _RIGHT = 1, 2, 4
+_BITS = {  # contype, conaffinity
+    "terrain": (_GROUND, 0),
+    "trunk": (0, _GROUND),
+    "FL": (_LEFT, _GROUND),
+    "RL": (0, _GROUND | _LEFT),
+    "FR": (_RIGHT, _GROUND),
+    "RR": (0, _GROUND | _RIGHT),
+}
+_COLLISION_GROUP, _VISUAL_GROUP = 3, 2
+_COLOURS = {
+    "terrain": (0.62, 0.65, 0.70, 1.0),
+    "trunk": (0.16, 0.22, 0.32, 1.0),
+    "thigh": (0.90, 0.55, 0.15, 1.0),
+    "calf": (0.75, 0.78, 0.82, 1.0),
+    "wheel": (0.10, 0.10, 0.12, 1.0),
+    "spoke": (0.85, 0.85, 0.85, 1.0),
+}
+
+
+def build_spec(
+    robot: Robot,
+    terrain: Terrain | None = None,
+    friction: float | None = None,
+    *,
+    half_width: float = TERRAIN_HALF_WIDTH,
+    visual: bool = True,
+) -> Any:
+    """An editable `mujoco.MjSpec` of `robot` standing free on `terrain`.
+
+    Args:
+        robot: The robot's description.
+        terrain: The ground as extruded convex prisms; None leaves the world empty.
+        friction: Coulomb friction of every contact; the terrain's own by default.
+        half_width: Half the terrain's extent along y [m].
+        visual: Add what is only seen (wheel discs and spokes).
+    """
+    spec = mujoco.MjSpec()
+    spec.modelname = robot.name
+    spec.compiler.degree = False
+    option = spec.option
+    option.timestep = TIMESTEP
+    option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    option.solver = mujoco.mjtSolver.mjSOL_NEWTON
+    option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
+    if friction is None:
+        friction = terrain.friction if terrain is not None else 1.0
+    if not 0.0 < friction <= 5.0:
+        raise InputError("must be a number above 0 and at most 5", ("friction",))
+    if terrain is not None:
+        add_terrain(spec, terrain, friction, half_width)
+    spec.worldbody.add_light(pos=[0, -2, 4], dir=[0, 0.5, -1])
+    _add_robot(spec, robot, friction, visual)
+    return spec
+
+
+def build_model(
+    robot: Robot,
+    terrain: Terrain | None = None,
+    friction: float | None = None,
+    *,
+    half_width: float = TERRAIN_HALF_WIDTH,
+    visual: bool = False,
+) -> Any:
+    """The compiled `mujoco.MjModel` of `build_spec`."""
+    return build_spec(robot, terrain, friction, half_width=half_width, visual=visual).compile()
+
+
+def prisms(terrain: Terrain) -> list[Floats]:
+    """Convex outlines (k, 2) of the ground: one under each stretch, thin ones for spikes."""
+    p = terrain.vertices
+    floor = float(p[:, 1].min()) - TERRAIN_DEPTH
+    outlines = []
+    for i in range(len(p) - 1):
+        (x0, z0), (x1, z1) = p[i], p[i + 1]
+        if x1 - x0 > _VERTICAL:
+            outlines.append(np.array([(x0, floor), (x1, floor), (x1, z1), (x0, z0)]))
+        elif i + 2 < len(p) and z1 > z0 and p[i + 2, 0] - x1 <= _VERTICAL and p[i + 2, 1] < z1:
+            a, b = x1 - SPIKE_WIDTH / 2, x1 + SPIKE_WIDTH / 2
+            outlines.append(np.array([(a, floor), (b, floor), (b, z1), (a, z1)]))
+    return outlines
+
+
+def add_terrain(spec: Any, terrain: Terrain, friction: float, half_width: float) -> None:
+    """Add the terrain's prisms to the world: boxes where the top is level, meshes elsewhere."""
+    contype, conaffinity = _BITS["terrain"]
+    for i, outline in enumerate(prisms(terrain)):
+        shape: dict[str, Any]
+        (x0, floor), (x1, _), (_, z1), (_, z0) = outline
+        if z0 == z1:
+            shape = {
+                "type": mujoco.mjtGeom.mjGEOM_BOX,
+                "size": [(x1 - x0) / 2, half_width, (z0 - floor) / 2],
+                "pos": [(x0 + x1) / 2, 0.0, (z0 + floor) / 2],
+            }
+        else:
+            mesh = spec.add_mesh(name=f"terrain_{i}")
+            corners = [(x, y, z) for y in (-half_width, half_width) for x, z in outline]
+            mesh.uservert = np.array(corners).ravel()
+            shape = {"type": mujoco.mjtGeom.mjGEOM_MESH, "meshname": mesh.name}
+        spec.worldbody.add_geom(
+            name=f"terrain_{i}",
+            contype=contype,
+            conaffinity=conaffinity,
+            priority=1,  # the terrain's friction holds, whatever touches it
+            condim=3,
+            friction=[friction, 0.0, 0.0],
+            rgba=_COLOURS["terrain"],
+            **shape,
+        )
+
+
+def _add_robot(spec: Any, robot: Robot, friction: float, visual: bool) -> None:
+    trunk = spec.worldbody.add_body(name="trunk", pos=[0, 0, robot.nominal_height])
+    trunk.add_freejoint(name="root")
+    _set_inertial(trunk, robot.trunk.mass, (0.0, 0.0, 0.0), robot.trunk.inertia)
+    trunk.add_geom(
+        name="trunk",
+        type=mujoco.mjtGeom.mjGEOM_BOX,
+        size=[extent / 2 for extent in robot.trunk.size],
+        **_surface("trunk", "trunk", friction),
+    )
+    trunk.add_site(name="imu")
+    for leg in LEGS:
+        _add_leg(trunk, robot, leg, friction, visual)
+    for joint in JOINTS:
+        motor = robot.actuators.wheel if joint.endswith("wheel") else robot.actuators.leg
+        actuator = spec.add_actuator(
+            name=joint,
+            target=joint,
+            trntype=mujoco.mjtTrn.mjTRN_JOINT,
+            gaintype=mujoco.mjtGain.mjGAIN_FIXED,
+            biastype=mujoco.mjtBias.mjBIAS_NONE,
+            ctrllimited=True,
+            ctrlrange=[-motor.torque, motor.torque],
+        )
+        actuator.gainprm[0] = 1.0
+
+
+def _add_leg(spec: Any, trunk: Any, robot: Robot, leg: str, friction: float, visual: bool) -> None:
+    hip = robot.hips.front if leg[0] == "F" else robot.hips.rear
+    limits: LegLimits = robot.joints.front if leg[0] == "F" else robot.joints.rear
+    side = 1.0 if leg[1] == "L" else -1.0
+    parent, place = trunk, [hip[0], side * robot.hips.half_track, hip[1]]
+    for part in ("thigh", "calf"):
+        link = getattr(robot, part)
+        body = parent.add_body(name=f"{leg}_{part}", pos=place)
+        _add_hinge(body, f"{leg}_{part}", robot.actuators.leg, getattr(limits, part))
+        _set_inertial(body, link.mass, (0.0, 0.0, -link.com * link.length), link.inertia)
+        body.add_geom(
+            name=f"{leg}_{part}",
+            type=mujoco.mjtGeom.mjGEOM_CAPSULE,
+            fromto=[0, 0, 0, 0, 0, -link.length],
+            size=[link.radius, 0, 0],
+            **_surface(leg, part, friction),
+        )
+        parent, place = body, [0.0, 0.0, -link.length]
+    wheel = parent.add_body(name=f"{leg}_wheel", pos=place)
+    _add_hinge(wheel, f"{leg}_wheel", robot.actuators.wheel, None)
+    _set_inertial(wheel, robot.wheel.mass, (0.0, 0.0, 0.0), robot.wheel.inertia)
+    surface = _surface(leg, "wheel", friction)
+    if visual:
+        surface["rgba"] = (0.0, 0.0, 0.0, 0.0)
+        _add_wheel_look(wheel, leg, robot)
+    wheel.add_geom(
+        name=f"{leg}_wheel",
+        type=mujoco.mjtGeom.mjGEOM_SPHERE,
+        size=[robot.wheel.radius, 0, 0],
+        **surface,
+    )
+
+
+def _add_hinge(body: Any, name: str, motor: Actuator, limits: tuple[float, float] | None) -> None:
+    joint = body.add_joint(
+        name=name,
+        type=mujoco.mjtJoint.mjJNT_HINGE,
+        axis=[0, 1, 0],
+        armature=motor.armature,
+        damping=motor.damping,
+    )
+    if limits is not None:
+        joint.limited = True
+        joint.range = limits
+
+
+def _add_wheel_look(wheel: Any, leg: str, robot: Robot) -> None:
+    """A disc and three spokes, which show that the wheel turns; they touch nothing."""
+    look = {"contype": 0, "conaffinity": 0, "group": _VISUAL_GROUP, "mass": 0.0}
+    width = robot.wheel.width / 2
+    wheel.add_geom(
+        name=f"{leg}_disc",
+        type=mujoco.mjtGeom.mjGEOM_CYLINDER,
+        fromto=[0, -width, 0, 0, width, 0],
+        size=[robot.wheel.radius, 0, 0],
+        rgba=_COLOURS["wheel"],
+        **look,
+    )
+    for k in range(3):
+        angle = math.pi * k / 3
+        wheel.add_geom(
+            name=f"{leg}_spoke_{k}",
+            type=mujoco.mjtGeom.mjGEOM_BOX,
+            size=[0.85 * robot.wheel.radius, width + 0.001, 0.003],
+            quat=[math.cos(angle / 2), 0, math.sin(angle / 2), 0],
+            rgba=_COLOURS["spoke"],
+            **look,
+        )
+
+
+def _set_inertial(
+    body: Any, mass: float, centre: tuple[float, float, float], inertia: tuple[float, ...]
+) -> None:
+    body.explicitinertial = True
+    body.mass, body.ipos, body.inertia = mass, centre, inertia
+
+
+def _surface(owner: str, part: str, friction: float) -> dict[str, Any]:
+    contype, conaffinity = _BITS[owner]
+    return {
+        "contype": contype,
+        "conaffinity": conaffinity,
+        "condim": 3,
+        "friction": [friction, 0.0, 0.0],
+        "group": _COLLISION_GROUP if part == "wheel" else 0,
+        "rgba": _COLOURS[part],
+    }
