@@ -173,7 +173,7 @@ def _add_robot(spec: Any, robot: Robot, friction: float, visual: bool) -> None:
         actuator.gainprm[0] = 1.0
 
 
-def _add_leg(spec: Any, trunk: Any, robot: Robot, leg: str, friction: float, visual: bool) -> None:
+def _add_leg(trunk: Any, robot: Robot, leg: str, friction: float, visual: bool) -> None:
     hip = robot.hips.front if leg[0] == "F" else robot.hips.rear
     limits: LegLimits = robot.joints.front if leg[0] == "F" else robot.joints.rear
     side = 1.0 if leg[1] == "L" else -1.0
