@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from fastapi import APIRouter, FastAPI
 
-from .. import __version__
+from stairwright import __version__
+
 from . import problems
 from .routes import health, page, plans, robots, terrains, tuning
 from .settings import Settings

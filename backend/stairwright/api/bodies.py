@@ -6,10 +6,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, StrictBool, Tag
 
-from ..documents import Model
-from ..planning.plan import Method, Plan
-from ..robot.description import Robot
-from ..terrain.profile import Terrain
+from stairwright.documents import Model
+from stairwright.planning.plan import Method, Plan
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
 
 
 def _form(value: Any) -> str:

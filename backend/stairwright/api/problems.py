@@ -15,7 +15,7 @@ from pydantic import BaseModel, Field
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
-from ..errors import InputError
+from stairwright.errors import InputError
 
 MEDIA_TYPE = "application/problem+json"
 MAX_ERRORS = 20
@@ -41,7 +41,7 @@ class ProblemDocument(BaseModel):
     errors: list[FieldError] = []
 
 
-class Problem(Exception):
+class Problem(Exception):  # noqa: N818 - the word of RFC 9457
     """Raised anywhere in the service to answer with a problem document."""
 
     def __init__(
@@ -128,15 +128,15 @@ def install(app: FastAPI) -> None:
     """Let every exception leave as a problem document."""
 
     @app.exception_handler(Problem)
-    async def on_problem(request: Request, error: Problem) -> Response:
+    async def on_problem(_: Request, error: Problem) -> Response:
         return error.response()
 
     @app.exception_handler(RequestValidationError)
-    async def on_validation(request: Request, error: RequestValidationError) -> Response:
+    async def on_validation(_: Request, error: RequestValidationError) -> Response:
         return from_validation(error.errors()).response()
 
     @app.exception_handler(InputError)
-    async def on_input_error(request: Request, error: InputError) -> Response:
+    async def on_input_error(_: Request, error: InputError) -> Response:
         return from_input_error(error).response()
 
     @app.exception_handler(HTTPException)
@@ -149,8 +149,8 @@ def install(app: FastAPI) -> None:
         return Problem(error.status_code, detail, headers=error.headers).response()
 
     @app.exception_handler(Exception)
-    async def on_bug(request: Request, error: Exception) -> Response:
-        logger.exception("unexpected error", exc_info=error)
+    async def on_bug(_: Request, error: Exception) -> Response:
+        logger.error("unexpected error", exc_info=error)
         return Problem(500, "this is a bug in the service; its log says more").response()
 
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
-from ..errors import InputError
-from ..resources import data_folder
+from stairwright.errors import InputError
+from stairwright.resources import data_folder
 
 LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
 
@@ -35,41 +35,59 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _setting(text: str, default: Any = None, *, low: float | None = None, **kwargs: Any) -> Any:
-    metadata = {"text": text, "low": low}
-    if "default_factory" in kwargs:
-        return field(default_factory=kwargs["default_factory"], metadata=metadata)
-    return field(default=default, metadata=metadata)
+def _about(text: str, low: float | None = None) -> dict[str, Any]:
+    return {"text": text, "low": low}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
     """Everything that can be set; each is read from ``STAIRWRIGHT_<NAME>``."""
 
-    host: str = _setting("address to serve on", "127.0.0.1")
-    port: int = _setting("port to serve on; 0 takes a free one", 8000, low=0)
-    data: Path = _setting("folder of the database and results", default_factory=default_data_folder)
-    page: Path = _setting("folder of the built page", default_factory=page_folder)
-    token: str = _setting("bearer token that everything needs; empty for none", "")
-    origins: str = _setting("further web origins that may call, separated by spaces", "")
-    plan_workers: int = _setting(
-        "processes for interactive plans", default_factory=lambda: min(4, _cores()), low=1
+    host: str = field(default="127.0.0.1", metadata=_about("address to serve on"))
+    port: int = field(default=8000, metadata=_about("port to serve on; 0 takes a free one", 0))
+    data: Path = field(
+        default_factory=default_data_folder, metadata=_about("folder of the database and results")
     )
-    rollout_workers: int = _setting(
-        "processes for rollouts", default_factory=lambda: max(1, _cores() - 1), low=1
+    page: Path = field(default_factory=page_folder, metadata=_about("folder of the built page"))
+    token: str = field(
+        default="", metadata=_about("bearer token that everything needs; empty for none")
     )
-    worker_memory: int = _setting("memory limit of a worker, MiB; 0 for none", 4096, low=0)
-    plan_deadline: float = _setting("longest time for one plan, s", 60.0, low=0.1)
-    rollout_deadline: float = _setting("longest time for one rollout, s", 900.0, low=0.1)
-    queue_limit: int = _setting("rollouts that may wait", 64, low=0)
-    plan_queue_limit: int = _setting("plans that may wait", 64, low=0)
-    body_limit: int = _setting("largest request body, bytes", 256 * 1024, low=1024)
-    upload_limit: int = _setting("largest uploaded terrain file, bytes", 32 * 2**20, low=1024)
-    session_idle: float = _setting("a 3D scene without use is closed after this, s", 900.0, low=1.0)
-    session_limit: int = _setting("3D scenes open at once", 100, low=1)
-    keep_days: float = _setting("results older than this are removed, days", 90.0, low=0.0)
-    keep_bytes: int = _setting("results beyond this are removed, oldest first", 20 * 2**30, low=0)
-    log_level: str = _setting("debug, info, warning or error", "info")
+    origins: str = field(
+        default="", metadata=_about("further web origins that may call, separated by spaces")
+    )
+    plan_workers: int = field(
+        default_factory=lambda: min(4, _cores()),
+        metadata=_about("processes for interactive plans", 1),
+    )
+    rollout_workers: int = field(
+        default_factory=lambda: max(1, _cores() - 1), metadata=_about("processes for rollouts", 1)
+    )
+    worker_memory: int = field(
+        default=4096, metadata=_about("memory limit of a worker, MiB; 0 for none", 0)
+    )
+    plan_deadline: float = field(default=60.0, metadata=_about("longest time for one plan, s", 0.1))
+    rollout_deadline: float = field(
+        default=900.0, metadata=_about("longest time for one rollout, s", 0.1)
+    )
+    queue_limit: int = field(default=64, metadata=_about("rollouts that may wait", 0))
+    plan_queue_limit: int = field(default=64, metadata=_about("plans that may wait", 0))
+    body_limit: int = field(
+        default=256 * 1024, metadata=_about("largest request body, bytes", 1024)
+    )
+    upload_limit: int = field(
+        default=32 * 2**20, metadata=_about("largest uploaded terrain file, bytes", 1024)
+    )
+    session_idle: float = field(
+        default=900.0, metadata=_about("a 3D scene without use is closed after this, s", 1.0)
+    )
+    session_limit: int = field(default=100, metadata=_about("3D scenes open at once", 1))
+    keep_days: float = field(
+        default=90.0, metadata=_about("results older than this are removed, days", 0.0)
+    )
+    keep_bytes: int = field(
+        default=20 * 2**30, metadata=_about("results beyond this are removed, oldest first", 0)
+    )
+    log_level: str = field(default="info", metadata=_about("debug, info, warning or error"))
 
     def __post_init__(self) -> None:
         if self.host not in LOOPBACK and not self.token:

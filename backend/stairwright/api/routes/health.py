@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
-from ... import __version__
-from ..bodies import Health
+from stairwright import __version__
+from stairwright.api.bodies import Health
 
 router = APIRouter(tags=["service"])
 

@@ -6,9 +6,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path
 
-from ...library import load_robot, robots
-from ...robot.description import Robot
-from ..problems import describe, not_found
+from stairwright.api.problems import describe, not_found
+from stairwright.library import load_robot, robots
+from stairwright.robot.description import Robot
 
 router = APIRouter(prefix="/robots", tags=["robots"])
 

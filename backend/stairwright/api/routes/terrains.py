@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
-from ...library import load_terrain, terrains
-from ..bodies import TerrainDocument
-from ..problems import describe, not_found
+from stairwright.api.bodies import TerrainDocument
+from stairwright.api.problems import describe, not_found
+from stairwright.library import load_terrain, terrains
 
 router = APIRouter(prefix="/terrains", tags=["terrains"])
 

@@ -8,9 +8,9 @@ from typing import Any
 
 from fastapi import APIRouter
 
-from ...documents import Model
-from ...planning.weights import MODELS
-from ..bodies import SettingsDocument
+from stairwright.api.bodies import SettingsDocument
+from stairwright.documents import Model
+from stairwright.planning.weights import MODELS
 
 router = APIRouter(tags=["settings"])
 
@@ -30,7 +30,7 @@ def _document() -> SettingsDocument:
 def _controller() -> dict[str, Any]:
     if importlib.util.find_spec("stairwright.control.settings") is None:
         return {"type": "object", "properties": {}}
-    from ...control.settings import ControllerSettings
+    from stairwright.control.settings import ControllerSettings
 
     return _flat(ControllerSettings)
 

@@ -1,0 +1,58 @@
+"""The SQLite file: opened with a write-ahead log, brought up to date by migrations."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Engine, create_engine, event, inspect
+
+from stairwright.errors import InputError
+
+MIGRATIONS = Path(__file__).with_name("migrations")
+BUSY_TIMEOUT = 5.0  # s that a writer waits for another one
+
+
+def open_database(path: Path) -> Engine:
+    """Open or create the database and migrate it.
+
+    Raises:
+        InputError: If the folder cannot be written, or the file is no database of ours.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot use the data folder {path.parent}: {error.strerror}") from None
+    engine = create_engine(f"sqlite:///{path}", connect_args={"timeout": BUSY_TIMEOUT})
+
+    @event.listens_for(engine, "connect")
+    def configure(connection: Any, _: Any) -> None:
+        cursor = connection.cursor()
+        cursor.execute("PRAGMA journal_mode=WAL")
+        cursor.execute("PRAGMA synchronous=NORMAL")  # safe with WAL against kill -9
+        cursor.close()
+
+    _migrate(engine)
+    return engine
+
+
+def _migrate(engine: Engine) -> None:
+    from alembic import command  # takes a while to import
+    from alembic.config import Config
+    from alembic.runtime.migration import MigrationContext
+    from alembic.script import ScriptDirectory
+
+    config = Config()
+    config.set_main_option("script_location", str(MIGRATIONS).replace("%", "%%"))
+    newest = ScriptDirectory.from_config(config).get_current_head()
+    with engine.connect() as connection:
+        if MigrationContext.configure(connection).get_current_revision() == newest:
+            return
+    with engine.connect() as connection:
+        # One process migrates; another that starts meanwhile waits here and finds it done.
+        connection.exec_driver_sql("BEGIN IMMEDIATE")
+        if MigrationContext.configure(connection).get_current_revision() != newest:
+            config.attributes["connection"] = connection
+            command.upgrade(config, "head")
+        connection.commit()
+    assert inspect(engine).has_table("documents")

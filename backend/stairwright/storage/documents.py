@@ -1,0 +1,127 @@
+"""Plans and rollouts: found by id or by the question that they answer."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from sqlalchemy import func, select, update
+from sqlalchemy.dialects.sqlite import insert
+from sqlalchemy.orm import Session, sessionmaker
+
+from .artefacts import Artefacts
+from .tables import StoredDocument
+
+Kind = Literal["plan", "rollout"]
+_FRESH = 3600.0  # s; a use is written down again only after this time
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What is known of a document without opening it."""
+
+    id: str
+    kind: str
+    digest: str
+    size: int
+    summary: Mapping[str, Any]
+    created: float
+
+
+def _entry(row: StoredDocument) -> Entry:
+    return Entry(row.id, row.kind, row.digest, row.size, json.loads(row.summary), row.created)
+
+
+class Documents:
+    """The shelf of plans and rollouts."""
+
+    def __init__(self, sessions: sessionmaker[Session], artefacts: Artefacts) -> None:
+        self._sessions = sessions
+        self._artefacts = artefacts
+
+    def get(self, kind: Kind, document_id: str) -> Entry | None:
+        """The document of this id, None if there is none (any more)."""
+        condition = (StoredDocument.id == document_id, StoredDocument.kind == kind)
+        return self._find(*condition)
+
+    def answer(self, kind: Kind, question: str, engine: str) -> Entry | None:
+        """A stored answer to the same question by the same code."""
+        return self._find(
+            StoredDocument.question == question,
+            StoredDocument.engine == engine,
+            StoredDocument.kind == kind,
+        )
+
+    def _find(self, *condition: Any) -> Entry | None:
+        with self._sessions.begin() as session:
+            row = session.scalars(select(StoredDocument).where(*condition).limit(1)).first()
+            if row is None or not self._artefacts.path(row.digest).is_file():
+                return None
+            if time.time() - row.used > _FRESH:
+                row.used = time.time()
+            return _entry(row)
+
+    def put(
+        self,
+        kind: Kind,
+        document_id: str,
+        *,
+        question: str,
+        engine: str,
+        digest: str,
+        size: int,
+        summary: Mapping[str, Any],
+    ) -> Entry:
+        """Write down a document whose content is among the artefacts already."""
+        now = time.time()
+        values: dict[str, Any] = {
+            "kind": kind,
+            "question": question,
+            "engine": engine,
+            "digest": digest,
+            "size": size,
+            "summary": json.dumps(dict(summary)),
+            "created": now,
+            "used": now,
+        }
+        statement = insert(StoredDocument).values(id=document_id, **values)
+        with self._sessions.begin() as session:
+            session.execute(statement.on_conflict_do_update(index_elements=["id"], set_=values))
+        return Entry(document_id, kind, digest, size, dict(summary), now)
+
+    def page(self, kind: Kind, limit: int, offset: int) -> tuple[Sequence[Entry], int]:
+        """Newest first: `limit` entries after `offset`, and how many there are in all."""
+        mine = StoredDocument.kind == kind
+        newest = (StoredDocument.created.desc(), StoredDocument.id)
+        with self._sessions() as session:
+            query = select(StoredDocument).where(mine).order_by(*newest).limit(limit).offset(offset)
+            total = session.scalar(select(func.count()).where(mine)) or 0
+            return [_entry(row) for row in session.scalars(query)], total
+
+    def digests(self) -> set[str]:
+        """Artefacts that are referred to."""
+        with self._sessions() as session:
+            return set(session.scalars(select(StoredDocument.digest)))
+
+    def forget(self, before: float, keep_bytes: int) -> int:
+        """Remove what was last used before a time, then the least used beyond a size."""
+        removed = 0
+        with self._sessions.begin() as session:
+            rows = session.scalars(select(StoredDocument).order_by(StoredDocument.used.desc()))
+            kept = 0
+            for row in rows.all():
+                kept += row.size
+                if row.used < before or kept > keep_bytes:
+                    session.delete(row)
+                    kept -= row.size
+                    removed += 1
+        return removed
+
+    def touch(self, document_id: str) -> None:
+        """Note a use now."""
+        statement = update(StoredDocument).where(StoredDocument.id == document_id)
+        with self._sessions.begin() as session:
+            session.execute(statement.values(used=time.time()))

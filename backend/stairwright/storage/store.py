@@ -1,0 +1,54 @@
+"""One object for all that is kept, made of one shelf a kind."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+from sqlalchemy import Engine, text
+from sqlalchemy.orm import sessionmaker
+
+from .artefacts import Artefacts
+from .database import open_database
+from .documents import Documents
+from .idempotency import IdempotencyKeys
+from .jobs import JobLog
+from .terrains import SavedTerrains
+
+DATABASE = "stairwright.sqlite"
+
+
+class Store:
+    """The data folder. Thread-safe; every call is one transaction.
+
+    Raises:
+        InputError: If the folder cannot be used.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.engine: Engine = open_database(folder / DATABASE)
+        sessions = sessionmaker(self.engine, expire_on_commit=False)
+        self.artefacts = Artefacts(folder / "artefacts")
+        self.terrains = SavedTerrains(sessions)
+        self.documents = Documents(sessions, self.artefacts)
+        self.jobs = JobLog(sessions)
+        self.idempotency = IdempotencyKeys(sessions)
+
+    def ready(self) -> bool:
+        """Whether the database answers."""
+        with self.engine.connect() as connection:
+            return bool(connection.execute(text("SELECT 1")).scalar())
+
+    def collect(self, keep_days: float, keep_bytes: int) -> int:
+        """Remove what is old or too much; returns how many results went."""
+        before = time.time() - keep_days * 86400.0
+        self.jobs.forget(before)
+        self.idempotency.forget(time.time() - 86400.0)
+        removed = self.documents.forget(before, keep_bytes)
+        self.artefacts.sweep(self.documents.digests())
+        return removed
+
+    def close(self) -> None:
+        """Close all connections; SQLite folds its log into the file."""
+        self.engine.dispose()

@@ -1,0 +1,70 @@
+"""The tables. A change here needs a new file in migrations/versions."""
+
+from __future__ import annotations
+
+from sqlalchemy import Index
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+
+
+class Base(DeclarativeBase):
+    """Base of all tables; times are seconds since 1970."""
+
+
+class SavedTerrain(Base):
+    """A terrain of the user's."""
+
+    __tablename__ = "terrains"
+
+    name: Mapped[str] = mapped_column(primary_key=True)
+    document: Mapped[str]  # JSON
+    updated: Mapped[float]
+
+
+class StoredDocument(Base):
+    """A plan or a rollout; its content lies among the artefacts.
+
+    `question` is a hash of everything that was asked, `engine` one of the code that answered: with
+    both alike the answer is the same.
+    """
+
+    __tablename__ = "documents"
+    __table_args__ = (
+        Index("documents_by_question", "question", "engine"),
+        Index("documents_by_use", "used"),
+    )
+
+    id: Mapped[str] = mapped_column(primary_key=True)
+    kind: Mapped[str]
+    question: Mapped[str]
+    engine: Mapped[str]
+    digest: Mapped[str] = mapped_column(index=True)
+    size: Mapped[int]  # bytes on disk
+    summary: Mapped[str]  # JSON
+    created: Mapped[float]
+    used: Mapped[float]
+
+
+class StoredJob(Base):
+    """A job's latest known state."""
+
+    __tablename__ = "jobs"
+
+    id: Mapped[str] = mapped_column(primary_key=True)
+    kind: Mapped[str]
+    state: Mapped[str]
+    result: Mapped[str | None]
+    error: Mapped[str | None]  # JSON, a problem document
+    created: Mapped[float]
+    updated: Mapped[float] = mapped_column(index=True)
+
+
+class IdempotencyRecord(Base):
+    """What a request with an Idempotency-Key led to."""
+
+    __tablename__ = "idempotency"
+
+    scope: Mapped[str] = mapped_column(primary_key=True)
+    key: Mapped[str] = mapped_column(primary_key=True)
+    fingerprint: Mapped[str]
+    result: Mapped[str | None]  # None while the first request is at work
+    created: Mapped[float]
