@@ -1,0 +1,118 @@
+/** One function a REST call. Throws `ApiError` for an answer that says no, `Offline` for none. */
+
+import type {
+  Job,
+  Plan,
+  PlanRequest,
+  ProblemDetail,
+  RobotDocument,
+  Rollout,
+  Settings,
+  SettingValues,
+  TerrainDocument,
+} from "./types";
+
+const BASE = "/api/v1";
+
+export class ApiError extends Error {
+  constructor(
+    readonly status: number,
+    readonly problem: ProblemDetail,
+  ) {
+    super(sentence(problem, status));
+  }
+}
+
+/** The service did not answer at all: stopped, restarting, or the network is gone. */
+export class Offline extends Error {}
+
+function sentence(problem: ProblemDetail, status: number): string {
+  const first = problem.errors?.[0];
+  if (first) return first.field ? `${first.field}: ${first.message}` : first.message;
+  return problem.detail ?? problem.title ?? `The service answered ${status}.`;
+}
+
+async function call(method: string, path: string, body?: unknown): Promise<Response> {
+  const init: RequestInit = { method };
+  if (body instanceof FormData) init.body = body;
+  else if (body !== undefined) {
+    init.body = JSON.stringify(body);
+    init.headers = { "Content-Type": "application/json" };
+  }
+  let response: Response;
+  try {
+    response = await fetch(path.startsWith("/") ? path : `${BASE}/${path}`, init);
+  } catch {
+    throw new Offline("The service does not answer.");
+  }
+  if (response.ok) return response;
+  if (response.status === 502 || response.status === 504) throw new Offline("No answer.");
+  const problem = (await response.json().catch(() => ({}))) as ProblemDetail;
+  throw new ApiError(response.status, problem);
+}
+
+async function json<T>(method: string, path: string, body?: unknown): Promise<T> {
+  return (await (await call(method, path, body)).json()) as T;
+}
+
+export const getTerrains = () => json<TerrainDocument[]>("GET", "terrains");
+export const getRobots = () => json<RobotDocument[]>("GET", "robots");
+export const getSettings = () => json<Settings>("GET", "settings");
+export const getPlan = (id: string) => json<Plan>("GET", `plans/${id}`);
+export const getRollout = (id: string) => json<Rollout>("GET", `rollouts/${id}`);
+export const getJob = (id: string) => json<Job>("GET", `jobs/${id}`);
+export const postPlan = (request: PlanRequest) => json<Plan>("POST", "plans", request);
+
+export async function ping(): Promise<number> {
+  const started = performance.now();
+  await call("GET", "/healthz");
+  return performance.now() - started;
+}
+
+export const putTerrain = (terrain: TerrainDocument) => {
+  const { readonly: _, ...document } = terrain;
+  return json<TerrainDocument>("PUT", `terrains/${encodeURIComponent(terrain.name)}`, document);
+};
+
+export const deleteTerrain = (name: string) =>
+  call("DELETE", `terrains/${encodeURIComponent(name)}`);
+
+export const generateTerrain = (parameters: Record<string, unknown>) =>
+  json<TerrainDocument>("POST", "terrains/generate", parameters);
+
+export function importTerrain(file: File, fields: Record<string, string>) {
+  const form = new FormData();
+  form.append("file", file, file.name);
+  for (const [name, value] of Object.entries(fields)) form.append(name, value);
+  return json<TerrainDocument>("POST", "terrains/import", form);
+}
+
+export interface RolloutRequest {
+  plan_id: string;
+  friction: number;
+  controller?: SettingValues;
+  seed: number;
+}
+
+export const postRollout = (request: RolloutRequest) => json<Job>("POST", "rollouts", request);
+export const cancelJob = (id: string) => call("DELETE", `jobs/${id}`);
+export const jobEvents = (id: string) => new EventSource(`${BASE}/jobs/${id}/events`);
+
+export interface Session {
+  id: string;
+  scene: string;
+}
+
+export const postSession = () => json<Session>("POST", "sessions");
+export const putScene = (id: string, body: Record<string, unknown>) =>
+  call("PUT", `sessions/${id}/scene`, body);
+export const putPlayback = (id: string, body: Record<string, unknown>) =>
+  call("PUT", `sessions/${id}/playback`, body);
+
+/** The page is going away: the request must outlive it. */
+export function dropSession(id: string): void {
+  void fetch(`${BASE}/sessions/${id}`, { method: "DELETE", keepalive: true });
+}
+
+export const exportUrl = (kind: "plans" | "rollouts", id: string, format: string) =>
+  `${BASE}/${kind}/${encodeURIComponent(id)}/export?format=${format}`;

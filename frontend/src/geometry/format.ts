@@ -1,0 +1,40 @@
+/** Numbers as they stand on screen: a true minus sign, fixed digits. */
+
+export function fixed(value: number, digits: number): string {
+  if (!Number.isFinite(value)) return "–";
+  const text = Math.abs(value).toFixed(digits);
+  return value < 0 && Number(text) !== 0 ? `−${text}` : text;
+}
+
+export const degrees = (radians: number) => (radians * 180) / Math.PI;
+
+export const millimetres = (metres: number) => `${fixed(metres * 1000, 0)} mm`;
+
+/** A duration of a computation: 0.9 ms, 14 ms, 1.3 s. */
+export function took(seconds: number): string {
+  if (seconds >= 1) return `${fixed(seconds, 1)} s`;
+  const ms = seconds * 1000;
+  return `${fixed(ms, ms < 10 ? 1 : 0)} ms`;
+}
+
+/** A setting: as short as it can be without losing what the slider can set. */
+export function setting(value: number): string {
+  const size = Math.abs(value);
+  if (size === 0) return "0";
+  if (size < 0.001 || size >= 100_000) {
+    return value
+      .toExponential(size === 10 ** Math.round(Math.log10(size)) ? 0 : 1)
+      .replace("-", "−");
+  }
+  if (size < 0.01) return fixed(value, 4);
+  if (size < 0.1) return fixed(value, 3);
+  if (size < 10) return fixed(value, 2);
+  return fixed(value, size < 100 ? 1 : 0);
+}
+
+/** The slope between two points as builders say it. */
+export function slope(dx: number, dz: number): string {
+  const angle = degrees(Math.atan2(dz, dx));
+  const ratio = Math.abs(dx / dz);
+  return `${fixed(angle, 1)}° · 1:${ratio < 10 ? fixed(ratio, 1) : fixed(ratio, 0)}`;
+}

@@ -1,0 +1,59 @@
+/** Start: read what there is, restore the address or open the sample, then follow every change. */
+
+import { render } from "preact";
+import { getRobots, getSettings, getTerrains } from "./api/client";
+import { App } from "./app";
+import { fit } from "./profile-editor/viewport";
+import { renewSession, startScene } from "./scene/drive";
+import { startAnnouncing } from "./state/announce";
+import { report, watchConnection } from "./state/connection";
+import { drawing, open } from "./state/drawing";
+import { startPlanning } from "./state/planning";
+import { startClock } from "./state/playback";
+import { restoreRollout } from "./state/rollouts";
+import { robotName, robots, settings, terrains } from "./state/setup";
+import { restoreFromAddress, startSharing } from "./state/share";
+import "uplot/dist/uPlot.min.css";
+import "./styles/index.css";
+
+const SAMPLE = "three-stairs-up";
+
+async function readCatalogue(): Promise<void> {
+  const [allTerrains, allRobots, allSettings] = await Promise.all([
+    getTerrains(),
+    getRobots(),
+    getSettings(),
+  ]);
+  terrains.value = allTerrains;
+  robots.value = allRobots;
+  settings.value = allSettings;
+  if (!allRobots.some((r) => r.name === robotName.peek()))
+    robotName.value = allRobots[0]?.name ?? "";
+}
+
+let started = false;
+
+async function begin(): Promise<void> {
+  await readCatalogue();
+  if (started) return;
+  started = true;
+  const restored = restoreFromAddress();
+  if (!restored) {
+    const sample = terrains.peek().find((t) => t.name === SAMPLE) ?? terrains.peek()[0];
+    if (sample) open(sample, sample);
+  }
+  fit(drawing.peek().points);
+  startSharing();
+  if (restored?.rollout) await restoreRollout(restored.rollout, restored.rolloutB).catch(report);
+}
+
+render(<App />, document.getElementById("app")!);
+startPlanning();
+startClock();
+startAnnouncing();
+startScene();
+begin().catch(report);
+watchConnection(() => {
+  begin().catch(report);
+  void renewSession();
+});

@@ -1,0 +1,362 @@
+/** What each plot shows, from the plan alone or from plan and rollout. */
+
+import type { Plan, Rollout } from "../api/types";
+import { degrees, fixed } from "../geometry/format";
+import { interpolate, planar, poseTimes } from "../geometry/frames";
+import { MARGINS, type MarginName } from "../profile-editor/margins";
+
+export type LineKind = "band" | "line" | "dash";
+export type Color = "tx" | "tx2" | "tx3" | "front" | "rear" | "third" | "fourth";
+
+export interface Line {
+  label: string;
+  color: Color;
+  kind: LineKind;
+  values: Float64Array;
+  /** Shown as a number in the header: its short name and digits. */
+  read?: { name: string; digits: number };
+}
+
+export interface Panel {
+  id: PanelId;
+  title: string;
+  unit: string;
+  time: Float64Array;
+  /** One or two plots above each other on one time axis. */
+  halves: Line[][];
+  /** Least spans of the halves' value axes. */
+  spans: number[];
+  caption?: string;
+  limit?: number;
+  range?: [number, number];
+  /** Where B ended early. */
+  cross?: { time: number; value: number };
+}
+
+export interface Source {
+  plan: Plan | null;
+  run: Rollout | null;
+  runB: Rollout | null;
+  legLimit: number;
+  wheelLimit: number;
+}
+
+export const PANELS = {
+  pitch: "Pitch, nose-up",
+  thigh: "Thigh",
+  calf: "Calf",
+  torque: "Peak torque",
+  margins: "Margins",
+  force: "Contact force",
+  wheel: "Wheel torque",
+} as const;
+export type PanelId = keyof typeof PANELS;
+
+const NOSE_UP = -1;
+
+/** Time axis: the rollout's samples, then the plan's where the robot never got to. */
+export function timeAxis({ plan, run }: Source): Float64Array {
+  if (!run) return Float64Array.from(plan ? poseTimes(plan) : []);
+  const end = run.series.time[run.series.time.length - 1] ?? 0;
+  const tail =
+    run.outcome === "success" || !plan ? [] : poseTimes(plan).filter((t) => t > end + 1e-6);
+  return Float64Array.from([...run.series.time, ...tail]);
+}
+
+/** Values at the rollout's samples, NaN where it has none. */
+function sampled(time: Float64Array, run: Rollout, value: (i: number) => number): Float64Array {
+  const n = run.series.time.length;
+  return time.map((_, i) => (i < n ? value(i) : Number.NaN));
+}
+
+function planned(time: Float64Array, plan: Plan, value: (i: number) => number): Float64Array {
+  const times = poseTimes(plan);
+  const values = plan.poses.map((_, i) => value(i));
+  const end = times[times.length - 1] ?? 0;
+  return time.map((t) => (t > end + 1e-9 ? Number.NaN : interpolate(times, values, t)));
+}
+
+/** What was asked for: by the rollout's controller while it ran, by the plan after that. */
+function desired(
+  time: Float64Array,
+  source: Source,
+  ofRun: (run: Rollout, i: number) => number,
+  ofPlan: (plan: Plan, i: number) => number,
+): Float64Array {
+  const { plan, run } = source;
+  const rest = plan ? planned(time, plan, (i) => ofPlan(plan, i)) : time.map(() => Number.NaN);
+  if (!run) return rest;
+  const n = run.series.time.length;
+  return time.map((_, i) => (i < n ? ofRun(run, i) : rest[i]!));
+}
+
+function pitchPanel(source: Source, time: Float64Array): Panel {
+  const { run, runB } = source;
+  const nose = (v: number) => NOSE_UP * degrees(v);
+  const top: Line[] = [
+    {
+      label: "desired",
+      color: "tx",
+      kind: "band",
+      values: desired(
+        time,
+        source,
+        (r, i) => nose(r.series.pitch_desired[i]!),
+        (p, i) => nose(p.poses[i]!.pitch),
+      ),
+      ...(run ? {} : { read: { name: "", digits: 1 } }),
+    },
+  ];
+  const error: Line[] = [];
+  let cross: Panel["cross"];
+  if (runB) {
+    const s = runB.series;
+    const end = s.time[s.time.length - 1]!;
+    const pitch = s.pitch.map(nose);
+    top.push({
+      label: "B actual",
+      color: "tx3",
+      kind: "dash",
+      values: time.map((t) => (t > end ? Number.NaN : interpolate(s.time, pitch, t))),
+    });
+    if (runB.outcome !== "success") cross = { time: end, value: pitch[pitch.length - 1]! };
+  }
+  if (run) {
+    const { pitch, pitch_desired } = run.series;
+    top.push({
+      label: "actual",
+      color: "tx",
+      kind: "line",
+      values: sampled(time, run, (i) => nose(pitch[i]!)),
+      read: { name: "", digits: 1 },
+    });
+    error.push({
+      label: "error",
+      color: "tx2",
+      kind: "line",
+      values: sampled(time, run, (i) => nose(pitch[i]! - pitch_desired[i]!)),
+      read: { name: "err", digits: 1 },
+    });
+  }
+  return {
+    id: "pitch",
+    title: PANELS.pitch,
+    unit: "°",
+    time,
+    halves: [top, error],
+    spans: [8, 2],
+    caption: "error",
+    ...(cross ? { cross } : {}),
+  };
+}
+
+/** Front and rear joints apart: their angles have opposite signs on many robots. */
+function jointPanel(id: "thigh" | "calf", source: Source, time: Float64Array): Panel {
+  const offset = id === "thigh" ? 0 : 1;
+  const half = (joint: number, color: Color): Line[] => {
+    const lines: Line[] = [
+      {
+        label: `${color} desired`,
+        color,
+        kind: "band",
+        values: desired(
+          time,
+          source,
+          (r, i) => degrees(planar(r.series.q_desired[i]!)[joint]!),
+          (p, i) => degrees(p.poses[i]!.q[joint]!),
+        ),
+        ...(source.run ? {} : { read: { name: "", digits: 0 } }),
+      },
+    ];
+    if (source.run) {
+      const { q } = source.run.series;
+      lines.push({
+        label: `${color} actual`,
+        color,
+        kind: "line",
+        values: sampled(time, source.run, (i) => degrees(planar(q[i]!)[joint]!)),
+        read: { name: "", digits: 0 },
+      });
+    }
+    return lines;
+  };
+  return {
+    id,
+    title: PANELS[id],
+    unit: "°",
+    time,
+    halves: [half(offset, "front"), half(2 + offset, "rear")],
+    spans: [20, 20],
+  };
+}
+
+const largest = (row: readonly number[], columns: readonly number[]) =>
+  columns.reduce((most, k) => Math.max(most, Math.abs(row[k]!)), 0);
+
+function torquePanel(source: Source, time: Float64Array): Panel {
+  const { plan, run } = source;
+  const lines: Line[] = [];
+  if (run) {
+    const { torque } = run.series;
+    const of = (columns: number[]) => sampled(time, run, (i) => largest(torque[i]!, columns));
+    lines.push(
+      {
+        label: "front leg",
+        color: "front",
+        kind: "line",
+        values: of([0, 1, 3, 4]),
+        read: { name: "", digits: 1 },
+      },
+      {
+        label: "rear leg",
+        color: "rear",
+        kind: "line",
+        values: of([6, 7, 9, 10]),
+        read: { name: "", digits: 1 },
+      },
+      {
+        label: "wheel",
+        color: "third",
+        kind: "line",
+        values: of([2, 5, 8, 11]),
+        read: { name: "", digits: 1 },
+      },
+    );
+  } else if (plan) {
+    const values = planned(time, plan, (i) => source.legLimit - plan.poses[i]!.margins.torque);
+    lines.push({
+      label: "static, largest",
+      color: "tx",
+      kind: "band",
+      values,
+      read: { name: "static", digits: 1 },
+    });
+  }
+  return {
+    id: "torque",
+    title: PANELS.torque,
+    unit: "Nm",
+    time,
+    halves: [lines],
+    spans: [10],
+    ...(Number.isFinite(source.legLimit)
+      ? { limit: source.legLimit, range: [0, source.legLimit * 1.08] }
+      : {}),
+  };
+}
+
+const MARGIN_LINES: [MarginName, string, Color, (v: number) => string][] = [
+  ["clearance", "clr", "tx", (v) => fixed(v * 1000, 0)],
+  ["com", "CoM", "third", (v) => fixed(v * 1000, 0)],
+  ["friction", "μ", "fourth", (v) => fixed(v, 2)],
+];
+
+/** Margins in percent of what is plenty, at the progress the robot had at each time. */
+function marginPanel(source: Source, time: Float64Array): Panel {
+  const { plan, run } = source;
+  const lines = MARGIN_LINES.map(([name, label, color]): Line => {
+    const full = MARGINS.find((m) => m.name === name)!.full;
+    const share = (v: number) => Math.min(1, Math.max(0, v / full)) * 100;
+    return {
+      label,
+      color,
+      kind: "line",
+      values: plan ? marginValues(time, plan, run, name).map(share) : time,
+      read: { name: label, digits: 0 },
+    };
+  });
+  return {
+    id: "margins",
+    title: PANELS.margins,
+    unit: "%",
+    time,
+    halves: [lines],
+    spans: [100],
+    range: [0, 103],
+  };
+}
+
+function marginValues(
+  time: Float64Array,
+  plan: Plan,
+  run: Rollout | null,
+  name: MarginName,
+): Float64Array {
+  const values = plan.poses.map((p) => p.margins[name]);
+  if (!run) return planned(time, plan, (i) => values[i]!);
+  const along = plan.poses.map((p) => p.progress);
+  return sampled(time, run, (i) => interpolate(along, values, run.series.progress[i]!));
+}
+
+function forcePanel(source: Source, time: Float64Array): Panel {
+  const { run } = source;
+  const pair = (a: number, axis: number) =>
+    run
+      ? sampled(time, run, (i) => {
+          const f = run.series.contact_force[i]!;
+          return f[a]![axis]! + f[a + 1]![axis]!;
+        })
+      : time.map(() => Number.NaN);
+  const half = (axis: number, read: boolean): Line[] =>
+    (["front", "rear"] as const).map((color, k) => ({
+      label: `${color} ${axis === 0 ? "tangential" : "normal"}`,
+      color,
+      kind: "line",
+      values: pair(2 * k, axis),
+      ...(read ? { read: { name: "", digits: 0 } } : {}),
+    }));
+  return {
+    id: "force",
+    title: PANELS.force,
+    unit: "N",
+    time,
+    halves: run ? [half(1, true), half(0, false)] : [[], []],
+    spans: [40, 20],
+    caption: "tangential",
+  };
+}
+
+function wheelPanel(source: Source, time: Float64Array): Panel {
+  const { run } = source;
+  const lines: Line[] = [];
+  if (run) {
+    const { torque } = run.series;
+    const mean = (a: number, b: number) =>
+      sampled(time, run, (i) => (torque[i]![a]! + torque[i]![b]!) / 2);
+    lines.push(
+      {
+        label: "front wheels",
+        color: "front",
+        kind: "line",
+        values: mean(2, 5),
+        read: { name: "", digits: 2 },
+      },
+      {
+        label: "rear wheels",
+        color: "rear",
+        kind: "line",
+        values: mean(8, 11),
+        read: { name: "", digits: 2 },
+      },
+    );
+  }
+  return { id: "wheel", title: PANELS.wheel, unit: "Nm", time, halves: [lines], spans: [2] };
+}
+
+export function buildPanel(id: PanelId, source: Source, time: Float64Array): Panel {
+  switch (id) {
+    case "pitch":
+      return pitchPanel(source, time);
+    case "thigh":
+    case "calf":
+      return jointPanel(id, source, time);
+    case "torque":
+      return torquePanel(source, time);
+    case "margins":
+      return marginPanel(source, time);
+    case "force":
+      return forcePanel(source, time);
+    case "wheel":
+      return wheelPanel(source, time);
+  }
+}

@@ -1,0 +1,237 @@
+/** A panel on screen: header with the values at the clock, chart, cursor, zoom, table. */
+
+import { useComputed } from "@preact/signals";
+import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
+import { fixed } from "../geometry/format";
+import { interpolate } from "../geometry/frames";
+import { plan } from "../state/planning";
+import { duration, hoverTime, playing, seek, shownTime } from "../state/playback";
+import { theme } from "../state/view";
+import { Icon } from "../ui/icon";
+import { Menu } from "../ui/menu";
+import { Chart, LEFT, palette, RIGHT, type Tint } from "./chart";
+import type { Panel } from "./panels";
+import { timeWindow, zoomTime } from "./window";
+
+interface PlotProps {
+  panel: Panel;
+  tint: Tint | null;
+}
+
+/** Bands and lines are laid out once; another layout needs another chart. */
+const layoutOf = (panel: Panel) =>
+  `${panel.halves.map((h) => h.map((l) => l.kind + l.color).join()).join("/")}|${panel.limit}`;
+
+export function Plot({ panel, tint }: PlotProps) {
+  const holder = useRef<HTMLDivElement>(null);
+  const chart = useRef<Chart | null>(null);
+  const window = timeWindow.value;
+  const layout = layoutOf(panel);
+  const shade = theme.value;
+
+  // biome-ignore lint/correctness/useExhaustiveDependencies: data alone go through update() below
+  useLayoutEffect(() => {
+    const element = holder.current!;
+    const { clientWidth: w, clientHeight: h } = element;
+    const made = new Chart(element, w, h, { panel, window, tint }, palette());
+    chart.current = made;
+    const observer = new ResizeObserver(() =>
+      made.resize(element.clientWidth, element.clientHeight),
+    );
+    observer.observe(element);
+    return () => {
+      observer.disconnect();
+      made.destroy();
+      chart.current = null;
+    };
+  }, [layout, shade]);
+
+  useEffect(() => {
+    chart.current?.update({ panel, window, tint });
+  }, [panel, window, tint]);
+
+  return (
+    <section class="plot" aria-label={panel.title}>
+      <header>
+        <h3>
+          {panel.title}
+          {panel.unit !== "%" && <small>{panel.unit}</small>}
+        </h3>
+        <Values panel={panel} />
+        <TableMenu panel={panel} />
+      </header>
+      <Surface>
+        <div class="chart" ref={holder} aria-hidden="true" />
+        <TimeCursor />
+      </Surface>
+    </section>
+  );
+}
+
+/** Numbers at the clock, in the colours of their lines. */
+function Values({ panel }: { panel: Panel }) {
+  const t = shownTime.value;
+  const lines = panel.halves.flat().filter((line) => line.read);
+  return (
+    <div class="vals" aria-hidden="true">
+      {lines.map((line) => {
+        const value =
+          panel.id === "margins"
+            ? marginAt(panel, line.label, t)
+            : interpolate(panel.time, line.values, t);
+        const digits = line.label === "μ" ? 2 : line.read!.digits;
+        return (
+          <span key={line.label} class={`v ${line.color}`}>
+            <i />
+            {line.read!.name}
+            <b>{fixed(value, digits)}</b>
+          </span>
+        );
+      })}
+    </div>
+  );
+}
+
+/** The margins' header tells millimetres and μ, not the percent that the lines are drawn in. */
+function marginAt(panel: Panel, label: string, t: number): number {
+  const line = panel.halves[0]!.find((l) => l.label === label)!;
+  const share = interpolate(panel.time, line.values, t) / 100;
+  return { clr: share * 50, CoM: share * 120, μ: share * 0.6 }[label] ?? Number.NaN;
+}
+
+function TimeCursor() {
+  const left = useComputed(() => {
+    const [from, to] = timeWindow.value;
+    return (shownTime.value - from) / (to - from);
+  });
+  const share = left.value;
+  if (!(share >= 0 && share <= 1) || duration.value <= 0) return null;
+  const bad = plan.value?.problem && shownTime.value >= duration.value - 1e-6;
+  return (
+    <div
+      class={bad ? "tcur bad" : "tcur"}
+      style={{ left: `calc(${LEFT}px + (100% - ${LEFT + RIGHT}px) * ${share.toFixed(5)})` }}
+    />
+  );
+}
+
+/** Pointer on a plot: hover previews, a drag sets the time, Shift-drag zooms, the wheel zooms too. */
+function Surface({ children }: { children: preact.ComponentChildren }) {
+  const root = useRef<HTMLDivElement>(null);
+  const band = useRef<HTMLDivElement>(null);
+  const zoomFrom = useRef<number | null>(null);
+  const timeAt = (event: MouseEvent) => {
+    const rect = root.current!.getBoundingClientRect();
+    const share = (event.clientX - rect.left - LEFT) / (rect.width - LEFT - RIGHT);
+    const [from, to] = timeWindow.peek();
+    return from + Math.min(1, Math.max(0, share)) * (to - from);
+  };
+  const onPointerDown = (event: PointerEvent) => {
+    if (event.button !== 0) return;
+    root.current!.setPointerCapture(event.pointerId);
+    if (event.shiftKey) {
+      zoomFrom.current = timeAt(event);
+      return;
+    }
+    playing.value = false;
+    hoverTime.value = null;
+    seek(timeAt(event));
+  };
+  const onPointerMove = (event: PointerEvent) => {
+    const t = timeAt(event);
+    if (zoomFrom.current !== null) showBand(zoomFrom.current, t);
+    else if (event.buttons === 1) seek(t);
+    else if (!playing.peek() && event.pointerType === "mouse")
+      hoverTime.value = Math.min(t, duration.peek());
+  };
+  const showBand = (a: number, b: number) => {
+    const rect = root.current!.getBoundingClientRect();
+    const [from, to] = timeWindow.peek();
+    const px = (t: number) => LEFT + ((t - from) / (to - from)) * (rect.width - LEFT - RIGHT);
+    Object.assign(band.current!.style, {
+      left: `${px(Math.min(a, b))}px`,
+      width: `${Math.abs(px(a) - px(b))}px`,
+    });
+  };
+  const onPointerUp = (event: PointerEvent) => {
+    if (zoomFrom.current === null) return;
+    const [a, b] = [zoomFrom.current, timeAt(event)].sort((p, q) => p - q) as [number, number];
+    zoomFrom.current = null;
+    band.current!.style.width = "0";
+    if (b - a > 0.02) timeWindow.value = [a, b];
+  };
+  useLayoutEffect(() => {
+    const element = root.current!;
+    const onWheel = (event: WheelEvent) => {
+      event.preventDefault();
+      zoomTime(timeAt(event), Math.exp(event.deltaY * 0.0015));
+    };
+    element.addEventListener("wheel", onWheel, { passive: false });
+    return () => element.removeEventListener("wheel", onWheel);
+  });
+  return (
+    // biome-ignore lint/a11y/noStaticElementInteractions: the transport is the same for the keyboard
+    <div
+      class="surface"
+      ref={root}
+      title="Click sets the time; wheel or Shift-drag zooms; double click shows all"
+      onPointerDown={onPointerDown}
+      onPointerMove={onPointerMove}
+      onPointerUp={onPointerUp}
+      onPointerLeave={() => {
+        hoverTime.value = null;
+      }}
+      onDblClick={() => zoomTime(0, Number.POSITIVE_INFINITY)}
+    >
+      {children}
+      <div class="zoomband" ref={band} />
+    </div>
+  );
+}
+
+const ROWS = 24;
+
+function TableMenu({ panel }: { panel: Panel }) {
+  return (
+    <Menu
+      label={`${panel.title} as a table`}
+      button={<Icon name="table" />}
+      buttonClass="t ico tbl"
+      panelClass="values up"
+      kind="dialog"
+      align="right"
+    >
+      {() => {
+        const lines = panel.halves.flat();
+        const end = panel.time[panel.time.length - 1] ?? 0;
+        return (
+          // biome-ignore lint/a11y/noNoninteractiveTabindex: a scrolling region must take the focus
+          <section class="scroll" tabIndex={0} aria-label={`Values of ${panel.title}`}>
+            <table>
+              <thead>
+                <tr>
+                  <th scope="col">s</th>
+                  {lines.map((line) => (
+                    <th key={line.label} scope="col">
+                      {line.label}
+                    </th>
+                  ))}
+                </tr>
+              </thead>
+              <tbody>
+                {Array.from({ length: ROWS + 1 }, (_, i) => (end * i) / ROWS).map((t) => (
+                  <tr key={t}>
+                    <td>{fixed(t, 2)}</td>
+                    {lines.map((line) => (
+                      <td key={line.label}>{fixed(interpolate(panel.time, line.values, t), 1)}</td>
+                    ))}
+                  </tr>
+                ))}
+              </tbody>
+            </table>
+          </section>
+        );
+      }}
+    </Menu>
+  );
+}

@@ -1,0 +1,72 @@
+/** The row of plots, all on one clock. */
+
+import { computed, signal } from "@preact/signals";
+import { plan } from "../state/planning";
+import { shownRun } from "../state/playback";
+import { activity, progress, run, runB, runPlan, showProgress } from "../state/rollouts";
+import { compare, robot } from "../state/setup";
+import { isNarrow } from "../state/view";
+import type { Tint } from "./chart";
+import { buildPanel, type PanelId, type Source, timeAxis } from "./panels";
+import { Plot } from "./plot";
+
+/** In the order of the row. On narrow pages the last ones fall away: the strip tells the margins. */
+export const shownPanels = signal<readonly PanelId[]>([
+  "pitch",
+  "thigh",
+  "calf",
+  "torque",
+  "margins",
+]);
+
+const MOST_NARROW = 4;
+
+/** While a rollout runs, the plots wait for it with the plan's bands. */
+const running = computed(() => activity.value === "running" && showProgress.value);
+
+const source = computed<Source>(() => {
+  const limit = robot.value?.limit;
+  const result = running.value ? null : run.value;
+  return {
+    plan: result ? (runPlan.value ?? plan.value) : plan.value,
+    run: result,
+    runB: compare.value && result ? runB.value : null,
+    legLimit: limit?.leg ?? Number.NaN,
+    wheelLimit: limit?.wheel ?? Number.NaN,
+  };
+});
+
+const panels = computed(() => {
+  const time = timeAxis(source.value);
+  const ids = isNarrow.value ? shownPanels.value.slice(0, MOST_NARROW) : shownPanels.value;
+  return ids.map((id) => buildPanel(id, source.value, time));
+});
+
+const tint = computed<Tint | null>(() => {
+  const shown = source.value.plan;
+  const total = shown?.timing.total ?? 0;
+  if (running.value) return { from: 0, to: progress.value * total, kind: "done" };
+  const result = source.value.run;
+  const end = result?.series.time[result.series.time.length - 1] ?? 0;
+  if (result && result.outcome !== "success")
+    return { from: end, to: Math.max(end, total), kind: "failed" };
+  if (shown?.problem) {
+    const stop = shown.poses[shown.poses.length - 1]?.time ?? 0;
+    return { from: stop, to: total, kind: "unplanned" };
+  }
+  return null;
+});
+
+export function Plots() {
+  if (!source.value.plan && !source.value.run) {
+    return <div class="plots none">Tracking plots appear when there is a plan.</div>;
+  }
+  const dim = run.value && !shownRun.value && !running.value;
+  return (
+    <div class={dim ? "plots dim" : "plots"} style={{ "--count": panels.value.length }}>
+      {panels.value.map((panel) => (
+        <Plot key={panel.id} panel={panel} tint={tint.value} />
+      ))}
+    </div>
+  );
+}

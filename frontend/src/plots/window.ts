@@ -1,0 +1,38 @@
+/** The stretch of time that all plots show. */
+
+import { computed, effect, signal } from "@preact/signals";
+import { plannedEnd } from "../state/playback";
+
+const chosen = signal<[number, number] | null>(null);
+const whole = computed<[number, number]>(() => [0, Math.max(plannedEnd.value, 0.5)]);
+
+export const timeWindow = {
+  get value(): [number, number] {
+    return chosen.value ?? whole.value;
+  },
+  set value(next: [number, number]) {
+    chosen.value = next;
+  },
+  peek(): [number, number] {
+    return chosen.peek() ?? whole.peek();
+  },
+};
+
+/** Zoom by `factor` around a time; beyond the whole it shows all. */
+export function zoomTime(around: number, factor: number): void {
+  const [from, to] = timeWindow.peek();
+  const end = whole.peek()[1];
+  const width = (to - from) * factor;
+  if (!(width < end)) {
+    chosen.value = null;
+    return;
+  }
+  const start = Math.min(end - width, Math.max(0, around - (around - from) * factor));
+  chosen.value = [start, start + Math.max(width, 0.02)];
+}
+
+/** Another duration is another axis: a zoom into the old one means nothing there. */
+effect(() => {
+  whole.value;
+  chosen.value = null;
+});

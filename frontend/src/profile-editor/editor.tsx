@@ -1,0 +1,195 @@
+/** The profile editor: one SVG from the grid up to the corners, with its gestures. */
+
+import { useLayoutEffect, useRef } from "preact/hooks";
+import type { Vec2 } from "../api/types";
+import { connected } from "../state/connection";
+import { drawing } from "../state/drawing";
+import { slow } from "../state/planning";
+import { tool } from "../state/view";
+import { DimensionField } from "./dimension-field";
+import { EmptyCanvas } from "./empty";
+import {
+  cancelGesture,
+  dragging,
+  move,
+  press,
+  release,
+  spaceHeld,
+  splitSegment,
+  type Target,
+} from "./gestures";
+import { Grid, Rulers } from "./grid";
+import { Banner, FirstHint, Legend, Refusal, Veil } from "./notices";
+import { Obstruction } from "./obstruction";
+import { Current, Ghosts } from "./poses";
+import { Readout } from "./readout";
+import { MarginStrip } from "./strip";
+import { Dimensions, Ground, WheelPath } from "./terrain-layer";
+import { Toolbar } from "./toolbar";
+import { Guides, Stretches, Vertices } from "./vertices";
+import { canvasBox, fit, pan, size, toWorld, zoomAt } from "./viewport";
+
+function targetOf(event: Event): Target {
+  const element = event.target as Element;
+  const vertex = element.closest<SVGElement>("[data-vertex]");
+  if (vertex) return { kind: "vertex", index: Number(vertex.dataset.vertex) };
+  const segment = element.closest<SVGElement>("[data-segment]");
+  if (segment) return { kind: "segment", index: Number(segment.dataset.segment) };
+  return { kind: "canvas", index: -1 };
+}
+
+function Canvas() {
+  const svg = useRef<SVGSVGElement>(null);
+  const local = (event: PointerEvent | MouseEvent): Vec2 => {
+    const rect = svg.current!.getBoundingClientRect();
+    return [event.clientX - rect.left, event.clientY - rect.top];
+  };
+  const onPointerDown = (event: PointerEvent) => {
+    if ((event.target as Element).closest("[data-dimension]")) return;
+    const target = targetOf(event);
+    svg.current!.setPointerCapture(event.pointerId);
+    if (target.kind === "vertex") {
+      svg
+        .current!.querySelector<SVGElement>(`[data-vertex="${target.index}"]`)
+        ?.focus({ preventScroll: true });
+    } else (document.activeElement as HTMLElement | null)?.blur?.();
+    event.preventDefault();
+    press(event, local(event), target);
+  };
+  const onWheel = (event: WheelEvent) => {
+    event.preventDefault();
+    const sideways = event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY);
+    if (sideways && !event.ctrlKey)
+      pan(-(event.deltaX || event.deltaY), event.shiftKey ? 0 : -event.deltaY);
+    else zoomAt(...local(event), Math.exp(-event.deltaY * (event.ctrlKey ? 0.01 : 0.0015)));
+  };
+  const onDblClick = (event: MouseEvent) => {
+    const target = targetOf(event);
+    if (target.kind === "segment") splitSegment(target.index, toWorld(...local(event))[0]);
+  };
+  useLayoutEffect(() => {
+    const element = svg.current!;
+    // Preact's own listener would be passive, and the page would zoom with the canvas.
+    element.addEventListener("wheel", onWheel, { passive: false });
+    return () => element.removeEventListener("wheel", onWheel);
+  });
+  const { width, height } = size.value;
+  const box = canvasBox.value;
+  return (
+    // biome-ignore lint/a11y/noStaticElementInteractions: the corners inside carry roles and keys
+    <svg
+      ref={svg}
+      class="ed"
+      width={width}
+      height={height}
+      data-tool={spaceHeld.value ? "pan" : tool.value}
+      data-dragging={dragging.value ?? undefined}
+      role="group"
+      aria-label="Side view of the terrain profile with the planned robot poses"
+      onPointerDown={onPointerDown}
+      onPointerMove={(event) => move(event, local(event))}
+      onPointerUp={release}
+      onPointerCancel={() => cancelGesture()}
+      onDblClick={onDblClick}
+    >
+      <defs>
+        <clipPath id="canvas-clip">
+          <rect
+            x={box.left}
+            y={box.top}
+            width={Math.max(0, box.right - box.left)}
+            height={box.bottom - box.top}
+          />
+        </clipPath>
+        <pattern
+          id="hatch-bad"
+          width="6"
+          height="6"
+          patternUnits="userSpaceOnUse"
+          patternTransform="rotate(45)"
+        >
+          <rect width="6" height="6" class="hb" />
+          <rect width="2.5" height="6" class="hs" />
+        </pattern>
+        <pattern
+          id="hatch"
+          width="8"
+          height="8"
+          patternUnits="userSpaceOnUse"
+          patternTransform="rotate(45)"
+        >
+          <rect width="1" height="8" class="ghs" />
+        </pattern>
+        <linearGradient id="ground" x1="0" y1="0" x2="0" y2="1">
+          <stop offset="0" class="ts0" />
+          <stop offset="1" class="ts1" />
+        </linearGradient>
+      </defs>
+      <g clip-path="url(#canvas-clip)">
+        <Grid />
+        <Ground />
+        <WheelPath />
+        <Ghosts />
+        <Stretches />
+        <Current />
+        <Dimensions />
+        <Guides />
+        <Vertices />
+      </g>
+      <Rulers />
+      <MarginStrip />
+    </svg>
+  );
+}
+
+export function Editor() {
+  const holder = useRef<HTMLDivElement>(null);
+  useLayoutEffect(() => {
+    const element = holder.current!;
+    const measure = () => {
+      const first = size.peek().width === 0;
+      const { clientWidth, clientHeight } = element;
+      if (clientWidth === 0) return;
+      const changed = Math.abs(clientWidth - size.peek().width) > 40;
+      size.value = { width: clientWidth, height: clientHeight };
+      if (first || changed) fit(drawing.peek().points);
+    };
+    measure();
+    const observer = new ResizeObserver(measure);
+    observer.observe(element);
+    return () => observer.disconnect();
+  }, []);
+  useLayoutEffect(() => {
+    const held = (event: KeyboardEvent) => {
+      if (event.key !== " " || event.target !== document.body) return;
+      spaceHeld.value = event.type === "keydown";
+    };
+    addEventListener("keydown", held);
+    addEventListener("keyup", held);
+    return () => {
+      removeEventListener("keydown", held);
+      removeEventListener("keyup", held);
+    };
+  }, []);
+  return (
+    <section
+      class="edit"
+      aria-label="Profile editor"
+      data-faded={slow.value && connected.value ? "" : undefined}
+    >
+      <Toolbar />
+      <div class="canvas" ref={holder}>
+        <Canvas />
+        <Legend />
+        <EmptyCanvas />
+        <Obstruction />
+        <Refusal />
+        <Readout />
+        <DimensionField />
+        <FirstHint />
+        <Veil />
+        <Banner />
+      </div>
+    </section>
+  );
+}

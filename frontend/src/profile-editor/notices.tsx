@@ -1,0 +1,106 @@
+/** What floats over the canvas: the legend, the lost service, a long solve, the first hint. */
+
+import { connected, retryIn, retryNow } from "../state/connection";
+import { drawing, isEmpty, selection } from "../state/drawing";
+import { plan, planB, refusal, slow } from "../state/planning";
+import { dismissHint, hintSeen, isNarrow, layers } from "../state/view";
+import { Icon } from "../ui/icon";
+import { canvasBox, projection } from "./viewport";
+
+export function Legend() {
+  if (isEmpty.value || isNarrow.value) return null;
+  return (
+    <div class="lg" aria-hidden="true">
+      <span class="front">
+        <i />
+        front
+      </span>
+      <span class="rear">
+        <i />
+        rear
+      </span>
+      {layers.value.has("com") && (
+        <span class="third">
+          <i />
+          CoM path
+        </span>
+      )}
+      {layers.value.has("wheel") && (
+        <span>
+          <i class="dots" />
+          wheel-centre path
+        </span>
+      )}
+      {planB.value && (
+        <span>
+          <i class="dash" />
+          B: without
+        </span>
+      )}
+    </div>
+  );
+}
+
+export function Banner() {
+  if (connected.value) return null;
+  return (
+    <div class="ban">
+      <Icon name="offline" />
+      <b>Planner lost.</b> Edits stay here and are planned when it returns.
+      <span class="wide"> Trying again in {retryIn.value} s</span>
+      <button type="button" onClick={retryNow}>
+        Retry now
+      </button>
+    </div>
+  );
+}
+
+export function Veil() {
+  if (!slow.value || !connected.value) return null;
+  return (
+    <div class="plan-veil">
+      <span class="spin" />
+      {plan.value ? "Planning the latest edit; the last plan is shown" : "Planning"}
+    </div>
+  );
+}
+
+/** The service would not even try: the drawing itself is not a terrain. */
+export function Refusal() {
+  if (!refusal.value || isEmpty.value) return null;
+  return (
+    <section class="tag why refused" aria-label="Not a terrain">
+      <h4>
+        <Icon name="warning" />
+        This profile cannot be planned
+      </h4>
+      <p>{refusal.value}</p>
+    </section>
+  );
+}
+
+/** Once, on the first visit, beside the corner that is worth dragging. */
+export function FirstHint() {
+  const points = drawing.value.points;
+  if (hintSeen.value || !plan.value || selection.value.length > 0 || points.length < 4) return null;
+  const i = Math.min(
+    points.length - 2,
+    points.findIndex((p, k) => k > 0 && p[1] > points[k - 1]![1]),
+  );
+  const p = points[i];
+  if (!p) return null;
+  const { px, py } = projection.value;
+  const box = canvasBox.value;
+  return (
+    <div
+      class="hint"
+      style={{ left: `${Math.min(box.right - 260, px(p[0]) + 18)}px`, top: `${py(p[1]) + 14}px` }}
+    >
+      <b>Drag a corner: the poses follow.</b>
+      <span>Then press Run rollout to see it driven.</span>
+      <button type="button" onClick={dismissHint}>
+        Got it
+      </button>
+    </div>
+  );
+}

@@ -1,0 +1,281 @@
+/** The robot on the canvas: ghosts of the plan, key poses, the pose at the clock, B dashed. */
+
+import { computed } from "@preact/signals";
+import type { Plan, Vec2 } from "../api/types";
+import { planFrame } from "../geometry/frames";
+import {
+  type Frame,
+  nearestPart,
+  type Part,
+  type RobotShape,
+  type Skeleton,
+  skeleton,
+} from "../geometry/robot";
+import { plan, planB } from "../state/planning";
+import { duration, frame, poseIndex, shownRun, shownTime } from "../state/playback";
+import { robot } from "../state/setup";
+import { layers } from "../state/view";
+import { type Projection, projection } from "./viewport";
+
+/** At most this many ghosts between the key poses. */
+const GHOSTS = 18;
+
+function poseFrame(shown: Plan, i: number): Frame | null {
+  const pose = shown.poses[i];
+  return pose ? { x: pose.x_c, z: pose.z_c, pitch: pose.pitch, q: pose.q } : null;
+}
+
+/** Indices of poses evenly apart in progress, without the key ones. */
+const ghostIndices = computed<number[]>(() => {
+  const shown = plan.value;
+  if (!shown || shown.poses.length <= shown.critical.length) return [];
+  const end = shown.poses[shown.poses.length - 1]!.progress;
+  const out: number[] = [];
+  let next = 0;
+  for (let k = 0; k < GHOSTS; k++) {
+    const wish = ((k + 0.5) / GHOSTS) * end;
+    while (next < shown.poses.length - 1 && shown.poses[next]!.progress < wish) next++;
+    if (!shown.critical.includes(next)) out.push(next);
+  }
+  return [...new Set(out)];
+});
+
+interface FigureProps {
+  robot: RobotShape;
+  bones: Skeleton;
+  to: Projection;
+  kind: "ghost" | "key" | "cur" | "cmp" | "halo";
+  bad?: Part | null;
+}
+
+/** Rear leg, front leg and trunk as lines; wheels as circles. */
+function Figure({ robot, bones, to, kind, bad }: FigureProps) {
+  const r = robot.wheel * to.scale;
+  const leg = (i: 0 | 1, name: "f" | "r") => {
+    const points = bones.legs[i];
+    const hub = points[2]!;
+    return (
+      <>
+        <polyline class={`leg ${name}`} points={points.map(to.at).join(" ")} />
+        <circle class={`wh ${name}`} cx={to.px(hub[0])} cy={to.py(hub[1])} r={r} />
+      </>
+    );
+  };
+  return (
+    <g class={`rb ${kind}`}>
+      {leg(1, "r")}
+      {leg(0, "f")}
+      <polygon
+        class={bad === "trunk" ? "tr badpart" : "tr"}
+        points={bones.trunk.map(to.at).join(" ")}
+      />
+      {bad && bad !== "trunk" && <BadLink bones={bones} to={to} part={bad} />}
+    </g>
+  );
+}
+
+function BadLink({ bones, to, part }: { bones: Skeleton; to: Projection; part: Part }) {
+  const [where, link] = part.split("-");
+  const points = bones.legs[where === "front" ? 0 : 1]!;
+  const [a, b] = link === "thigh" ? [points[0]!, points[1]!] : [points[1]!, points[2]!];
+  return <polyline class="badseg" points={`${to.at(a)} ${to.at(b)}`} />;
+}
+
+/** Joints, hubs, nose and collision points of the pose at the clock. */
+function Details({
+  robot,
+  bones,
+  to,
+  shown,
+}: {
+  robot: RobotShape;
+  bones: Skeleton;
+  to: Projection;
+  shown: Vec2[] | null;
+}) {
+  const [front, rear] = bones.legs;
+  const dot = (p: Vec2, cls: string, r: number) => (
+    <circle class={cls} cx={to.px(p[0])} cy={to.py(p[1])} r={r} />
+  );
+  const trunk = bones.trunk;
+  const mid = (a: Vec2, b: Vec2, f: number): Vec2 => [
+    a[0] + (b[0] - a[0]) * f,
+    a[1] + (b[1] - a[1]) * f,
+  ];
+  const inset = robot.trunk.height * 0.12;
+  const nose = [
+    mid(trunk[1]!, trunk[2]!, 0.3),
+    mid(trunk[1]!, trunk[2]!, 0.5),
+    mid(trunk[1]!, trunk[2]!, 0.7),
+  ];
+  const back = mid(trunk[0]!, trunk[3]!, 0.5);
+  const length = Math.hypot(nose[1]![0] - back[0], nose[1]![1] - back[1]) || 1;
+  const shift: Vec2 = [
+    ((back[0] - nose[1]![0]) / length) * inset,
+    ((back[1] - nose[1]![1]) / length) * inset,
+  ];
+  const chevron: Vec2[] = nose.map((p, i) => (i === 1 ? p : [p[0] + shift[0], p[1] + shift[1]]));
+  return (
+    <g class="rb cur">
+      {dot(rear[0]!, "jt r", 3)}
+      {dot(rear[1]!, "jt r", 2.5)}
+      {dot(rear[2]!, "hub r", 2)}
+      {dot(front[0]!, "jt f", 3)}
+      {dot(front[1]!, "jt f", 2.5)}
+      {dot(front[2]!, "hub f", 2)}
+      <polyline class="nose" points={chevron.map(to.at).join(" ")} />
+      {shown && (
+        <g class="cps">
+          {shown.map((p, i) => (
+            // biome-ignore lint/suspicious/noArrayIndexKey: the layout of the points is fixed
+            <circle key={i} cx={to.px(p[0])} cy={to.py(p[1])} r={2} />
+          ))}
+        </g>
+      )}
+    </g>
+  );
+}
+
+export function Ghosts() {
+  const shown = plan.value;
+  const shape = robot.value;
+  if (!shown || !shape) return null;
+  const to = projection.value;
+  const figures = (indices: number[], kind: "ghost" | "key") =>
+    indices.map((i, k) => {
+      const f = poseFrame(shown, i);
+      // Pooled by place in the list: a new plan moves the figures instead of replacing them.
+      // biome-ignore lint/suspicious/noArrayIndexKey: see above
+      return f && <Figure key={k} robot={shape} bones={skeleton(shape, f)} to={to} kind={kind} />;
+    });
+  return (
+    <>
+      {layers.value.has("com") && (
+        <polyline class="comp" points={shown.poses.map((p) => to.at(p.com)).join(" ")} />
+      )}
+      {layers.value.has("ghosts") && <g>{figures(ghostIndices.value, "ghost")}</g>}
+      {layers.value.has("keys") && (
+        <g>
+          {figures(shown.critical, "key")}
+          <KeyNumbers shown={shown} to={to} />
+        </g>
+      )}
+    </>
+  );
+}
+
+/** Numbers over the key poses; where two would touch, the later one is left out. */
+function KeyNumbers({ shown, to }: { shown: Plan; to: Projection }) {
+  const half = (robot.value?.trunk.height ?? 0.1) / 2;
+  let last: Vec2 | null = null;
+  return (
+    <g class="kb">
+      {shown.critical.map((index, k) => {
+        const pose = shown.poses[index];
+        if (!pose) return null;
+        const at: Vec2 = [to.px(pose.x_c), to.py(pose.z_c + half) - 14 - Math.abs(pose.pitch) * 20];
+        if (last && Math.hypot(at[0] - last[0], at[1] - last[1]) < 20) return null;
+        last = at;
+        return (
+          <g key={index} transform={`translate(${at[0].toFixed(1)} ${at[1].toFixed(1)})`}>
+            <circle r={8} />
+            <text y={3.5} text-anchor="middle">
+              {k + 1}
+            </text>
+          </g>
+        );
+      })}
+    </g>
+  );
+}
+
+/** What stops the robot is painted red on the last pose. */
+const badPart = computed<Part | null>(() => {
+  const shown = plan.value;
+  const shape = robot.value;
+  const now = frame.value;
+  if (!shown?.problem || !shape || !now || shown.problem.kind !== "clearance") return null;
+  if (poseIndex.value < shown.poses.length - 1) return null;
+  return nearestPart(skeleton(shape, now), shown.problem.at);
+});
+
+export function Current() {
+  const shape = robot.value;
+  const now = frame.value;
+  if (!shape || !now) return null;
+  const to = projection.value;
+  const bones = skeleton(shape, now);
+  const pose = plan.value?.poses[poseIndex.value];
+  const points = layers.value.has("collision")
+    ? collisionPoints(bones, pose?.collision_points)
+    : null;
+  const rollout = shownRun.value;
+  const fallen =
+    rollout && rollout.outcome !== "success" && shownTime.value >= duration.value - 0.05;
+  return (
+    <g class={fallen ? "fallen" : undefined}>
+      <Figure robot={shape} bones={bones} to={to} kind="halo" />
+      <Other />
+      <Figure robot={shape} bones={bones} to={to} kind="cur" bad={badPart.value} />
+      <Details robot={shape} bones={bones} to={to} shown={points} />
+      {pose && !rollout && layers.value.has("com") && <CentreOfMass at={pose.com} to={to} />}
+    </g>
+  );
+}
+
+/** The plan's collision points carried over to where the robot is between two poses. */
+function collisionPoints(bones: Skeleton, planned: Vec2[] | undefined): Vec2[] | null {
+  if (!planned) return null;
+  const layout = robot.value && collisionLayout.value;
+  if (!layout) return planned;
+  const [a, b, , d] = bones.trunk as [Vec2, Vec2, Vec2, Vec2];
+  const trunk = layout.trunk.map(
+    ([u, v]): Vec2 => [
+      a[0] + (b[0] - a[0]) * (u + 0.5) + (d[0] - a[0]) * (v + 0.5),
+      a[1] + (b[1] - a[1]) * (u + 0.5) + (d[1] - a[1]) * (v + 0.5),
+    ],
+  );
+  const on = (p: Vec2, q: Vec2, f: number): Vec2 => [
+    p[0] + (q[0] - p[0]) * f,
+    p[1] + (q[1] - p[1]) * f,
+  ];
+  const legs = bones.legs.flatMap(([hip, knee, wheel]) => [
+    ...layout.thigh.map((f) => on(hip!, knee!, f)),
+    ...layout.calf.map((f) => on(knee!, wheel!, f)),
+  ]);
+  return [...trunk, ...legs];
+}
+
+interface Layout {
+  trunk: Vec2[];
+  thigh: number[];
+  calf: number[];
+}
+
+const collisionLayout = computed<Layout | null>(() => {
+  const document = plan.value?.robot_description as
+    | { collision_points?: Layout }
+    | null
+    | undefined;
+  return document?.collision_points ?? null;
+});
+
+function CentreOfMass({ at, to }: { at: Vec2; to: Projection }) {
+  const [x, y] = [to.px(at[0]), to.py(at[1])];
+  return (
+    <g class="comm" transform={`translate(${x.toFixed(1)} ${y.toFixed(1)})`}>
+      <circle r={4.5} />
+      <path d="M-4.5 0A4.5 4.5 0 0 1 0 -4.5V0ZM4.5 0A4.5 4.5 0 0 1 0 4.5V0Z" />
+    </g>
+  );
+}
+
+/** B at the same share of its own time. */
+function Other() {
+  const shown = planB.value;
+  const shape = robot.value;
+  if (!shown || !shape) return null;
+  const share = duration.value > 0 ? shownTime.value / duration.value : 0;
+  const f = planFrame(shown, share * shown.timing.total);
+  return f && <Figure robot={shape} bones={skeleton(shape, f)} to={projection.value} kind="cmp" />;
+}

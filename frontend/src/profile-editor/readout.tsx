@@ -1,0 +1,70 @@
+/** The selected corner in numbers, beside it. */
+
+import { fixed } from "../geometry/format";
+import { segmentKind } from "../geometry/profile";
+import { commit, draft, drawing, revert, selection } from "../state/drawing";
+import { tool } from "../state/view";
+import { NumberField } from "../ui/number-field";
+import { moveVertices } from "./edits";
+import { names } from "./vertices";
+import { canvasBox, projection } from "./viewport";
+
+const WIDTH = 204;
+const HEIGHT = 60;
+
+function facts(i: number): string {
+  const points = drawing.value.points;
+  const p = points[i]!;
+  const before = points[i - 1];
+  const after = points[i + 1];
+  const parts = [names.value[i]!];
+  if (before && segmentKind(before, p) === "upright")
+    parts.push(`rise ${fixed(p[1] - before[1], 3)}`);
+  else if (after && segmentKind(p, after) === "upright")
+    parts.push(`rise ${fixed(after[1] - p[1], 3)}`);
+  if (after && segmentKind(p, after) !== "upright") parts.push(`run ${fixed(after[0] - p[0], 3)}`);
+  else if (before && segmentKind(before, p) !== "upright")
+    parts.push(`run ${fixed(p[0] - before[0], 3)}`);
+  return parts.join(" · ");
+}
+
+export function Readout() {
+  const chosen = selection.value;
+  const i = chosen[0];
+  const p = i === undefined ? undefined : drawing.value.points[i];
+  if (i === undefined || !p || tool.value !== "select") return null;
+  const { px, py } = projection.value;
+  const box = canvasBox.value;
+  const [x, y] = [px(p[0]), py(p[1])];
+  if (x < box.left || x > box.right || y < box.top || y > box.bottom) return null;
+  // Below and right of the corner, where the ground is; to the other side at the rim.
+  const left = x + 64 + WIDTH > box.right ? x - WIDTH - 24 : x + 64;
+  const top = Math.min(y + 28, box.bottom - HEIGHT - 40);
+  const points = drawing.value.points;
+  const set = (axis: 0 | 1) => (value: number) => {
+    const by = value - p[axis];
+    draft({ points: moveVertices(points, chosen, axis === 0 ? by : 0, axis === 1 ? by : 0) });
+  };
+  const field = (axis: 0 | 1) => (
+    <NumberField
+      label={axis === 0 ? "x of the corner in metres" : "z of the corner in metres"}
+      value={p[axis]}
+      min={-100}
+      max={100}
+      step={0.005}
+      format={(v) => fixed(v, 3)}
+      onChange={set(axis)}
+      onDone={() => commit()}
+      onCancel={revert}
+    />
+  );
+  return (
+    <div class="tag ro" style={{ left: `${left}px`, top: `${Math.max(box.top + 8, top)}px` }}>
+      <small aria-hidden="true">x</small>
+      {field(0)}
+      <small aria-hidden="true">z</small>
+      {field(1)}
+      <em>{chosen.length > 1 ? `${chosen.length} corners move together` : facts(i)}</em>
+    </div>
+  );
+}

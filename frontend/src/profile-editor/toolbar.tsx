@@ -1,0 +1,220 @@
+/** Tools, edits, snapping, presets, layers and zoom. */
+
+import { canRedo, canUndo, drawing, isEmpty, redo, selection, undo } from "../state/drawing";
+import { terrains } from "../state/setup";
+import { LAYERS, type Layer, layers, type Tool, toggleLayer, tool } from "../state/view";
+import { openStored } from "../topbar/terrain-actions";
+import { Icon, type IconName } from "../ui/icon";
+import { Menu, MenuItem } from "../ui/menu";
+import { CODES } from "./codes";
+import { deleteSelected, insertVertex } from "./commands";
+import { code, GRIDS, grid, toNeighbours } from "./snap";
+import { fit, zoomPercent } from "./viewport";
+
+const TOOLS: [Tool, string, string, string][] = [
+  ["select", "Select", "V", "Drag corners and stretches"],
+  ["stair", "Stair", "S", "Drag up for one riser; with a stair code, along for a flight"],
+  ["ramp", "Ramp", "R", "Drag from the foot to the top"],
+  ["flat", "Flat", "F", "Drag along to level the ground"],
+  ["free", "Free", "P", "Draw a line"],
+];
+
+function gridName(step: number): string {
+  if (step === 0) return "Off";
+  return step < 0.01 ? `${step * 1000} mm` : `${step * 100} cm`;
+}
+
+function ToolButton({
+  action,
+  label,
+  icon,
+  off,
+}: {
+  action: () => void;
+  label: string;
+  icon: IconName;
+  off: boolean;
+}) {
+  return (
+    <button
+      type="button"
+      class="t ico"
+      aria-label={label}
+      title={label}
+      disabled={off}
+      onClick={action}
+    >
+      <Icon name={icon} />
+    </button>
+  );
+}
+
+export function Toolbar() {
+  return (
+    <div class="bar" role="toolbar" aria-label="Profile tools">
+      {TOOLS.map(([name, label, key, hint]) => (
+        <button
+          key={name}
+          type="button"
+          class={tool.value === name ? "t on" : "t"}
+          aria-pressed={tool.value === name}
+          aria-label={label}
+          aria-keyshortcuts={key}
+          title={`${label} (${key}): ${hint}`}
+          onClick={() => {
+            tool.value = name;
+          }}
+        >
+          <Icon name={name} />
+          <span class="lb">{label}</span>
+          <kbd>{key}</kbd>
+        </button>
+      ))}
+      <div class="sep" />
+      <ToolButton action={insertVertex} label="Add vertex" icon="plus" off={isEmpty.value} />
+      <ToolButton
+        action={deleteSelected}
+        label="Delete vertex"
+        icon="trash"
+        off={selection.value.length === 0}
+      />
+      <ToolButton action={undo} label="Undo" icon="undo" off={!canUndo.value} />
+      <ToolButton action={redo} label="Redo" icon="redo" off={!canRedo.value} />
+      <div class="sep" />
+      <SnapMenu />
+      <PresetMenu />
+      <div class="grow" />
+      <LayerMenu />
+      <ToolButton
+        action={() => fit(drawing.peek().points)}
+        label="Fit to view"
+        icon="fit"
+        off={false}
+      />
+      <span class="zoom wide">{zoomPercent.value} %</span>
+    </div>
+  );
+}
+
+function SnapMenu() {
+  const button = (
+    <>
+      <Icon name="snap" />
+      {code.value ? code.value.note : gridName(grid.value)}
+      <Icon name="down" />
+    </>
+  );
+  return (
+    <Menu label="Snapping" button={button} buttonClass="t">
+      {(close) => (
+        <>
+          <h4>Grid (Alt suspends)</h4>
+          {GRIDS.map((step) => (
+            <MenuItem
+              key={step}
+              checked={grid.value === step}
+              onChoose={() => {
+                grid.value = step;
+                close();
+              }}
+            >
+              {gridName(step)}
+            </MenuItem>
+          ))}
+          <h4>Level and plumb</h4>
+          <MenuItem
+            checked={toNeighbours.value}
+            onChoose={() => {
+              toNeighbours.value = !toNeighbours.value;
+            }}
+          >
+            Other corners' x and z
+          </MenuItem>
+          <h4>Stairs by the code</h4>
+          <MenuItem checked={code.value === null} onChoose={() => setCode(null, close)}>
+            Free rise and run
+          </MenuItem>
+          {CODES.map((each) => (
+            <MenuItem
+              key={each.name}
+              checked={code.value === each}
+              onChoose={() => setCode(each, close)}
+            >
+              {each.name} <small>{each.note}</small>
+            </MenuItem>
+          ))}
+        </>
+      )}
+    </Menu>
+  );
+}
+
+function setCode(next: (typeof CODES)[number] | null, close: () => void): void {
+  code.value = next;
+  if (next) tool.value = "stair";
+  close();
+}
+
+function PresetMenu() {
+  const button = (
+    <>
+      Presets
+      <Icon name="down" />
+    </>
+  );
+  return (
+    <Menu label="Presets" button={button} buttonClass="t" panelClass="tall">
+      {(close) =>
+        terrains.value
+          .filter((terrain) => terrain.readonly)
+          .map((terrain) => (
+            <MenuItem
+              key={terrain.name}
+              checked={drawing.value.name === terrain.name}
+              onChoose={() => {
+                openStored(terrain);
+                close();
+              }}
+            >
+              <span class="two">
+                {terrain.name}
+                <small>{terrain.description}</small>
+              </span>
+            </MenuItem>
+          ))
+      }
+    </Menu>
+  );
+}
+
+function LayerMenu() {
+  const all = Object.keys(LAYERS) as Layer[];
+  const button = (
+    <>
+      <Icon name="eye" />
+      <span class="wide">Layers</span>
+      <kbd class="wide">
+        {layers.value.size} of {all.length}
+      </kbd>
+    </>
+  );
+  return (
+    <Menu label="Layers" button={button} buttonClass="t" align="right">
+      {() =>
+        all.map((layer) => (
+          <button
+            key={layer}
+            type="button"
+            class="item"
+            role="menuitemcheckbox"
+            tabIndex={-1}
+            aria-checked={layers.value.has(layer)}
+            onClick={() => toggleLayer(layer)}
+          >
+            {LAYERS[layer]}
+          </button>
+        ))
+      }
+    </Menu>
+  );
+}

@@ -1,0 +1,119 @@
+/** The corners as controls, the stretches as handles, guides and the selection rectangle. */
+
+import { computed } from "@preact/signals";
+import { fixed } from "../geometry/format";
+import { cornerNames } from "../geometry/profile";
+import { drawing, selection } from "../state/drawing";
+import { tool } from "../state/view";
+import { onVertexKey } from "./commands";
+import { dragging, guides, marquee } from "./gestures";
+import { canvasBox, projection } from "./viewport";
+
+export const names = computed(() => cornerNames(drawing.value.points));
+
+export function Stretches() {
+  if (tool.value !== "select") return null;
+  const { at } = projection.value;
+  const points = drawing.value.points;
+  return (
+    <g>
+      {points.slice(0, -1).map((a, i) => (
+        // biome-ignore lint/suspicious/noArrayIndexKey: a stretch is its place in the profile
+        <polyline
+          key={i}
+          class="stretch"
+          data-segment={i}
+          points={`${at(a)} ${at(points[i + 1]!)}`}
+        />
+      ))}
+    </g>
+  );
+}
+
+export function Vertices() {
+  const { px, py } = projection.value;
+  const chosen = selection.value;
+  const words = names.value;
+  const { left, right, top, bottom } = canvasBox.value;
+  return (
+    <g>
+      {drawing.value.points.map((p, i) => {
+        const [x, y] = [px(p[0]), py(p[1])];
+        const selected = chosen.includes(i);
+        const half = selected ? 4.5 : 3.5;
+        const hidden = x < left - 4 || x > right + 4 || y < top - 4 || y > bottom + 4;
+        const focus = () => {
+          if (!dragging.peek() && !selection.peek().includes(i)) selection.value = [i];
+        };
+        return (
+          // biome-ignore lint/a11y/useSemanticElements: SVG has no button element
+          <g
+            // biome-ignore lint/suspicious/noArrayIndexKey: a corner is its place in the profile
+            key={i}
+            class={hidden ? "vertex off" : "vertex"}
+            role="button"
+            tabIndex={0}
+            aria-pressed={selected}
+            aria-label={`${words[i]}, x ${fixed(p[0], 3)}, z ${fixed(p[1], 3)} m`}
+            data-vertex={i}
+            transform={`translate(${x.toFixed(1)} ${y.toFixed(1)})`}
+            onKeyDown={onVertexKey}
+            onFocus={focus}
+          >
+            <circle class="hit" r={11} />
+            <circle class={selected ? "vsel-h" : "vhalo"} r={10} />
+            <rect
+              class={selected ? "vsel" : "vx"}
+              x={-half}
+              y={-half}
+              width={2 * half}
+              height={2 * half}
+              rx={selected ? 2 : 1.5}
+            />
+          </g>
+        );
+      })}
+    </g>
+  );
+}
+
+/** Lines from the selected corner to the rulers; to the neighbour it snapped to while dragged. */
+export function Guides() {
+  const i = selection.value[0];
+  const p = selection.value.length === 1 && i !== undefined ? drawing.value.points[i] : undefined;
+  const { px, py } = projection.value;
+  const { left, top } = canvasBox.value;
+  const box = marquee.value;
+  const snapped = guides.value;
+  return (
+    <g>
+      {p && (
+        <path
+          class="guide"
+          d={`M${left} ${py(p[1])}H${px(p[0]) - 6}M${px(p[0])} ${top}V${py(p[1]) - 6}`}
+        />
+      )}
+      {snapped?.x && (
+        <path
+          class="guide on"
+          d={`M${px(snapped.x[0])} ${py(snapped.x[1])}V${py(snapped.at[1])}`}
+        />
+      )}
+      {snapped?.z && (
+        <path
+          class="guide on"
+          d={`M${px(snapped.z[0])} ${py(snapped.z[1])}H${px(snapped.at[0])}`}
+        />
+      )}
+      {box && (
+        <rect
+          class="marquee"
+          x={Math.min(box[0], box[2])}
+          y={Math.min(box[1], box[3])}
+          width={Math.abs(box[2] - box[0])}
+          height={Math.abs(box[3] - box[1])}
+        />
+      )}
+    </g>
+  );
+}

@@ -1,0 +1,119 @@
+/** From metres to pixels on the canvas, and what the canvas looks at. */
+
+import { computed, signal } from "@preact/signals";
+import type { Vec2 } from "../api/types";
+import { extent, type Points } from "../geometry/profile";
+
+export const RULER_X = 20;
+export const RULER_Z = 36;
+export const STRIP = 76;
+
+export const size = signal({ width: 0, height: 0 });
+/** World point at the canvas's lower left corner, and pixels per metre. */
+export const view = signal({ x: -0.75, z: -0.13, scale: 378 });
+const fitted = signal(378);
+
+export const canvasBox = computed(() => ({
+  left: RULER_Z,
+  top: RULER_X,
+  right: size.value.width,
+  bottom: Math.max(RULER_X + 40, size.value.height - STRIP),
+}));
+
+export const zoomPercent = computed(() => Math.round((view.value.scale / fitted.value) * 100));
+
+const LEAST = 20;
+const MOST = 8000;
+
+export interface Projection {
+  px: (x: number) => number;
+  py: (z: number) => number;
+  /** The same as text with one decimal, for path data. */
+  at: (p: Vec2) => string;
+  scale: number;
+}
+
+export const projection = computed<Projection>(() => {
+  const { x, z, scale } = view.value;
+  const { left, bottom } = canvasBox.value;
+  const px = (wx: number) => left + (wx - x) * scale;
+  const py = (wz: number) => bottom - (wz - z) * scale;
+  const round = (v: number) => Math.round(v * 10) / 10;
+  return { px, py, scale, at: (p) => `${round(px(p[0]))},${round(py(p[1]))}` };
+});
+
+export function toWorld(x: number, y: number): Vec2 {
+  const v = view.peek();
+  const box = canvasBox.peek();
+  return [v.x + (x - box.left) / v.scale, v.z + (box.bottom - y) / v.scale];
+}
+
+export function pan(dx: number, dy: number): void {
+  const v = view.peek();
+  view.value = { ...v, x: v.x - dx / v.scale, z: v.z + dy / v.scale };
+}
+
+/** Zoom by `factor` and keep what is under the pixel (x, y) where it is. */
+export function zoomAt(x: number, y: number, factor: number): void {
+  const v = view.peek();
+  const box = canvasBox.peek();
+  const scale = Math.min(MOST, Math.max(LEAST, v.scale * factor));
+  const [wx, wz] = toWorld(x, y);
+  view.value = { scale, x: wx - (x - box.left) / scale, z: wz - (box.bottom - y) / scale };
+}
+
+/** Show the part between the long flat ends, with room for the robot above it. */
+export function fit(points: Points): void {
+  const box = canvasBox.peek();
+  const width = box.right - box.left;
+  const height = box.bottom - box.top;
+  if (width <= 0) return;
+  const inner = points.length > 2 ? points.slice(1, -1) : points;
+  const all = points.length > 1 ? extent(points) : { x: [-0.75, 1.8] as Vec2, z: [0, 0] as Vec2 };
+  const mid = points.length > 2 ? extent(inner) : all;
+  const x0 = Math.max(all.x[0], mid.x[0] - 0.75);
+  const x1 = Math.min(all.x[1], mid.x[1] + 0.85);
+  const z0 = all.z[0] - 0.13;
+  const z1 = all.z[1] + 0.62;
+  const scale = Math.min(MOST, Math.max(LEAST, Math.min(width / (x1 - x0), height / (z1 - z0))));
+  fitted.value = scale;
+  const spare = width / scale - (x1 - x0);
+  view.value = { scale, x: x0 - spare * 0.4, z: z0 };
+}
+
+/** Bring a place to the middle without changing the zoom. */
+export function centreOn(at: Vec2): void {
+  const v = view.peek();
+  const box = canvasBox.peek();
+  view.value = {
+    ...v,
+    x: at[0] - (box.right - box.left) / v.scale / 2,
+    z: at[1] - (box.bottom - box.top) / v.scale / 2,
+  };
+}
+
+/** Grid spacings [m] that keep lines apart: fine ones and labelled ones. */
+export function gridSteps(scale: number): { fine: number; coarse: number } {
+  const ladder: [number, number][] = [
+    [0.001, 0.005],
+    [0.002, 0.01],
+    [0.005, 0.025],
+    [0.01, 0.05],
+    [0.02, 0.1],
+    [0.05, 0.25],
+    [0.1, 0.5],
+    [0.2, 1],
+    [0.5, 2.5],
+    [1, 5],
+    [2, 10],
+    [5, 25],
+  ];
+  const found = ladder.find(([fine]) => fine * scale >= 13) ?? ladder[ladder.length - 1]!;
+  return { fine: found[0], coarse: found[1] };
+}
+
+export function multiples(from: number, to: number, step: number): number[] {
+  const out: number[] = [];
+  for (let i = Math.ceil(from / step); i * step <= to; i++) out.push(i * step);
+  return out;
+}

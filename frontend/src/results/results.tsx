@@ -1,0 +1,221 @@
+/** What came of the rollout, A beside B. */
+
+import type { Metrics, Outcome, Plan, Rollout } from "../api/types";
+import { degrees, fixed, took } from "../geometry/format";
+import { plan, planB } from "../state/planning";
+import {
+  activity,
+  eta,
+  failure,
+  progress,
+  run,
+  runB,
+  runPlan,
+  runStale,
+  showProgress,
+} from "../state/rollouts";
+import { compare, robot } from "../state/setup";
+import { isNarrow } from "../state/view";
+import { Icon } from "../ui/icon";
+
+export const OUTCOMES: Record<Outcome, string> = {
+  success: "Success",
+  fell: "Fell",
+  stuck: "Stuck",
+  collided: "Collided",
+  diverged: "Diverged",
+  timeout: "Ran out of time",
+};
+
+export function Results() {
+  return (
+    <section class="res" aria-label="Results">
+      <Content />
+    </section>
+  );
+}
+
+function Content() {
+  if (activity.value === "running" && showProgress.value) return <Running />;
+  if (activity.value === "failed" || activity.value === "cancelled") return <NotRun />;
+  if (run.value) return isNarrow.value ? <Line result={run.value} /> : <Card result={run.value} />;
+  if (plan.value?.problem) {
+    return (
+      <>
+        <h2 class="bad">
+          <Icon name="warning" />
+          No rollout
+        </h2>
+        <p>
+          The plan stops at progress {fixed(plan.value.problem.progress, 2)} m. The plots show the
+          planned part only; fix the marked spot to run it.
+        </p>
+      </>
+    );
+  }
+  return (
+    <>
+      <h2>Results</h2>
+      <p>
+        {plan.value
+          ? "Run the rollout to see outcome, pitch error, peak torque and speed. The plots show the plan."
+          : "Outcome, pitch error, peak torque and speed appear here after a rollout."}
+      </p>
+    </>
+  );
+}
+
+function Running() {
+  const total = plan.value?.timing.total ?? 0;
+  return (
+    <>
+      <h2>
+        <span class="spin" />
+        Running
+        <small>
+          {fixed(progress.value * total, 1)} of {fixed(total, 1)} s
+        </small>
+      </h2>
+      <p>
+        {eta.value !== null ? `About ${fixed(eta.value, 0)} s left. ` : ""}Editing the profile keeps
+        this run.
+      </p>
+    </>
+  );
+}
+
+function NotRun() {
+  const cancelled = activity.value === "cancelled";
+  return (
+    <>
+      <h2 class={cancelled ? "" : "bad"}>
+        <Icon name={cancelled ? "close" : "warning"} />
+        {cancelled ? "Cancelled" : "Could not run"}
+      </h2>
+      <p>
+        {cancelled
+          ? "The rollout was stopped; nothing of it is kept. Run it again when you like."
+          : failure.value}
+      </p>
+    </>
+  );
+}
+
+interface Row {
+  title: string;
+  unit?: string;
+  of: (m: Metrics, r: Rollout, p: Plan | null) => string;
+  bad?: (m: Metrics) => boolean;
+}
+
+/** More than this, and the robot was not tracking any more [rad]. */
+const LOST = (10 * Math.PI) / 180;
+
+function rows(): Row[] {
+  const limit = robot.value?.limit.leg;
+  return [
+    {
+      title: "Duration",
+      of: (m, r) =>
+        r.outcome === "success"
+          ? `${fixed(m.duration, 1)} s`
+          : `${r.outcome} ${fixed(m.duration, 1)}`,
+    },
+    {
+      title: "Pitch error",
+      unit: "max, rms",
+      of: (m) =>
+        `${fixed(degrees(m.pitch_error_max), 1)}°, ${fixed(degrees(m.pitch_error_rms), 1)}°`,
+      bad: (m) => m.pitch_error_max > LOST,
+    },
+    {
+      title: "Torque",
+      ...(limit ? { unit: `of ${fixed(limit, 1)} Nm` } : {}),
+      of: (m) => fixed(m.torque_peak, 1),
+      bad: (m) => limit !== undefined && m.torque_peak >= limit - 0.05,
+    },
+    { title: "Energy", unit: "J", of: (m) => fixed(m.energy, 0) },
+    { title: "Link contacts", of: (m) => String(m.link_contacts), bad: (m) => m.link_contacts > 0 },
+    {
+      title: "Speed",
+      unit: "m/s, real time",
+      of: (m) => `${fixed(m.speed_mean, 2)}, ${fixed(m.real_time_factor, 0)}×`,
+    },
+    { title: "Solve time", of: (_m, _r, p) => (p ? took(p.solve_time) : "–") },
+  ];
+}
+
+function Heading({ result }: { result: Rollout }) {
+  const good = result.outcome === "success";
+  return (
+    <h2 class={good ? "" : "bad"}>
+      <Icon name={good ? "check" : "warning"} />
+      {OUTCOMES[result.outcome]}
+      {!good && ` at ${fixed(result.metrics.duration, 1)} s`}
+      <small>{runStale.value ? "previous plan" : `seed ${result.seed ?? 0}`}</small>
+    </h2>
+  );
+}
+
+function Card({ result }: { result: Rollout }) {
+  const other = compare.value ? runB.value : null;
+  const cell = (row: Row, r: Rollout, p: Plan | null, cls: string) => (
+    <td
+      class={
+        row.bad?.(r.metrics) || (row.title === "Duration" && r.outcome !== "success")
+          ? `${cls} x`
+          : cls
+      }
+    >
+      {row.of(r.metrics, r, p)}
+    </td>
+  );
+  return (
+    <div class={runStale.value ? "dim" : ""}>
+      <Heading result={result} />
+      <table>
+        {other && (
+          <thead>
+            <tr>
+              <th scope="col">
+                <span class="sr">Figure</span>
+              </th>
+              <th scope="col">A</th>
+              <th scope="col">B</th>
+            </tr>
+          </thead>
+        )}
+        <tbody>
+          {rows().map((row) => (
+            <tr key={row.title}>
+              <th scope="row">
+                {row.title} {row.unit && <small>{row.unit}</small>}
+              </th>
+              {cell(row, result, runPlan.value, "a")}
+              {other && cell(row, other, planB.value, "b")}
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      {result.message && result.outcome !== "success" && <p>{result.message}</p>}
+    </div>
+  );
+}
+
+/** On narrow pages the card is one line. */
+function Line({ result }: { result: Rollout }) {
+  const m = result.metrics;
+  return (
+    <>
+      <Heading result={result} />
+      <span>{fixed(m.duration, 1)} s</span>
+      <span>
+        pitch error {fixed(degrees(m.pitch_error_max), 1)}° max,{" "}
+        {fixed(degrees(m.pitch_error_rms), 1)}° rms
+      </span>
+      <span>torque {fixed(m.torque_peak, 1)} Nm</span>
+      <span>{m.link_contacts} link contacts</span>
+      <span>{fixed(m.real_time_factor, 0)}× real time</span>
+    </>
+  );
+}

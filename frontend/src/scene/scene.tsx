@@ -1,0 +1,138 @@
+/** The 3-D scene: viser's page in a frame, with our header. */
+
+import { fixed } from "../geometry/format";
+import { connected } from "../state/connection";
+import { isEmpty } from "../state/drawing";
+import { plan } from "../state/planning";
+import { duration, shownRun, shownTime } from "../state/playback";
+import { activity } from "../state/rollouts";
+import { swapped } from "../state/view";
+import { Icon } from "../ui/icon";
+import { Menu, MenuItem } from "../ui/menu";
+import { session, setCamera } from "./drive";
+
+const CAMERAS: [string, string][] = [
+  ["follow", "Follow the robot"],
+  ["side", "Side"],
+  ["front", "Front"],
+  ["top", "Top"],
+  ["iso", "Three-quarter"],
+];
+
+export function Scene() {
+  const address = session.value?.scene;
+  return (
+    <>
+      <div class="ph">
+        <h2>
+          3-D scene<small class="wide">viser</small>
+        </h2>
+        <Menu label="Camera" button={<Icon name="camera" />} buttonClass="t ico" align="right">
+          {(close) =>
+            CAMERAS.map(([preset, title]) => (
+              <MenuItem
+                key={preset}
+                onChoose={() => {
+                  setCamera(preset);
+                  close();
+                }}
+              >
+                {title}
+              </MenuItem>
+            ))
+          }
+        </Menu>
+        <button
+          type="button"
+          class="t ico"
+          aria-label="Reset view"
+          title="Reset view"
+          onClick={() => setCamera("iso")}
+        >
+          <Icon name="reset" />
+        </button>
+        <a
+          class="t ico"
+          aria-label="Open the scene in its own window"
+          title="Open in its own window"
+          href={address}
+          target="_blank"
+          rel="noreferrer"
+        >
+          <Icon name="open" />
+        </a>
+        <button
+          type="button"
+          class="t ico"
+          aria-label="Swap with the editor"
+          title="Swap with the editor"
+          aria-pressed={swapped.value}
+          onClick={() => {
+            swapped.value = !swapped.value;
+          }}
+        >
+          <Icon name="swap" />
+        </button>
+      </div>
+      <div class="v3">
+        {address && (
+          <iframe
+            key={session.value!.id}
+            src={`${address}?hideViserLogo`}
+            title="3-D scene"
+            allow="fullscreen"
+          />
+        )}
+        {!isEmpty.value && connected.value && <Tag />}
+        {(!connected.value || isEmpty.value) && <SceneVeil />}
+      </div>
+    </>
+  );
+}
+
+function Tag() {
+  const rollout = shownRun.value;
+  const t = fixed(shownTime.value, 2);
+  const failed = rollout && rollout.outcome !== "success";
+  if (plan.value?.problem && shownTime.value >= duration.value - 1e-6) {
+    return (
+      <div class="tag2">
+        <span class="live bad" />
+        problem pose
+      </div>
+    );
+  }
+  if (failed && shownTime.value >= duration.value - 0.05) {
+    return (
+      <div class="tag2">
+        <span class="live bad" />
+        {rollout.outcome} · t {t} s
+      </div>
+    );
+  }
+  return (
+    <div class="tag2">
+      {activity.value === "running" && <span class="live" />}
+      {rollout ? "rollout" : "plan"} · t {t} s
+    </div>
+  );
+}
+
+function SceneVeil() {
+  return (
+    <div class="veil">
+      {connected.value ? (
+        <>
+          <b>Nothing to show yet</b>
+          the scene follows the profile
+        </>
+      ) : (
+        <>
+          <Icon name="offline" />
+          <b>Scene disconnected</b>
+          the camera is kept
+        </>
+      )}
+    </div>
+  );
+}

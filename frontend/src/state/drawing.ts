@@ -1,0 +1,133 @@
+/** The document of the page: the drawn profile with its name and friction, and its history. */
+
+import { computed, signal } from "@preact/signals";
+import type { TerrainDocument, Vec2 } from "../api/types";
+import { type Points, samePoints } from "../geometry/profile";
+
+export interface Drawing {
+  name: string;
+  description: string;
+  points: Points;
+  friction: number;
+  start: number | null;
+  goal: number | null;
+}
+
+export const UNTITLED: Drawing = {
+  name: "Untitled",
+  description: "",
+  points: [],
+  friction: 0.6,
+  start: null,
+  goal: null,
+};
+
+const LONGEST_HISTORY = 200;
+
+/** What is on the canvas now; changes at every frame of a drag. */
+export const drawing = signal<Drawing>(UNTITLED);
+/** What the last finished edit left; link and history follow this one. */
+export const committed = signal<Drawing>(UNTITLED);
+/** The stored terrain that the drawing started from. */
+export const origin = signal<TerrainDocument | null>(null);
+/** Selected vertices, ascending. */
+export const selection = signal<readonly number[]>([]);
+
+const past = signal<readonly Drawing[]>([]);
+const future = signal<readonly Drawing[]>([]);
+
+export const canUndo = computed(() => past.value.length > 0);
+export const canRedo = computed(() => future.value.length > 0);
+export const isEmpty = computed(() => drawing.value.points.length < 2);
+
+export const isEdited = computed(() => {
+  const now = drawing.value;
+  const base = origin.value;
+  if (!base) return now.points.length > 0;
+  return !samePoints(base.points, now.points) || base.friction !== now.friction;
+});
+
+/** The profile as it was one edit ago, for sentences such as "this edit raised the riser". */
+export const previous = computed(() => past.value[past.value.length - 1] ?? null);
+
+/** Change what is on the canvas without a step in the history (during a drag). */
+export function draft(change: Partial<Drawing>): void {
+  drawing.value = { ...drawing.value, ...change };
+}
+
+/** Finish an edit: one step in the history, however many drafts led to it. */
+export function commit(change: Partial<Drawing> = {}): void {
+  const next = { ...drawing.value, ...change };
+  const before = committed.peek();
+  drawing.value = next;
+  if (before.friction === next.friction && samePoints(before.points, next.points)) return;
+  past.value = [...past.value.slice(-LONGEST_HISTORY), before];
+  future.value = [];
+  committed.value = next;
+}
+
+/** Give up a drag. */
+export function revert(): void {
+  drawing.value = committed.peek();
+}
+
+export function undo(): void {
+  const before = past.value[past.value.length - 1];
+  if (!before) return;
+  past.value = past.value.slice(0, -1);
+  future.value = [committed.peek(), ...future.value];
+  restore(before);
+}
+
+export function redo(): void {
+  const next = future.value[0];
+  if (!next) return;
+  future.value = future.value.slice(1);
+  past.value = [...past.value, committed.peek()];
+  restore(next);
+}
+
+function restore(state: Drawing): void {
+  drawing.value = state;
+  committed.value = state;
+  selection.value = selection.peek().filter((i) => i < state.points.length);
+}
+
+/** Open another terrain: undo leads back to the one before. */
+export function open(terrain: TerrainDocument, stored: TerrainDocument | null): void {
+  const next: Drawing = {
+    name: terrain.name,
+    description: terrain.description ?? "",
+    points: terrain.points.map((p): Vec2 => [p[0], p[1]]),
+    friction: terrain.friction,
+    start: terrain.start ?? null,
+    goal: terrain.goal ?? null,
+  };
+  const before = committed.peek();
+  if (before.points.length > 0) past.value = [...past.value.slice(-LONGEST_HISTORY), before];
+  future.value = [];
+  origin.value = stored;
+  selection.value = [];
+  drawing.value = next;
+  committed.value = next;
+}
+
+export function clear(): void {
+  open({ ...UNTITLED, schema: "stairwright/terrain/1", points: [] }, null);
+}
+
+/** The drawing as the document that REST takes. Start and goal fall away once the ground moved. */
+export function terrainDocument(state: Drawing): TerrainDocument {
+  const [first, last] = [state.points[0], state.points[state.points.length - 1]];
+  const inside = (x: number | null) =>
+    x !== null && first && last && x >= first[0] && x <= last[0] ? x : null;
+  return {
+    schema: "stairwright/terrain/1",
+    name: state.name,
+    description: state.description,
+    points: state.points.map((p): Vec2 => [p[0], p[1]]),
+    friction: state.friction,
+    start: inside(state.start),
+    goal: inside(state.goal),
+  };
+}

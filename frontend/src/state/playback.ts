@@ -1,0 +1,98 @@
+/** The one clock: time on the slider, in the plots, of the robot in 2-D and 3-D. */
+
+import { computed, effect, signal } from "@preact/signals";
+import { locate, planFrame, poseTimes, runFrame } from "../geometry/frames";
+import { plan } from "./planning";
+import { run, runStale } from "./rollouts";
+
+export const time = signal(0);
+export const playing = signal(false);
+export const speed = signal(1);
+/** A plot under the pointer previews another time; null when none does. */
+export const hoverTime = signal<number | null>(null);
+
+export const SPEEDS = [0.25, 0.5, 1, 2, 4];
+
+/** The rollout that the clock runs on; a stale one only stays in the plots. */
+export const shownRun = computed(() => (runStale.value ? null : run.value));
+
+export const duration = computed(() => {
+  const times = shownRun.value?.series.time;
+  if (times) return times[times.length - 1] ?? 0;
+  const shown = plan.value;
+  if (!shown) return 0;
+  const planned = poseTimes(shown);
+  return planned[planned.length - 1] ?? 0;
+});
+
+/** The planned end: longer than `duration` where the robot fell on the way. */
+export const plannedEnd = computed(() => Math.max(duration.value, plan.value?.timing.total ?? 0));
+
+export const shownTime = computed(() => hoverTime.value ?? Math.min(time.value, duration.value));
+
+export const frame = computed(() => {
+  const rollout = shownRun.value;
+  if (rollout) return runFrame(rollout, shownTime.value);
+  return plan.value ? planFrame(plan.value, shownTime.value) : null;
+});
+
+/** The pose of the plan next to the clock, for margins and the centre of mass. */
+export const poseIndex = computed(() => {
+  const shown = plan.value;
+  if (!shown || shown.poses.length === 0) return -1;
+  const rollout = shownRun.value;
+  if (!rollout) {
+    const [i, f] = locate(poseTimes(shown), shownTime.value);
+    return f > 0.5 ? i + 1 : i;
+  }
+  const [i] = locate(rollout.series.time, shownTime.value);
+  const [k, f] = locate(
+    shown.poses.map((p) => p.progress),
+    rollout.series.progress[i] ?? 0,
+  );
+  return f > 0.5 ? k + 1 : k;
+});
+
+export function seek(to: number): void {
+  time.value = Math.min(duration.peek(), Math.max(0, to));
+}
+
+export function togglePlay(): void {
+  if (duration.peek() <= 0) return;
+  if (!playing.peek() && time.peek() >= duration.peek() - 1e-6) time.value = 0;
+  playing.value = !playing.peek();
+}
+
+/** To the next or the previous key pose. */
+export function stepKey(direction: 1 | -1): void {
+  const shown = plan.peek();
+  if (!shown) return;
+  const times = shown.critical.map((i) => poseTimes(shown)[i] ?? 0);
+  const now = time.peek();
+  const next =
+    direction > 0 ? times.find((t) => t > now + 1e-3) : times.findLast((t) => t < now - 1e-3);
+  playing.value = false;
+  seek(next ?? (direction > 0 ? duration.peek() : 0));
+}
+
+export function startClock(): void {
+  let last = 0;
+  const tick = (now: number) => {
+    if (!playing.peek()) return;
+    const dt = Math.min(0.1, (now - last) / 1000);
+    last = now;
+    const next = time.peek() + dt * speed.peek();
+    time.value = Math.min(next, duration.peek());
+    if (next >= duration.peek()) playing.value = false;
+    else requestAnimationFrame(tick);
+  };
+  effect(() => {
+    if (!playing.value) return;
+    last = performance.now();
+    requestAnimationFrame(tick);
+  });
+  // A new plan may be shorter than the clock stands; an infeasible one shows where it stops.
+  effect(() => {
+    if (time.value > duration.value) time.value = duration.value;
+  });
+}

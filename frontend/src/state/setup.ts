@@ -1,0 +1,65 @@
+/** What the drawing is planned with: robot, method, weights, controller; and what there is. */
+
+import { computed, signal } from "@preact/signals";
+import type {
+  Method,
+  RobotDocument,
+  SettingSchema,
+  Settings,
+  SettingValue,
+  SettingValues,
+  TerrainDocument,
+} from "../api/types";
+import { type RobotShape, robotShape } from "../geometry/robot";
+
+export const terrains = signal<TerrainDocument[]>([]);
+export const robots = signal<RobotDocument[]>([]);
+export const settings = signal<Settings | null>(null);
+
+export const robotName = signal("a1_wheeled_x");
+export const method = signal<Method>("path");
+export const compare = signal(false);
+export const seed = signal(0);
+/** Only what differs from the default, by method. */
+export const weights = signal<Partial<Record<Method, SettingValues>>>({});
+export const controller = signal<SettingValues>({});
+
+export const robot = computed<RobotShape | null>(() => {
+  const document = robots.value.find((r) => r.name === robotName.value) ?? robots.value[0];
+  return document ? robotShape(document) : null;
+});
+
+export const weightSchema = computed<Record<string, SettingSchema>>(
+  () => settings.value?.weights[method.value]?.properties ?? {},
+);
+export const controllerSchema = computed<Record<string, SettingSchema>>(
+  () => settings.value?.controller.properties ?? {},
+);
+export const changedWeights = computed(() => weights.value[method.value] ?? {});
+export const changedCount = computed(
+  () => Object.keys(changedWeights.value).length + Object.keys(controller.value).length,
+);
+
+function withValue(
+  values: SettingValues,
+  schema: SettingSchema | undefined,
+  name: string,
+  value: SettingValue,
+): SettingValues {
+  const { [name]: _, ...rest } = values;
+  return value === schema?.default ? rest : { ...rest, [name]: value };
+}
+
+export function setWeight(name: string, value: SettingValue): void {
+  const next = withValue(changedWeights.peek(), weightSchema.peek()[name], name, value);
+  weights.value = { ...weights.peek(), [method.peek()]: next };
+}
+
+export function setController(name: string, value: SettingValue): void {
+  controller.value = withValue(controller.peek(), controllerSchema.peek()[name], name, value);
+}
+
+export function resetAll(): void {
+  weights.value = { ...weights.peek(), [method.peek()]: {} };
+  controller.value = {};
+}

@@ -1,0 +1,95 @@
+/** The address: `#s=` and the state, enough to see the same page elsewhere. */
+
+import { effect } from "@preact/signals";
+import type { Method, SettingValues, TerrainDocument, Vec2 } from "../api/types";
+import { committed, isEmpty, open, origin, terrainDocument } from "./drawing";
+import { run, runB, runStale } from "./rollouts";
+import { compare, controller, method, robotName, seed, terrains, weights } from "./setup";
+
+/** Short keys: the whole of this stands in the link. */
+interface Shared {
+  t: Omit<TerrainDocument, "schema">;
+  r: string;
+  m: Method;
+  w?: Partial<Record<Method, SettingValues>>;
+  c?: SettingValues;
+  s?: number;
+  ab?: 1;
+  /** Rollouts A and B, as ids. */
+  ro?: string;
+  rb?: string;
+}
+
+function encode(state: Shared): string {
+  const bytes = new TextEncoder().encode(JSON.stringify(state));
+  let text = "";
+  for (const byte of bytes) text += String.fromCharCode(byte);
+  return btoa(text).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "");
+}
+
+function decode(text: string): Shared {
+  const binary = atob(text.replace(/-/g, "+").replace(/_/g, "/"));
+  const bytes = Uint8Array.from(binary, (c) => c.charCodeAt(0));
+  return JSON.parse(new TextDecoder().decode(bytes)) as Shared;
+}
+
+const filled = (values: object | undefined) => values && Object.keys(values).length > 0;
+
+function currentState(): Shared {
+  const { schema: _, ...terrain } = terrainDocument(committed.value);
+  const changed = Object.fromEntries(
+    Object.entries(weights.value).filter(([, values]) => filled(values)),
+  );
+  const result = runStale.value ? null : run.value;
+  return {
+    t: terrain,
+    r: robotName.value,
+    m: method.value,
+    ...(filled(changed) ? { w: changed } : {}),
+    ...(filled(controller.value) ? { c: controller.value } : {}),
+    ...(seed.value ? { s: seed.value } : {}),
+    ...(compare.value ? { ab: 1 as const } : {}),
+    ...(result ? { ro: result.id } : {}),
+    ...(result && runB.value ? { rb: runB.value.id } : {}),
+  };
+}
+
+export interface Restored {
+  rollout: string | null;
+  rolloutB: string | null;
+}
+
+/** Take the state out of the address. Null where there is none, or it is not one of ours. */
+export function restoreFromAddress(): Restored | null {
+  const text = new URLSearchParams(location.hash.slice(1)).get("s");
+  if (!text) return null;
+  let state: Shared;
+  try {
+    state = decode(text);
+    if (!Array.isArray(state.t.points)) return null;
+  } catch {
+    return null;
+  }
+  const points = state.t.points.filter(
+    (p): p is Vec2 => p.length === 2 && p.every(Number.isFinite),
+  );
+  const stored = terrains.peek().find((t) => t.name === state.t.name) ?? null;
+  open({ ...state.t, points, schema: "stairwright/terrain/1" }, stored);
+  robotName.value = state.r;
+  method.value = state.m;
+  weights.value = state.w ?? {};
+  controller.value = state.c ?? {};
+  seed.value = state.s ?? 0;
+  compare.value = state.ab === 1;
+  return { rollout: state.ro ?? null, rolloutB: state.rb ?? null };
+}
+
+/** Keep the address up to date: after each finished edit, never during a drag. */
+export function startSharing(): void {
+  effect(() => {
+    const empty = isEmpty.value && origin.value === null;
+    const hash = empty ? "" : `#s=${encode(currentState())}`;
+    if (hash === location.hash) return;
+    history.replaceState(null, "", hash || location.pathname);
+  });
+}

@@ -1,0 +1,71 @@
+/** How the page looks: theme, layers, layout. Nothing here changes an answer. */
+
+import { effect, signal } from "@preact/signals";
+
+export type Theme = "dark" | "light";
+export type Tool = "select" | "stair" | "ramp" | "flat" | "free";
+export type Tab = "editor" | "scene" | "results";
+
+export const LAYERS = {
+  ghosts: "Poses between",
+  keys: "Key poses",
+  collision: "Collision points",
+  wheel: "Wheel-centre path",
+  com: "CoM path",
+  dimensions: "Dimensions",
+} as const;
+export type Layer = keyof typeof LAYERS;
+
+export const theme = signal<Theme>(
+  document.documentElement.dataset.theme === "light" ? "light" : "dark",
+);
+export const tool = signal<Tool>("select");
+export const layers = signal<ReadonlySet<Layer>>(new Set(Object.keys(LAYERS) as Layer[]));
+export const inspectorOpen = signal(true);
+export const swapped = signal(false);
+export const tab = signal<Tab>("editor");
+
+function stored(key: string): string | null {
+  try {
+    return localStorage.getItem(`stairwright.${key}`);
+  } catch {
+    return null;
+  }
+}
+
+function store(key: string, value: string): void {
+  try {
+    localStorage.setItem(`stairwright.${key}`, value);
+  } catch {
+    // Private windows may refuse; the choice then lasts for this page only.
+  }
+}
+
+export const hintSeen = signal(stored("hint") === "seen");
+
+export function dismissHint(): void {
+  if (hintSeen.peek()) return;
+  hintSeen.value = true;
+  store("hint", "seen");
+}
+
+export function toggleTheme(): void {
+  theme.value = theme.peek() === "dark" ? "light" : "dark";
+  store("theme", theme.peek());
+}
+
+export function toggleLayer(layer: Layer): void {
+  const next = new Set(layers.peek());
+  if (!next.delete(layer)) next.add(layer);
+  layers.value = next;
+}
+
+effect(() => {
+  document.documentElement.dataset.theme = theme.value;
+});
+
+const narrow = matchMedia("(max-width: 1200px)");
+export const isNarrow = signal(narrow.matches);
+narrow.addEventListener("change", () => {
+  isNarrow.value = narrow.matches;
+});

@@ -1,0 +1,61 @@
+/** The last line: what was planned, which keys help, whether the service answers. */
+
+import { fixed, millimetres } from "./geometry/format";
+import { worst } from "./profile-editor/margins";
+import { connected, latency } from "./state/connection";
+import { plan } from "./state/planning";
+
+const KEYS = [
+  ["Arrows", "1 cm"],
+  ["Shift", "10 cm"],
+  ["Del", "remove"],
+  ["Ctrl Z", "undo"],
+  ["Space", "play"],
+];
+
+export function Status() {
+  const shown = plan.value;
+  return (
+    <footer class="stat">
+      {shown && (
+        <span>
+          <b>
+            {shown.poses.length} poses
+            {shown.problem ? "" : `, ${shown.critical.length} key`}
+          </b>
+          {shown.problem && "up to the problem"}
+        </span>
+      )}
+      {shown && !shown.problem && <Certified />}
+      <span class="keys">
+        {KEYS.map(([key, does]) => (
+          <span key={key}>
+            <kbd>{key}</kbd>
+            {does}
+          </span>
+        ))}
+      </span>
+      <div class="grow" />
+      <span>
+        <i class={connected.value ? "live" : "live bad"} />
+        {connected.value
+          ? `Connected${latency.value === null ? "" : `, ${fixed(latency.value, 0)} ms`}`
+          : "Disconnected"}
+      </span>
+    </footer>
+  );
+}
+
+function Certified() {
+  const shown = plan.value!;
+  const certificate = shown.certificate as { passed?: boolean; scope?: string } | null | undefined;
+  const clearance = millimetres(worst(shown.poses, "clearance"));
+  if (!certificate?.passed) return <span>smallest clearance {clearance}</span>;
+  return (
+    <span>
+      <b>Certified</b>
+      {certificate.scope === "poses" ? "poses checked" : "exact check"}, smallest clearance{" "}
+      {clearance}
+    </span>
+  );
+}

@@ -1,0 +1,98 @@
+/** Every export of the plan and of the rollout. */
+
+import { exportUrl } from "../api/client";
+import { plan } from "../state/planning";
+import { run, runStale } from "../state/rollouts";
+import { isNarrow } from "../state/view";
+import { Icon } from "../ui/icon";
+import { Menu } from "../ui/menu";
+
+const PLAN: [string, string, string][] = [
+  ["json", "JSON", "stairwright/plan/1"],
+  ["csv", "CSV", "poses, one a row"],
+  ["npz", "NPZ", "arrays for NumPy"],
+  ["mcap", "MCAP", "for Foxglove and ROS 2"],
+  ["mjcf", "MJCF", "robot and terrain"],
+];
+const ROLLOUT: [string, string, string][] = [
+  ["html", "HTML", "3-D replay in one file"],
+  ["json", "JSON", "stairwright/rollout/1"],
+  ["csv", "CSV", "series, one sample a row"],
+  ["npz", "NPZ", "arrays for NumPy"],
+  ["mcap", "MCAP", "for Foxglove and ROS 2"],
+];
+
+export function DownloadMenu() {
+  const shown = plan.value;
+  const result = run.value;
+  const button = (
+    <>
+      <Icon name="download" />
+      {!isNarrow.value && (
+        <>
+          Download
+          <Icon name="down" />
+        </>
+      )}
+    </>
+  );
+  return (
+    <Menu
+      label="Download"
+      button={button}
+      buttonClass={isNarrow.value ? "btn sq" : "btn"}
+      panelClass="downloads"
+      align="right"
+      disabled={!shown && !result}
+    >
+      {(close) => (
+        <>
+          {shown && (
+            <Exports title="Plan" kind="plans" id={shown.id} formats={PLAN} close={close} />
+          )}
+          {result ? (
+            <Exports
+              title={runStale.value ? "Rollout of the previous plan" : "Rollout"}
+              kind="rollouts"
+              id={result.id}
+              formats={ROLLOUT}
+              close={close}
+            />
+          ) : (
+            <p class="note">Run a rollout to download its series and replay.</p>
+          )}
+        </>
+      )}
+    </Menu>
+  );
+}
+
+interface ExportsProps {
+  title: string;
+  kind: "plans" | "rollouts";
+  id: string;
+  formats: [string, string, string][];
+  close: () => void;
+}
+
+function Exports({ title, kind, id, formats, close }: ExportsProps) {
+  return (
+    <>
+      <h4>{title}</h4>
+      {formats.map(([format, name, note]) => (
+        <a
+          key={format}
+          class="item"
+          role="menuitem"
+          tabIndex={-1}
+          href={exportUrl(kind, id, format)}
+          download=""
+          onClick={() => setTimeout(close)}
+        >
+          <b>{name}</b>
+          <small>{note}</small>
+        </a>
+      ))}
+    </>
+  );
+}

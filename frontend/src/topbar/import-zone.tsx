@@ -1,0 +1,145 @@
+/** Files dropped anywhere, text pasted anywhere, and the plane that cuts a mesh. */
+
+import { signal } from "@preact/signals";
+import { useEffect, useRef, useState } from "preact/hooks";
+import { fixed } from "../geometry/format";
+import { Icon } from "../ui/icon";
+import { NumberField } from "../ui/number-field";
+import { importFile, meshToCut, takeFile, takeText, terrainError } from "./terrain-actions";
+
+const hovering = signal(false);
+
+const isField = (target: EventTarget | null) =>
+  target instanceof HTMLElement && /^(INPUT|TEXTAREA)$/.test(target.tagName);
+
+export function ImportZone() {
+  useEffect(() => {
+    const hasFile = (event: DragEvent) => event.dataTransfer?.types.includes("Files") ?? false;
+    const over = (event: DragEvent) => {
+      if (!hasFile(event)) return;
+      event.preventDefault();
+      hovering.value = true;
+    };
+    const leave = (event: DragEvent) => {
+      if (event.relatedTarget === null) hovering.value = false;
+    };
+    const drop = (event: DragEvent) => {
+      hovering.value = false;
+      const file = event.dataTransfer?.files[0];
+      if (!file) return;
+      event.preventDefault();
+      takeFile(file);
+    };
+    const paste = (event: ClipboardEvent) => {
+      if (isField(event.target)) return;
+      const file = event.clipboardData?.files[0];
+      const text = event.clipboardData?.getData("text/plain") ?? "";
+      if (file) takeFile(file);
+      else if (text.trim()) takeText(text);
+    };
+    addEventListener("dragover", over);
+    addEventListener("dragleave", leave);
+    addEventListener("drop", drop);
+    addEventListener("paste", paste);
+    return () => {
+      removeEventListener("dragover", over);
+      removeEventListener("dragleave", leave);
+      removeEventListener("drop", drop);
+      removeEventListener("paste", paste);
+    };
+  }, []);
+  return (
+    <>
+      {hovering.value && (
+        <div class="dropzone" aria-hidden="true">
+          <div>
+            <Icon name="upload" />
+            <b>Drop a profile</b>
+            CSV, JSON or YAML points, or an STL or OBJ mesh
+          </div>
+        </div>
+      )}
+      {meshToCut.value && <CutDialog file={meshToCut.value} />}
+      {terrainError.value && !meshToCut.value && <ImportError />}
+    </>
+  );
+}
+
+function ImportError() {
+  const dismiss = () => {
+    terrainError.value = null;
+  };
+  return (
+    <div class="import-error tag" role="alert">
+      <Icon name="warning" />
+      <span>{terrainError.value}</span>
+      <button type="button" class="t ico" aria-label="Dismiss" onClick={dismiss}>
+        <Icon name="close" />
+      </button>
+    </div>
+  );
+}
+
+/** Where to cut the mesh: an upright plane along x at some y, turned about z. */
+function CutDialog({ file }: { file: File }) {
+  const dialog = useRef<HTMLDialogElement>(null);
+  const [y, setY] = useState(0);
+  const [heading, setHeading] = useState(0);
+  useEffect(() => dialog.current?.showModal(), []);
+  const close = () => {
+    meshToCut.value = null;
+    terrainError.value = null;
+  };
+  const submit = async (event: Event) => {
+    event.preventDefault();
+    const fields = { y: String(y), heading: String((heading * Math.PI) / 180) };
+    if (await importFile(file, fields)) close();
+  };
+  return (
+    <dialog ref={dialog} class="tag cut" aria-labelledby="cut-title" onClose={close}>
+      <form onSubmit={submit}>
+        <h2 id="cut-title">Cut {file.name} into a profile</h2>
+        <p>
+          An upright plane through the mesh; its upper edge becomes the ground. z is up, metres.
+        </p>
+        <div class="frow">
+          <span>Plane at y, m</span>
+          <NumberField
+            label="Plane at y in metres"
+            value={y}
+            min={-1000}
+            max={1000}
+            step={0.05}
+            format={(v) => fixed(v, 3)}
+            onChange={setY}
+          />
+        </div>
+        <div class="frow">
+          <span>Heading about z, °</span>
+          <NumberField
+            label="Heading in degrees"
+            value={heading}
+            min={-180}
+            max={180}
+            step={5}
+            format={(v) => fixed(v, 1)}
+            onChange={setHeading}
+          />
+        </div>
+        {terrainError.value && (
+          <p class="error" role="alert">
+            {terrainError.value}
+          </p>
+        )}
+        <div class="acts end">
+          <button type="button" class="btn" onClick={close}>
+            Cancel
+          </button>
+          <button type="submit" class="btn pri">
+            Import
+          </button>
+        </div>
+      </form>
+    </dialog>
+  );
+}

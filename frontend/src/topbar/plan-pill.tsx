@@ -1,0 +1,65 @@
+/** One pill says where the plan stands. */
+
+import { fixed, took } from "../geometry/format";
+import { nearestCorner } from "../geometry/profile";
+import { connected } from "../state/connection";
+import { drawing, isEmpty } from "../state/drawing";
+import { plan, refusal, slow, waited } from "../state/planning";
+import { Icon } from "../ui/icon";
+
+export function PlanPill() {
+  const shown = plan.value;
+  if (!connected.value) {
+    return (
+      <div class="pill mute">
+        <Icon name="offline" />
+        <b>Offline</b>
+        <span class="wide">{shown ? "last plan kept" : "no plan"}</span>
+      </div>
+    );
+  }
+  if (isEmpty.value) {
+    return (
+      <div class="pill mute">
+        <b>No terrain</b>
+      </div>
+    );
+  }
+  if (slow.value || (!shown && !refusal.value)) {
+    return (
+      <div class="pill">
+        <span class="spin" />
+        <b>Planning</b>
+        <span class="wide">latest edit, {took(waited.value)}</span>
+      </div>
+    );
+  }
+  if (refusal.value) {
+    return (
+      <div class="pill bad" title={refusal.value}>
+        <Icon name="warning" />
+        <b>Not a terrain</b>
+      </div>
+    );
+  }
+  if (shown?.problem) {
+    const { at, message } = shown.problem;
+    const corner = nearestCorner(drawing.value.points, at);
+    return (
+      <div class="pill bad" title={message}>
+        <Icon name="warning" />
+        <b>Infeasible</b>
+        <span class="wide">
+          at x {fixed(at[0], 2)} m{corner ? `, ${corner}` : ""}
+        </span>
+      </div>
+    );
+  }
+  return (
+    <div class="pill">
+      <Icon name="check" />
+      <b>Feasible</b>
+      <span class="wide">solved in {took(shown!.solve_time)}</span>
+    </div>
+  );
+}

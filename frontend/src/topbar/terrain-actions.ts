@@ -1,0 +1,103 @@
+/** Opening, saving, importing and making terrains. */
+
+import { signal } from "@preact/signals";
+import {
+  deleteTerrain,
+  generateTerrain,
+  getTerrains,
+  importTerrain,
+  putTerrain,
+} from "../api/client";
+import type { TerrainDocument } from "../api/types";
+import { fit } from "../profile-editor/viewport";
+import { report } from "../state/connection";
+import { committed, drawing, open, origin, terrainDocument } from "../state/drawing";
+import { forgetRollout } from "../state/rollouts";
+import { terrains } from "../state/setup";
+import { tool } from "../state/view";
+
+/** What went wrong with a file or a name; shown where it happened. */
+export const terrainError = signal<string | null>(null);
+/** A mesh that waits for the plane to cut it along. */
+export const meshToCut = signal<File | null>(null);
+
+function show(terrain: TerrainDocument, stored: TerrainDocument | null): void {
+  terrainError.value = null;
+  forgetRollout();
+  open(terrain, stored);
+  tool.value = "select";
+  fit(terrain.points);
+}
+
+export function openStored(terrain: TerrainDocument): void {
+  show(terrain, terrain);
+}
+
+function fail(error: unknown): void {
+  report(error);
+  terrainError.value = error instanceof Error ? error.message : String(error);
+}
+
+export async function saveAs(name: string): Promise<boolean> {
+  try {
+    const saved = await putTerrain({ ...terrainDocument(committed.peek()), name });
+    terrains.value = await getTerrains();
+    origin.value = terrains.peek().find((t) => t.name === saved.name) ?? saved;
+    drawing.value = { ...drawing.peek(), name: saved.name };
+    committed.value = drawing.peek();
+    terrainError.value = null;
+    return true;
+  } catch (error) {
+    fail(error);
+    return false;
+  }
+}
+
+export async function removeStored(name: string): Promise<void> {
+  try {
+    await deleteTerrain(name);
+    terrains.value = await getTerrains();
+    if (origin.peek()?.name === name) origin.value = null;
+  } catch (error) {
+    fail(error);
+  }
+}
+
+export async function generate(parameters: Record<string, unknown>): Promise<boolean> {
+  try {
+    show(await generateTerrain(parameters), null);
+    return true;
+  } catch (error) {
+    fail(error);
+    return false;
+  }
+}
+
+const MESH = /\.(stl|obj)$/i;
+
+/** A dropped or chosen file; meshes ask for a plane first. */
+export function takeFile(file: File): void {
+  if (MESH.test(file.name)) meshToCut.value = file;
+  else void importFile(file, {});
+}
+
+export async function importFile(file: File, fields: Record<string, string>): Promise<boolean> {
+  try {
+    show(await importTerrain(file, fields), null);
+    return true;
+  } catch (error) {
+    fail(error);
+    return false;
+  }
+}
+
+/** Pasted text becomes a file whose ending says what it looks like. */
+export function takeText(text: string): void {
+  const trimmed = text.trim();
+  const ending = /^[{[]/.test(trimmed)
+    ? "json"
+    : /(^|\n)\s*points\s*:/.test(trimmed)
+      ? "yaml"
+      : "csv";
+  takeFile(new File([trimmed], `pasted.${ending}`, { type: "text/plain" }));
+}

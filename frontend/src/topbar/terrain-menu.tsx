@@ -1,0 +1,151 @@
+/** Presets, saved terrains, saving, generators and files. */
+
+import type { ComponentChildren } from "preact";
+import { useRef, useState } from "preact/hooks";
+import { clear, drawing, isEmpty } from "../state/drawing";
+import { terrains } from "../state/setup";
+import { Icon } from "../ui/icon";
+import { Menu } from "../ui/menu";
+import { GenerateForm } from "./generate-form";
+import { openStored, removeStored, saveAs, takeFile, terrainError } from "./terrain-actions";
+
+export function TerrainMenu({ button }: { button: ComponentChildren }) {
+  return (
+    <Menu
+      label={`Terrain: ${drawing.value.name}`}
+      button={button}
+      buttonClass="fld"
+      panelClass="terrains"
+      kind="dialog"
+    >
+      {(close) => <TerrainPanel close={close} />}
+    </Menu>
+  );
+}
+
+function TerrainPanel({ close }: { close: () => void }) {
+  const file = useRef<HTMLInputElement>(null);
+  const [generating, setGenerating] = useState(false);
+  const presets = terrains.value.filter((t) => t.readonly);
+  const saved = terrains.value.filter((t) => !t.readonly);
+  if (generating) return <GenerateForm back={() => setGenerating(false)} close={close} />;
+  return (
+    <>
+      <SaveForm close={close} />
+      <div class="acts">
+        <button
+          type="button"
+          class="act"
+          onClick={() => {
+            clear();
+            close();
+          }}
+        >
+          <Icon name="plus" />
+          New
+        </button>
+        <button type="button" class="act" onClick={() => setGenerating(true)}>
+          <Icon name="stair" />
+          Generate…
+        </button>
+        <button type="button" class="act" onClick={() => file.current?.click()}>
+          <Icon name="upload" />
+          Import…
+        </button>
+        <input
+          ref={file}
+          type="file"
+          hidden
+          aria-label="Terrain file"
+          accept=".csv,.json,.yaml,.yml,.stl,.obj"
+          onChange={(event) => {
+            const chosen = event.currentTarget.files?.[0];
+            if (chosen) takeFile(chosen);
+            close();
+          }}
+        />
+      </div>
+      <div class="lists">
+        {saved.length > 0 && <h4>Saved</h4>}
+        {saved.map((terrain) => (
+          <div class="row" key={terrain.name}>
+            <button type="button" class="item" onClick={() => choose(terrain, close)}>
+              <span class="two">
+                {terrain.name}
+                <small>{terrain.description}</small>
+              </span>
+            </button>
+            <button
+              type="button"
+              class="t ico"
+              aria-label={`Delete ${terrain.name}`}
+              title={`Delete ${terrain.name}`}
+              onClick={() => void removeStored(terrain.name)}
+            >
+              <Icon name="trash" />
+            </button>
+          </div>
+        ))}
+        <h4>Presets</h4>
+        {presets.map((terrain) => (
+          <button
+            key={terrain.name}
+            type="button"
+            class="item"
+            aria-pressed={terrain.name === drawing.value.name}
+            onClick={() => choose(terrain, close)}
+          >
+            <span class="two">
+              {terrain.name}
+              <small>{terrain.description}</small>
+            </span>
+          </button>
+        ))}
+      </div>
+    </>
+  );
+}
+
+function choose(terrain: Parameters<typeof openStored>[0], close: () => void): void {
+  openStored(terrain);
+  close();
+}
+
+/** A preset keeps its name to itself: a changed one is saved under another. */
+function suggestion(): string {
+  const { name } = drawing.peek();
+  const taken = terrains.peek().some((t) => t.name === name && t.readonly);
+  return taken || name === "Untitled" ? `${name === "Untitled" ? "terrain" : name}-mine` : name;
+}
+
+function SaveForm({ close }: { close: () => void }) {
+  const [name, setName] = useState(suggestion);
+  const save = async (event: Event) => {
+    event.preventDefault();
+    if (await saveAs(name.trim())) close();
+  };
+  return (
+    <form class="save" onSubmit={save}>
+      <label>
+        <span>Save as</span>
+        <input
+          value={name}
+          maxLength={100}
+          required
+          pattern="[\w .+\-]+"
+          title="Letters, digits, space, and . + - _"
+          onInput={(event) => setName(event.currentTarget.value)}
+        />
+      </label>
+      <button type="submit" class="btn" disabled={isEmpty.value}>
+        <Icon name="save" />
+        Save
+      </button>
+      {terrainError.value && (
+        <p class="error" role="alert">
+          {terrainError.value}
+        </p>
+      )}
+    </form>
+  );
+}

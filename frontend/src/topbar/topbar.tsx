@@ -1,0 +1,156 @@
+/** The top bar: what is planned, what came of it, and what to do with it. */
+
+import { useState } from "preact/hooks";
+import { fixed } from "../geometry/format";
+import { commit, draft, drawing, isEdited } from "../state/drawing";
+import { robotName, robots } from "../state/setup";
+import { theme, toggleTheme } from "../state/view";
+import { Icon, Logo } from "../ui/icon";
+import { Menu, MenuItem } from "../ui/menu";
+import { NumberField } from "../ui/number-field";
+import { DownloadMenu } from "./download-menu";
+import { PlanPill } from "./plan-pill";
+import { RunButton } from "./run-button";
+import { TerrainMenu } from "./terrain-menu";
+
+export function TopBar() {
+  return (
+    <header class="top">
+      <h1 class="brand">
+        <Logo />
+        <span class="wide">Stairwright</span>
+      </h1>
+      <TerrainMenu
+        button={
+          <>
+            <small class="wide">Terrain</small>
+            <b>{drawing.value.name}</b>
+            {isEdited.value && <span class="dot" title="Edited, not saved" />}
+            <Icon name="down" />
+          </>
+        }
+      />
+      <div class="sep" />
+      <RobotMenu />
+      <Friction />
+      <div class="grow" />
+      <PlanPill />
+      <RunButton />
+      <div class="sep" />
+      <DownloadMenu />
+      <ShareButton />
+      <button
+        type="button"
+        class="btn sq"
+        aria-label={theme.value === "dark" ? "Light theme" : "Dark theme"}
+        title={theme.value === "dark" ? "Light theme" : "Dark theme"}
+        onClick={toggleTheme}
+      >
+        <Icon name={theme.value === "dark" ? "moon" : "sun"} />
+      </button>
+    </header>
+  );
+}
+
+function RobotMenu() {
+  const button = (
+    <>
+      <small class="wide">Robot</small>
+      <b>{robotName.value}</b>
+      <Icon name="down" />
+    </>
+  );
+  return (
+    <Menu label={`Robot: ${robotName.value}`} button={button} buttonClass="fld">
+      {(close) =>
+        robots.value.map((robot) => (
+          <MenuItem
+            key={robot.name}
+            checked={robot.name === robotName.value}
+            onChoose={() => {
+              robotName.value = robot.name;
+              close();
+            }}
+          >
+            <span class="two">
+              {robot.name}
+              <small>{robot.description}</small>
+            </span>
+          </MenuItem>
+        ))
+      }
+    </Menu>
+  );
+}
+
+const LEAST = 0.05;
+const MOST = 2;
+
+function Friction() {
+  const value = drawing.value.friction;
+  const set = (next: number) =>
+    draft({ friction: Math.round(Math.min(MOST, Math.max(LEAST, next)) * 1000) / 1000 });
+  const step = (by: number) => () => {
+    set(drawing.peek().friction + by);
+    commit();
+  };
+  return (
+    <div class="fld box">
+      <small aria-hidden="true">
+        Friction <span class="wide">μ</span>
+      </small>
+      <NumberField
+        label="Friction coefficient"
+        value={value}
+        min={LEAST}
+        max={MOST}
+        step={0.01}
+        format={(v) => fixed(v, 2)}
+        onChange={set}
+        onDone={() => commit()}
+        onCancel={() => commit()}
+      />
+      <span class="stp">
+        <button type="button" tabIndex={-1} aria-label="More friction" onClick={step(0.05)}>
+          <Icon name="down" turn />
+        </button>
+        <button type="button" tabIndex={-1} aria-label="Less friction" onClick={step(-0.05)}>
+          <Icon name="down" />
+        </button>
+      </span>
+    </div>
+  );
+}
+
+const SHOWN = 2000;
+
+function ShareButton() {
+  const [state, setState] = useState<"idle" | "copied" | "refused">("idle");
+  const copy = async () => {
+    try {
+      await navigator.clipboard.writeText(location.href);
+      setState("copied");
+    } catch {
+      setState("refused");
+    }
+    setTimeout(() => setState("idle"), SHOWN);
+  };
+  return (
+    <div class="menu-root">
+      <button
+        type="button"
+        class="btn sq"
+        aria-label="Copy share link"
+        title="Copy share link"
+        onClick={copy}
+      >
+        <Icon name={state === "copied" ? "check" : "link"} />
+      </button>
+      {state !== "idle" && (
+        <div class="bubble" role="status">
+          {state === "copied" ? "Link copied" : "Copy it from the address bar"}
+        </div>
+      )}
+    </div>
+  );
+}

@@ -1,0 +1,16 @@
+import { defineConfig } from "vite";
+
+// `npm run dev` talks to a running `stairwright serve`; in production FastAPI serves dist/ itself.
+const backend = "http://127.0.0.1:8000";
+
+export default defineConfig({
+  base: "./",
+  build: { target: "es2022", outDir: "dist", chunkSizeWarningLimit: 300 },
+  server: {
+    proxy: {
+      "/api": backend,
+      "/healthz": backend,
+      "/scene": { target: backend, ws: true },
+    },
+  },
+});
