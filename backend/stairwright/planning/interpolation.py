@@ -22,7 +22,7 @@ from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
 from .plan import Plan
 from .reference import Reference
-from .static_forces import static_forces
+from .supports import contact_forces, weight_of
 
 Floats = NDArray[np.float64]
 Mode = Literal["joint", "curve"]
@@ -73,7 +73,7 @@ def reference(
         com=com,
         normals=normals,
         contacts=contacts,
-        forces=static_forces(robot.mass, com[:, 0], contacts, normals),
+        forces=contact_forces(weight_of(robot), com[:, 0], contacts, normals),
     )
 
 

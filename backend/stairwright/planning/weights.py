@@ -24,6 +24,16 @@ def _weight(default: float, low: float, high: float, unit: str, title: str, text
     )
 
 
+_SPEED: Any = Field(
+    0.12,
+    ge=0.02,
+    le=1.0,
+    title="Speed",
+    description="Wheel speed along the course where limits and margins allow",
+    json_schema_extra={"unit": "m/s", "scale": "log"},
+)
+
+
 class CriticalWeights(Model):
     """Diagonal of Q (eq 18) and the regularisation that makes the optimum unique."""
 
@@ -36,6 +46,12 @@ class CriticalWeights(Model):
     pitch: float = _weight(0.01, 1e-4, 100.0, "rad⁻²", "Pitch", "Pull to a level trunk")
     posture: float = _weight(
         0.001, 1e-5, 10.0, "rad⁻²", "Posture", "Pull of the joints to the standing pose"
+    )
+    speed: float = _SPEED
+    exact_links: bool = Field(
+        True,
+        title="Exact links",
+        description="Keep whole links clear of the terrain, not only the 25 collision points",
     )
 
 
@@ -53,20 +69,13 @@ class PathWeights(Model):
         1.0, 0.01, 100.0, "1", "Smoothness", "Even motion of the trunk along the course"
     )
     pitch: float = _weight(1.0, 0.01, 100.0, "1", "Pitch", "Trunk near the terrain's slope")
-    speed: float = Field(
-        0.12,
-        ge=0.02,
-        le=1.0,
-        title="Speed",
-        description="Wheel speed along the course where limits and margins allow",
-        json_schema_extra={"unit": "m/s", "scale": "log"},
-    )
+    speed: float = _SPEED
 
 
 class NominalWeights(Model):
     """The baseline optimises nothing; only its speed can be set."""
 
-    speed: float = PathWeights.model_fields["speed"]  # type: ignore[assignment]
+    speed: float = _SPEED
 
 
 MODELS: dict[Method, type[Model]] = {
