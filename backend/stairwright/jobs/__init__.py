@@ -1,0 +1,1 @@
+"""Solving and simulating in worker processes: queues, deadlines, cancelling, crashes, caching."""

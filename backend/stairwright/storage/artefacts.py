@@ -32,7 +32,9 @@ class Artefacts:
         digest = hashlib.sha256(content).hexdigest()
         packed = gzip.compress(content, compresslevel=3, mtime=0)
         target = self.path(digest)
-        if not target.exists():
+        try:
+            os.utime(target)  # young again: a sweep that runs right now must not take it
+        except FileNotFoundError:
             target.parent.mkdir(exist_ok=True)
             handle, partial = tempfile.mkstemp(suffix=_PARTIAL, dir=target.parent)
             try:

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from sqlalchemy import func, select, update
+from sqlalchemy import func, select
 from sqlalchemy.dialects.sqlite import insert
 from sqlalchemy.orm import Session, sessionmaker
 
@@ -119,9 +119,3 @@ class Documents:
                     kept -= row.size
                     removed += 1
         return removed
-
-    def touch(self, document_id: str) -> None:
-        """Note a use now."""
-        statement = update(StoredDocument).where(StoredDocument.id == document_id)
-        with self._sessions.begin() as session:
-            session.execute(statement.values(used=time.time()))

@@ -1,0 +1,71 @@
+"""Why work was not done, when neither the input nor the code is to blame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from http import HTTPStatus
+from typing import Any
+
+from stairwright.errors import Cancelled, InputError, StairwrightError
+
+
+class Failure(StairwrightError):  # noqa: N818 - it reads as what it is
+    """Base: `status` is the HTTP status that fits, `retry_after` seconds make sense if given."""
+
+    status = 503
+    kind = "failed"
+
+    def __init__(self, message: str, retry_after: float | None = None) -> None:
+        super().__init__(message)
+        self.message = message
+        self.retry_after = retry_after
+
+
+class QueueFull(Failure):
+    """Too much is waiting already."""
+
+    status = 429
+    kind = "queue-full"
+
+
+class DeadlineExceeded(Failure):
+    """The work took longer than it may."""
+
+    status = 503
+    kind = "deadline"
+
+
+class WorkerDied(Failure):
+    """The process that did the work is gone: killed, out of memory, or crashed."""
+
+    status = 503
+    kind = "worker-died"
+
+
+def problem_of(error: BaseException) -> dict[str, Any]:
+    """A failed job's problem document (RFC 9457)."""
+    errors: list[dict[str, str]] = []
+    status, kind, detail = 500, "bug", "the work failed unexpectedly; see the log"
+    if isinstance(error, InputError):
+        status, kind, detail = 422, "bad-input", str(error)
+        errors = [{"field": error.path, "message": error.message}]
+    elif isinstance(error, Failure):
+        status, kind, detail = error.status, error.kind, error.message
+    elif isinstance(error, MemoryError):
+        status, kind, detail = 503, "memory", "the work needs more memory than a worker may have"
+    elif isinstance(error, Cancelled):
+        status, kind, detail = 409, "cancelled", "the job was cancelled"
+    return problem(status, kind, detail, errors)
+
+
+def problem(
+    status: int, kind: str, detail: str, errors: Sequence[Mapping[str, str]] = ()
+) -> dict[str, Any]:
+    """A problem document as plain data."""
+    return {
+        "type": f"urn:stairwright:problem:{kind}",
+        "title": HTTPStatus(status).phrase,
+        "status": status,
+        "detail": detail,
+        "errors": [dict(error) for error in errors],
+    }

@@ -1,0 +1,127 @@
+"""Worker processes that can be killed: pebble's pool, kept alive, seen from an event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import multiprocessing
+import threading
+from collections.abc import Callable
+from concurrent.futures.process import BrokenProcessPool
+from typing import Any, TypeVar
+
+from pebble import CONSTS, ProcessExpired, ProcessPool
+
+from .failures import DeadlineExceeded, WorkerDied
+from .worker import Limits, initialise
+
+T = TypeVar("T")
+logger = logging.getLogger(__name__)
+
+GRACE = 5.0  # s beyond a deadline after which the pool itself is thought to hang
+CHECK_EVERY = 0.5  # s between looks at idle pools
+PRELOAD = "stairwright.jobs.preload"
+
+
+class WorkerPool:
+    """Some processes of one kind. Callers must not run more at once than there are workers.
+
+    Workers are forked from a server process that has imported and compiled everything
+    (`preload`), so one that died is replaced within milliseconds.
+    """
+
+    def __init__(self, name: str, workers: int, limits: Limits) -> None:
+        self.name = name
+        self.workers = workers
+        self.deaths = 0
+        self._limits = limits
+        self._lock = threading.Lock()
+        self._pool: ProcessPool | None = None
+        self._keeper: asyncio.Task[None] | None = None
+
+    async def start(self) -> None:
+        """Start the workers and keep them alive until `stop`."""
+        await asyncio.to_thread(self._healthy_pool)
+        self._keeper = asyncio.create_task(self._keep_alive())
+
+    async def stop(self) -> None:
+        """Kill the workers."""
+        if self._keeper is not None:
+            self._keeper.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await self._keeper
+        with self._lock:
+            pool, self._pool = self._pool, None
+        if pool is not None:
+            await asyncio.to_thread(_end, pool)
+
+    async def run(self, function: Callable[..., T], *args: Any, deadline: float) -> T:
+        """Carry out `function(*args)` in a worker; cancelling the caller kills that worker.
+
+        Raises:
+            DeadlineExceeded: After `deadline` [s].
+            WorkerDied: If the process is gone.
+            Exception: Whatever the function raises.
+        """
+        pool = await asyncio.to_thread(self._healthy_pool)
+        try:
+            future = pool.schedule(function, args=list(args), timeout=deadline)
+        except RuntimeError:  # broke in the last moment
+            pool = await asyncio.to_thread(self._healthy_pool)
+            future = pool.schedule(function, args=list(args), timeout=deadline)
+        try:
+            return await asyncio.wait_for(asyncio.wrap_future(future), deadline + GRACE)
+        except TimeoutError:
+            if not future.done() or future.cancelled():
+                logger.error("the pool %s hangs and is replaced", self.name)
+                await asyncio.to_thread(self._replace, pool)
+            raise DeadlineExceeded(f"stopped after {deadline:g} s, the longest allowed") from None
+        except (ProcessExpired, BrokenProcessPool) as error:
+            self.deaths += 1
+            logger.error("a worker of the pool %s died: %s", self.name, error)
+            raise WorkerDied("the process that did the work died (out of memory?)") from None
+
+    def _healthy_pool(self) -> ProcessPool:
+        with self._lock:
+            if self._pool is None or not self._pool.active:
+                if self._pool is not None:
+                    logger.error("the pool %s broke and is replaced", self.name)
+                    self.deaths += 1
+                    threading.Thread(target=_end, args=(self._pool,), daemon=True).start()
+                self._pool = self._new_pool()
+            return self._pool
+
+    def _replace(self, broken: ProcessPool) -> None:
+        with self._lock:
+            if self._pool is broken:
+                self._pool = self._new_pool()
+        _end(broken)
+
+    def _new_pool(self) -> ProcessPool:
+        CONSTS.sleep_unit = 0.05  # s between looks at deadlines and dead workers
+        CONSTS.term_timeout = 0.5  # s from SIGTERM to SIGKILL
+        context = multiprocessing.get_context("forkserver")
+        context.set_forkserver_preload([PRELOAD])
+        pool = ProcessPool(
+            max_workers=self.workers,
+            initializer=initialise,
+            initargs=[self._limits],
+            context=context,
+        )
+        assert pool.active  # asking starts the workers
+        return pool
+
+    async def _keep_alive(self) -> None:
+        """An idle worker that dies may take pebble's pool along: replace it before it is needed."""
+        while True:
+            await asyncio.sleep(CHECK_EVERY)
+            try:
+                await asyncio.to_thread(self._healthy_pool)
+            except OSError:
+                logger.exception("the pool %s cannot be restarted", self.name)
+
+
+def _end(pool: ProcessPool) -> None:
+    pool.stop()  # type: ignore[no-untyped-call]
+    pool.join()

@@ -1,0 +1,20 @@
+"""Imported once by the process that workers are forked from, so that each starts warm.
+
+This module does work at import, because that is when the fork server can do it: it imports what
+workers need, loads the compiled kernels, and keeps numeric libraries to one thread each.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+
+for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ[_variable] = "1"
+
+# A failure here is no reason to have no workers: it will show again, with a traceback in the log,
+# in the first task that needs what failed.
+with contextlib.suppress(Exception):
+    from stairwright.jobs import work
+
+    work.warm()

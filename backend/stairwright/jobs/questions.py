@@ -1,0 +1,94 @@
+"""Questions to planner and simulator, complete and checked: alike in content, alike in key."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from stairwright.documents import content_hash
+from stairwright.planning.plan import Method, Plan, plan_id
+from stairwright.planning.weights import parse_weights
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
+
+
+@dataclass(frozen=True)
+class PlanQuestion:
+    """Everything that a plan depends on."""
+
+    terrain: Terrain
+    robot: Robot
+    friction: float
+    method: Method
+    weights: Mapping[str, float]
+
+    @classmethod
+    def of(
+        cls,
+        terrain: Terrain,
+        robot: Robot,
+        friction: float | None,
+        method: Method,
+        weights: Mapping[str, float],
+    ) -> PlanQuestion:
+        """Fill in defaults.
+
+        Raises:
+            InputError: If a weight is unknown or out of bounds.
+        """
+        complete = parse_weights(method, weights).model_dump(mode="json")
+        return cls(
+            terrain, robot, terrain.friction if friction is None else friction, method, complete
+        )
+
+    @cached_property
+    def data(self) -> dict[str, Any]:
+        """As plain data, for a worker."""
+        return {
+            "terrain": self.terrain.model_dump(mode="json"),
+            "robot": self.robot.model_dump(mode="json"),
+            "friction": self.friction,
+            "method": self.method,
+            "weights": dict(self.weights),
+        }
+
+    @cached_property
+    def key(self) -> str:
+        """Hash of the whole question, names and texts included."""
+        return content_hash(self.data)
+
+    @property
+    def plan_id(self) -> str:
+        """The id that the plan will have."""
+        return plan_id(self.terrain, self.robot, self.friction, self.method, dict(self.weights))
+
+
+@dataclass(frozen=True)
+class RolloutQuestion:
+    """What to roll out and how: a stored plan (its digest), a whole plan, or one to be made."""
+
+    source: PlanQuestion | Plan | str
+    friction: float | None
+    controller: Mapping[str, Any]
+    seed: int
+
+    @cached_property
+    def data(self) -> dict[str, Any]:
+        """As plain data, for a worker."""
+        data = {
+            "friction": self.friction,
+            "controller": dict(self.controller),
+            "seed": self.seed,
+        }
+        if isinstance(self.source, PlanQuestion):
+            return {**data, "ask": self.source.data}
+        if isinstance(self.source, Plan):
+            return {**data, "plan": self.source.model_dump(mode="json")}
+        return {**data, "plan_digest": self.source}
+
+    @cached_property
+    def key(self) -> str:
+        """Hash of the whole question."""
+        return content_hash(self.data)

@@ -1,0 +1,107 @@
+"""Terrain files from outside, read in a worker that can open nothing and may use little memory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import PurePath
+from typing import Any
+
+from stairwright.documents import parse, parse_mapping
+from stairwright.errors import InputError
+from stairwright.terrain.mesh import FILE_TYPES, slice_mesh
+from stairwright.terrain.profile import Terrain
+from stairwright.terrain.tables import parse_table
+
+Options = Mapping[str, Any]
+MAX_TEXT = 4 * 2**20  # bytes of a YAML, JSON or CSV file
+
+
+def import_terrain(data: bytes, file_name: str, options: Options) -> dict[str, Any]:
+    """The terrain document in a file; the ending of its name says how to read it.
+
+    Args:
+        data: The file.
+        file_name: Its name.
+        options: What a mesh or a table does not say itself: ``name``, ``friction``, and for a
+            mesh ``origin`` (x, y) [m], ``heading`` [rad] and ``scale`` [m per unit].
+
+    Raises:
+        InputError: If it cannot be read.
+    """
+    suffix = PurePath(file_name).suffix.lower().removeprefix(".")
+    if suffix not in READERS:
+        raise InputError(
+            f"cannot read a file that ends with {suffix or 'nothing'!r}; "
+            f"there are: {', '.join(READERS)}",
+            ("file",),
+        )
+    terrain = READERS[suffix](data, suffix, options)
+    return terrain.model_dump(mode="json")
+
+
+def _mesh(data: bytes, suffix: str, options: Options) -> Terrain:
+    return slice_mesh(
+        data,
+        suffix,
+        options.get("origin"),
+        options.get("heading", 0.0),
+        options.get("name", "imported"),
+        scale=options.get("scale", 1.0),
+        friction=options.get("friction", 0.6),
+    )
+
+
+def _table(data: bytes, _: str, options: Options) -> Terrain:
+    return parse_table(_text(data), options.get("name", "imported"), options.get("friction", 0.6))
+
+
+def _document(data: bytes, _: str, options: Options) -> Terrain:
+    mapping = parse_mapping(_text(data), "the file")
+    given = {key: options[key] for key in ("name", "friction") if key in options}
+    return parse(Terrain, {**mapping, **given})
+
+
+def _text(data: bytes) -> str:
+    if len(data) > MAX_TEXT:
+        raise InputError(f"a text file may have at most {MAX_TEXT >> 20} MiB", ("file",))
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        raise InputError("the file is not UTF-8 text", ("file",)) from None
+
+
+READERS: dict[str, Callable[[bytes, str, Options], Terrain]] = {
+    **dict.fromkeys(FILE_TYPES, _mesh),
+    "csv": _table,
+    "txt": _table,
+    "json": _document,
+    "yaml": _document,
+    "yml": _document,
+}
+
+
+def rehearse() -> None:
+    """Read one small file of each kind, so that every module that this takes is loaded."""
+    ground = ((0, 0, 0), (4, 0, 0), (4, 1, 0), (0, 1, 0))
+    corners = "\n".join(" ".join(map(str, corner)) for corner in ground)
+    facets = "".join(
+        "facet normal 0 0 1\nouter loop\n"
+        + "".join(f"vertex {x} {y} {z}\n" for x, y, z in (ground[i] for i in triangle))
+        + "endloop\nendfacet\n"
+        for triangle in ((0, 1, 2), (0, 2, 3))
+    )
+    ply = (
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    samples = {
+        "a.stl": f"solid a\n{facets}endsolid a\n",
+        "a.obj": "".join(f"v {x} {y} {z}\n" for x, y, z in ground) + "f 1 2 3\nf 1 3 4\n",
+        "a.off": f"OFF\n4 2 0\n{corners}\n3 0 1 2\n3 0 2 3\n",
+        "a.ply": f"{ply}{corners}\n3 0 1 2\n3 0 2 3\n",
+        "a.csv": "x,z\n0,0\n1,0\n",
+        "a.json": '{"points": [[0, 0], [1, 0]]}',
+        "a.yaml": "points: [[0, 0], [1, 0]]\n",
+    }
+    for name, text in samples.items():
+        import_terrain(text.encode(), name, {})

@@ -1,0 +1,150 @@
+"""What workers do: functions of plain data that any process, here or elsewhere, can carry out."""
+
+from __future__ import annotations
+
+import gzip
+import importlib.util
+import logging
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import orjson
+
+from stairwright.errors import InputError
+from stairwright.storage.artefacts import Artefacts
+
+from .gauge import Gauge
+
+if TYPE_CHECKING:
+    from stairwright.planning.plan import Plan
+
+Question = Mapping[str, Any]
+PLANNING_SHARE = 0.1  # of a rollout's progress, where it has to plan first
+
+
+@dataclass(frozen=True)
+class Product:
+    """A finished document: kept among the artefacts, and what is worth knowing of it."""
+
+    id: str
+    digest: str
+    size: int
+    summary: Mapping[str, Any]
+    packed: bytes = b""
+
+
+def solve(question: Question, artefacts: str) -> Product:
+    """Plan; `question` has terrain and robot documents, friction, method and weights.
+
+    Raises:
+        InputError: If a value is bad.
+    """
+    return _keep_plan(_plan(question), artefacts)
+
+
+def _plan(question: Question) -> Plan:
+    from stairwright.planning.planner import plan
+
+    keys = ("terrain", "robot", "friction", "method", "weights")
+    return plan(**{key: question[key] for key in keys})
+
+
+def _keep_plan(plan: Plan, artefacts: str) -> Product:
+    digest, packed = Artefacts(Path(artefacts)).put(plan.model_dump_json().encode())
+    summary = {
+        "terrain": plan.terrain.name,
+        "robot": plan.robot,
+        "method": plan.method,
+        "status": plan.status,
+    }
+    return Product(plan.id, digest, len(packed), summary, packed)
+
+
+def simulate(question: Question, artefacts: str, gauge_path: str) -> Product:
+    """Roll a plan out.
+
+    `question` has friction, controller and seed, and either the plan's digest as ``plan_digest``,
+    or the whole ``plan``, or what `solve` takes as ``ask``.
+
+    Raises:
+        InputError: If a value is bad or the plan has nothing that could be carried out.
+        Cancelled: If the gauge says so.
+    """
+    from stairwright.simulation.rollout import rollout
+
+    gauge = Gauge(gauge_path)
+    base = PLANNING_SHARE if question.get("ask") else 0.0
+    plan = _plan_of(question, artefacts)
+    gauge.report(base)
+
+    def progress(share: float) -> None:
+        gauge.report(base + (1.0 - base) * share)
+
+    run = rollout(
+        plan,
+        friction=question["friction"],
+        controller=question["controller"] or None,
+        seed=question["seed"],
+        progress=progress,
+    )
+    digest, packed = Artefacts(Path(artefacts)).put(run.model_dump_json().encode())
+    summary = {
+        "terrain": plan.terrain.name,
+        "robot": plan.robot,
+        "plan_id": plan.id,
+        "outcome": run.outcome,
+        "metrics": run.metrics.model_dump(mode="json"),
+    }
+    return Product(run.id, digest, len(packed), summary)
+
+
+def _plan_of(question: Question, artefacts: str) -> Plan:
+    from stairwright.planning.plan import Plan
+
+    if question.get("ask"):
+        plan = _plan(question["ask"])
+    elif question.get("plan"):
+        plan = Plan.model_validate(question["plan"])
+    else:
+        content = Artefacts(Path(artefacts)).content(question["plan_digest"])
+        plan = Plan.model_validate_json(content)
+    if not plan.feasible:
+        why = plan.problem.message if plan.problem else "the plan is infeasible"
+        raise InputError(f"nothing can be rolled out: {why}", ("plan",))
+    return plan
+
+
+def export(packed: bytes, kind: str, format_name: str) -> bytes:
+    """A stored plan or rollout in another format.
+
+    Raises:
+        InputError: If this document cannot be written in that format.
+    """
+    from stairwright.export.formats import PLAN_FORMATS, ROLLOUT_FORMATS
+
+    content = gzip.decompress(packed)
+    if format_name == "json":
+        return content
+    if kind == "plan":
+        from stairwright.planning.plan import Plan
+
+        return bytes(PLAN_FORMATS[format_name].write(Plan.model_validate_json(content)))
+    from stairwright.simulation.result import Rollout
+
+    return bytes(ROLLOUT_FORMATS[format_name].write(Rollout.model_validate(orjson.loads(content))))
+
+
+def warm() -> None:
+    """Import and compile what the first question would otherwise wait for."""
+    if importlib.util.find_spec("stairwright.warmup") is None:
+        return
+    from stairwright import warmup
+
+    steps: list[Callable[[], object]] = [warmup.warm]
+    for step in steps:
+        try:
+            step()
+        except Exception:
+            logging.getLogger(__name__).exception("warming up failed")
