@@ -1,0 +1,312 @@
+"""The certificate: an independent, exact check of a plan (shapely), poses and the motion between.
+
+It shares no geometry or statics with the planner. Between poses trunk and joints move linearly;
+samples of that motion lie so close together that no point of the robot moves more than `_STRIDE`
+between two of them, and clearances count less half of that: what is certified holds in between too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import combinations
+from typing import Literal
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from stairwright.robot import kinematics as kin
+from stairwright.robot.description import Robot
+
+from .plan import Certificate, Check, Plan
+
+Floats = NDArray[np.float64]
+
+WHEEL_GAP = 0.002  # m; a wheel this near to the ground touches it
+WHEEL_SINK = 0.001  # m
+LEGS_GAP = 0.005  # m between front and rear leg
+_STRIDE = 0.006  # m
+_CHUNK = 64  # samples that share one piece of terrain
+_STRONGEST = 8.0  # robot weights; larger contact forces are not taken as equilibrium
+_JOINT_STEP = 0.35  # rad between two poses
+
+Scope = Literal["motion", "poses"]
+
+
+def certify(plan: Plan, scope: Scope | None = None) -> Certificate:
+    """Check `plan` against terrain, robot and friction that it names.
+
+    Args:
+        plan: Any plan with poses.
+        scope: ``motion`` checks the motion between poses too, ``poses`` only the poses; by default
+            the motion for dense paths and the poses for the others.
+    """
+    chosen: Scope = scope or ("motion" if plan.method == "path" else "poses")
+    if not plan.poses:
+        missing = Check(name="poses", value=0.0, bound=1.0, unit="1", passed=False)
+        return Certificate(passed=False, scope=chosen, checks=[missing])
+    return _Checker(plan, chosen).run()
+
+
+class _Checker:
+    """Samples of the motion (n) and the checks on them. SI units, world frame."""
+
+    def __init__(self, plan: Plan, scope: Scope) -> None:
+        self.plan, self.scope = plan, scope
+        self.robot: Robot = plan.robot_description
+        self.vertices = plan.terrain.vertices
+        self.body = np.array([[p.x_c, p.z_c, p.pitch] for p in plan.poses], float)
+        self.joints = np.array([p.q for p in plan.poses], float)
+        self.progress = np.array([p.progress for p in plan.poses], float)
+        self.slack = 0.0
+        if scope == "motion" and len(plan.poses) > 1:
+            self._interpolate()
+        x, z, pitch = self.body.T
+        self.frames = kin.forward(self.robot, x, z, pitch, self.joints)
+        self.com = kin.com(self.robot, x, z, self.frames)
+
+    def _interpolate(self) -> None:
+        """Replace poses by samples of the motion; `slack` bounds what happens between samples."""
+        x, z, pitch = self.body.T
+        frames = kin.forward(self.robot, x, z, pitch, self.joints)
+        span = np.hypot(*self.robot.trunk.size[::2]) / 2
+        moved = [np.hypot(np.diff(x), np.diff(z)) + span * np.abs(np.diff(pitch))]
+        for points in (frames.hips, frames.knees, frames.wheels):
+            moved += [np.hypot(*np.diff(points[:, leg], axis=0).T) for leg in range(2)]
+        stride = np.max(moved, axis=0)
+        parts = np.maximum(1, np.ceil(stride / _STRIDE)).astype(int)
+        self.slack = float(0.5 * np.max(stride / parts))
+        at = np.concatenate(
+            [k + np.arange(n) / n for k, n in enumerate(parts)] + [[float(len(parts))]]
+        )
+        knots = np.arange(len(x), dtype=float)
+        self.body = np.stack([np.interp(at, knots, c) for c in self.body.T], axis=1)
+        self.joints = np.stack([np.interp(at, knots, c) for c in self.joints.T], axis=1)
+        self.progress = np.interp(at, knots, self.progress)
+
+    def run(self) -> Certificate:
+        """All checks in the order of a reader's interest."""
+        checks = [
+            *self._wheels(),
+            *self._clearances(),
+            self._least("gap between front and rear leg", self._legs_gap(), LEGS_GAP, "m"),
+            self._least("slack of the joint limits", self._limits(), 0.0, "rad"),
+            self._balance(),
+            *self._order(),
+        ]
+        return Certificate(passed=all(c.passed for c in checks), scope=self.scope, checks=checks)
+
+    def _least(self, name: str, values: Floats, bound: float, unit: str) -> Check:
+        k = int(np.argmin(values))
+        value = float(values[k])
+        return Check(
+            name=name, value=value, bound=bound, unit=unit, passed=bool(value >= bound - 1e-9),
+            progress=float(self.progress[k]),
+        )  # fmt: skip
+
+    def _most(self, name: str, values: Floats, bound: float, unit: str) -> Check:
+        check = self._least(name, -values, -bound, unit)
+        return check.model_copy(update={"value": -check.value, "bound": bound})
+
+    def _local(self, measure: Callable[[slice, shapely.Geometry], Floats]) -> Floats:
+        """Evaluate `measure` on chunks of samples, each with the terrain near it."""
+        reach = 1.0 + self.robot.thigh.length + self.robot.calf.length + self.robot.trunk.size[0]
+        x = self.vertices[:, 0]
+        out = []
+        for begin in range(0, len(self.body), _CHUNK):
+            chunk = slice(begin, begin + _CHUNK)
+            lo, hi = self.body[chunk, 0].min() - reach, self.body[chunk, 0].max() + reach
+            a = max(0, int(np.searchsorted(x, lo, side="left")) - 1)
+            b = min(len(x), int(np.searchsorted(x, hi, side="right")) + 1)
+            if b - a < 2:
+                a, b = max(0, min(a, len(x) - 2)), max(2, b)
+            line = shapely.linestrings(self.vertices[a:b])
+            shapely.prepare(line)
+            out.append(measure(chunk, line))
+        return np.concatenate(out)
+
+    def _above(self, points: Floats) -> NDArray[np.bool_]:
+        """Whether points (n, 2) lie above the ground; beyond the profile's ends there is none."""
+        from stairwright.terrain.profile import height_at
+
+        x = self.vertices[:, 0]
+        beyond = (points[:, 0] < x[0]) | (points[:, 0] > x[-1])
+        above: NDArray[np.bool_] = (points[:, 1] > height_at(self.vertices, points[:, 0])) | beyond
+        return above
+
+    def _wheels(self) -> list[Check]:
+        """Distance of the rims from the ground."""
+        gaps = []
+        for leg in range(2):
+            centre = self.frames.wheels[:, leg]
+
+            def measure(chunk: slice, line: shapely.Geometry, c: Floats = centre) -> Floats:
+                distance: Floats = shapely.distance(line, shapely.points(c[chunk]))
+                return distance
+
+            distance = self._local(measure)
+            distance = np.where(self._above(centre), distance, -distance)
+            gaps.append(distance - self.robot.wheel.radius)
+        high, low = np.max(gaps, axis=0), -np.min(gaps, axis=0)
+        return [
+            self._most("gap between wheels and ground", high, WHEEL_GAP, "m"),
+            self._most("wheels sunk into the ground", low, WHEEL_SINK, "m"),
+        ]
+
+    def _clearances(self) -> list[Check]:
+        """Distance of trunk and links from the ground, less what may happen between samples."""
+        size = np.array([self.robot.trunk.size[0], self.robot.trunk.size[2]]) / 2
+        corners = np.array([[1, 1], [1, -1], [-1, -1], [-1, 1], [1, 1]]) * size
+        box = self.body[:, None, :2] + kin.rotate(self.body[:, 2, None], corners)
+
+        def trunk(chunk: slice, line: shapely.Geometry) -> Floats:
+            distance: Floats = shapely.distance(line, shapely.polygons(box[chunk]))
+            return distance
+
+        clear = np.where(self._above(self.body[:, :2]), self._local(trunk), -1.0)
+        checks = [self._least("clearance of the trunk", clear - self.slack, 0.0, "m")]
+        worst = np.full(len(self.body), np.inf)
+        f = self.frames
+        for leg in range(2):
+            for a, b, link in (
+                (f.hips, f.knees, self.robot.thigh),
+                (f.knees, f.wheels, self.robot.calf),
+            ):
+                ends = np.stack([a[:, leg], b[:, leg]], axis=1)
+
+                def reach(chunk: slice, line: shapely.Geometry, e: Floats = ends) -> Floats:
+                    distance: Floats = shapely.distance(line, shapely.linestrings(e[chunk]))
+                    return distance
+
+                distance = np.where(self._above(ends[:, 0]), self._local(reach), -1.0)
+                worst = np.minimum(worst, distance - link.radius)
+        checks.append(self._least("clearance of the links", worst - self.slack, 0.0, "m"))
+        return checks
+
+    def _legs_gap(self) -> Floats:
+        """Least distance between the links and wheels of the front and the rear leg (n,)."""
+        f, robot = self.frames, self.robot
+        parts = []
+        for leg in range(2):
+            hip, knee, wheel = f.hips[:, leg], f.knees[:, leg], f.wheels[:, leg]
+            parts.append(
+                [
+                    (shapely.linestrings(np.stack([hip, knee], axis=1)), robot.thigh.radius),
+                    (shapely.linestrings(np.stack([knee, wheel], axis=1)), robot.calf.radius),
+                    (shapely.points(wheel), robot.wheel.radius),
+                ]
+            )
+        gaps = [shapely.distance(a, b) - ra - rb for a, ra in parts[0] for b, rb in parts[1]]
+        least: Floats = np.min(gaps, axis=0)
+        return least
+
+    def _limits(self) -> Floats:
+        """Least distance of the joints from their limits (n,) [rad]."""
+        limits = kin.limits(self.robot)
+        slack: Floats = np.minimum(self.joints - limits[:, 0], limits[:, 1] - self.joints).min(
+            axis=1
+        )
+        return slack
+
+    def _balance(self) -> Check:
+        """Whether forces inside the friction cones of all touching faces balance the weight."""
+        failed = np.zeros(len(self.body))
+        groups: dict[int, list[tuple[int, Floats]]] = {}
+        for k in range(len(self.body)):
+            rays = self._rays(k)
+            groups.setdefault(len(rays), []).append((k, rays))
+        for count, members in groups.items():
+            index = np.array([k for k, _ in members])
+            target = np.stack(
+                [np.zeros(len(index)), np.ones(len(index)), self.com[index, 0]], axis=1
+            )
+            # Moments about the CoM's neighbourhood keep the numbers small far from the origin.
+            rays = np.stack([r for _, r in members]) if count else np.zeros((len(index), 0, 3))
+            failed[index] = ~_in_cone(rays, target)
+        k = int(np.argmax(failed))
+        return Check(
+            name="samples out of balance", value=float(failed.sum()), bound=0.0, unit="1",
+            passed=not failed.any(), progress=float(self.progress[k]) if failed.any() else None,
+        )  # fmt: skip
+
+    def _rays(self, k: int) -> Floats:
+        """Edges (m, 3) of the friction cones at sample `k`: force x, force z, moment per weight."""
+        mu, radius = self.plan.friction, self.robot.wheel.radius
+        rays = []
+        for leg in range(2):
+            centre = self.frames.wheels[k, leg]
+            for point, normal in _touching(self.vertices, centre, radius + WHEEL_GAP):
+                for side in (mu, -mu):
+                    fx = normal[0] + side * normal[1]
+                    fz = normal[1] - side * normal[0]
+                    rays.append((fx, fz, point[0] * fz - point[1] * fx))
+        return np.array(rays, float).reshape(-1, 3)
+
+    def _order(self) -> list[Check]:
+        """Progress and time rise; joints do not jump between poses."""
+        poses = self.plan.poses
+        if len(poses) < 2 or self.scope == "poses":
+            return []
+        steps = np.diff([p.progress for p in poses])
+        q = np.array([p.q for p in poses])
+        checks = [
+            Check(
+                name="least step of progress", value=float(steps.min()), bound=0.0, unit="m",
+                passed=bool(steps.min() > 0.0),
+            ),
+            Check(
+                name="largest joint step", value=float(np.abs(np.diff(q, axis=0)).max()),
+                bound=_JOINT_STEP, unit="rad",
+                passed=bool(np.abs(np.diff(q, axis=0)).max() <= _JOINT_STEP),
+            ),
+        ]  # fmt: skip
+        return checks
+
+
+def _touching(vertices: Floats, centre: Floats, reach: float) -> list[tuple[Floats, Floats]]:
+    """Points of the profile within `reach` of a wheel centre, with normals; one per face."""
+    x = vertices[:, 0]
+    a = max(0, int(np.searchsorted(x, centre[0] - reach, side="left")) - 1)
+    b = min(len(x) - 1, int(np.searchsorted(x, centre[0] + reach, side="right")) + 1)
+    p, d = vertices[a:b], np.diff(vertices[a : b + 1], axis=0)
+    t = np.clip(np.sum((centre - p) * d, axis=1) / np.sum(d * d, axis=1), 0.0, 1.0)
+    near = p + t[:, None] * d
+    away = centre - near
+    distance = np.hypot(away[:, 0], away[:, 1])
+    found: list[tuple[Floats, Floats]] = []
+    for k in np.argsort(distance):
+        if distance[k] > reach or distance[k] < 1e-9:
+            break
+        normal = away[k] / distance[k]
+        if all(normal @ other < 0.9999 for _, other in found):
+            found.append((near[k], normal))
+    return found[:3]
+
+
+def _in_cone(rays: Floats, target: Floats) -> NDArray[np.bool_]:
+    """Whether `target` (n, 3) is a sum of `rays` (n, m, 3) with bounded non-negative factors.
+
+    By Caratheodory's theorem three rays are enough: every triple is solved by Cramer's rule.
+    """
+    inside = np.zeros(len(target), bool)
+    # Shift the moments' reference to the CoM: conditioning does not depend on the place.
+    shift = target[:, None, 2:3]
+    r = np.concatenate([rays[..., :2], rays[..., 2:] - shift * rays[..., 1:2]], axis=2)
+    b = np.stack([target[:, 0], target[:, 1], np.zeros(len(target))], axis=1)
+    for triple in combinations(range(rays.shape[1]), 3):
+        u, v, w = (r[:, k] for k in triple)
+        det = np.sum(u * np.cross(v, w), axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            factors = (
+                np.stack(
+                    [
+                        np.sum(b * np.cross(v, w), axis=1),
+                        np.sum(u * np.cross(b, w), axis=1),
+                        np.sum(u * np.cross(v, b), axis=1),
+                    ]
+                )
+                / det
+            )
+        fits = np.all((factors >= -1e-7) & (factors <= _STRONGEST), axis=0)
+        inside |= fits & (np.abs(det) > 1e-12)
+    return inside

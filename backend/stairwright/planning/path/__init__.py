@@ -1,0 +1,1 @@
+"""The dense certified path: lattice search, polish, timing (`method: path`)."""

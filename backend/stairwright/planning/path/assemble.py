@@ -1,0 +1,72 @@
+"""From nodes to the plan document."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...robot import kinematics as kin
+from ...robot.description import Robot
+from ...terrain.wheel_path import WheelPath
+from ..plan import Margins, Pose
+from ..weights import PathWeights
+from .course import CORNER, kink
+from .legs import COM_X, COM_Z
+from .refine import Refined
+from .timing import path_parameter, pose_times
+
+Floats = NDArray[np.float64]
+
+
+def make_poses(
+    path: WheelPath, robot: Robot, found: Refined, weights: PathWeights
+) -> tuple[list[Pose], list[int], float]:
+    """Poses, indices of the key poses, and the duration [s]."""
+    s, body, r = found.s, found.body, found.record
+    q = r.poses[:, :4]
+    time = pose_times(robot, s, body, q, r.com, weights.speed)
+    progress = path_parameter(s, body)
+    wheels = np.stack([path.centres(s[:, k]) for k in range(2)], axis=1)
+    contacts = np.stack([path.contacts(s[:, k]) for k in range(2)], axis=1)
+    points = kin.collision_points(robot, body[:, 0], body[:, 1], body[:, 2], q)
+    com = r.poses[:, [COM_X, COM_Z]]
+    margins = np.stack([r.clearance, r.com, r.friction - r.need, r.leg_limit - r.torque], axis=1)
+    columns = (
+        progress.tolist(), time.tolist(), body.tolist(), q.tolist(), wheels.tolist(), s.tolist(),
+        contacts.tolist(), com.tolist(), points.tolist(), r.forces.tolist(), margins.tolist(),
+    )  # fmt: skip
+    poses = [
+        # The values are ours: validating thousands of floats would cost more than planning them.
+        Pose.model_construct(
+            progress=u,
+            time=t,
+            x_c=b[0],
+            z_c=b[1],
+            pitch=b[2],
+            q=tuple(j),
+            wheels=(tuple(w[0]), tuple(w[1])),
+            wheel_progress=tuple(sw),
+            contacts=(tuple(c[0]), tuple(c[1])),
+            com=tuple(m),
+            collision_points=[tuple(v) for v in cp],
+            forces=(tuple(f[0]), tuple(f[1])),
+            margins=Margins.model_construct(clearance=g[0], com=g[1], friction=g[2], torque=g[3]),
+        )
+        for u, t, b, j, w, sw, c, m, cp, f, g in zip(*columns, strict=True)
+    ]
+    return poses, key_poses(path, s), float(time[-1])
+
+
+def key_poses(path: WheelPath, s: Floats) -> list[int]:
+    """Start, end, and where a wheel enters a concave corner or leaves a nosing."""
+    keys = {0, len(s) - 1}
+    marks = [float(c) for c in path.corners if kink(path, float(c)) > CORNER]
+    for piece in path.pieces:
+        if piece[0] == 1.0 and piece[2] / path.radius > 4 * CORNER:
+            marks.append(float(piece[1] + piece[2]))
+    for mark in marks:
+        for wheel in range(2):
+            column = s[:, wheel]
+            if column.min() < mark < column.max():
+                keys.add(int(np.argmax(column >= mark)))
+    return sorted(keys)

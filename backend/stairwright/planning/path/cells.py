@@ -1,0 +1,229 @@
+"""Cells of the search: pairs of wheel samples, each with a window of body poses and CoM intervals."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from ...robot.description import Planar
+from .contacts import lagged_interval, pair_interval
+from .ground import Ground
+from .legs import Leg, knee_point, leg_gap
+from .tables import INF, ROW, Bounds, Floats32, Lattice, LegTable
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+Bytes = NDArray[np.uint8]
+
+FULL_MARGIN = 0.06  # m; more CoM margin is no better
+RESERVED = 101  # quality from here on: equilibrium also at the reserved friction
+
+
+class Cells(NamedTuple):
+    """Pairs of wheel samples in lexicographic order.
+
+    Attributes:
+        front, rear: (n,) sample indices.
+        index: (samples, samples) cell number, -1 where there is none.
+        spans: (n, 6) CoM intervals at friction, at the reserve, with lag [m].
+        t0, z0, x0: (n,) lattice index of the window's corner.
+        slope: (n,) angle of the line from the rear to the front wheel, upward positive [rad].
+    """
+
+    front: Ints
+    rear: Ints
+    index: Ints
+    spans: Floats
+    t0: Ints
+    z0: Ints
+    x0: Ints
+    slope: Floats
+
+
+@nb.njit(cache=True)
+def build_cells(
+    pieces: Floats,
+    corners: Floats,
+    r: float,
+    s: Floats,
+    centres: Floats,
+    i0: int,
+    i1: int,
+    near: float,
+    far: float,
+    lat: Lattice,
+    friction: float,
+    reserve: float,
+    lag: float,
+    com: float,
+) -> Cells:
+    """All pairs of samples whose wheels are `near`..`far` apart and that can stand at all.
+
+    The front wheel runs from sample `i0` to `i1`.
+    """
+    n = len(s)
+    index = np.full((n, n), -1, np.int32)
+    front, rear = np.empty(n * n, np.int32), np.empty(n * n, np.int32)
+    k = 0
+    for i in range(i0, i1 + 1):
+        for j in range(i - 1, -1, -1):
+            gap = math.hypot(centres[i, 0] - centres[j, 0], centres[i, 1] - centres[j, 1])
+            if centres[i, 0] - centres[j, 0] > far:
+                break
+            if near <= gap <= far:
+                index[i, j] = 0
+        for j in range(i):
+            if index[i, j] == 0:
+                front[k], rear[k] = i, j
+                k += 1
+    spans = np.empty((k, 6))
+    t0, z0, x0 = np.empty(k, np.int32), np.empty(k, np.int32), np.empty(k, np.int32)
+    slope = np.empty(k)
+    m = 0
+    for c in range(k):
+        i, j = front[c], rear[c]
+        lo, hi = pair_interval(pieces, corners, r, s[i], s[j], friction)
+        if hi - lo < 2 * com:
+            index[i, j] = -1
+            continue
+        front[m], rear[m], index[i, j] = i, j, m
+        spans[m, 0], spans[m, 1] = lo, hi
+        spans[m, 2], spans[m, 3] = pair_interval(pieces, corners, r, s[i], s[j], reserve)
+        lo, hi = lagged_interval(pieces, corners, r, s[i], s[j], friction, lag)
+        if lo > hi:
+            lo = hi = 0.5 * (spans[m, 0] + spans[m, 1])
+        spans[m, 4], spans[m, 5] = lo, hi
+        slope[m] = math.atan2(centres[i, 1] - centres[j, 1], centres[i, 0] - centres[j, 0])
+        middle = int(round(-0.8 * slope[m] / lat.turn)) + lat.pitches // 2
+        t0[m] = min(lat.pitches - lat.nt, max(0, middle - lat.nt // 2))
+        x0[m] = int(round(0.5 * (centres[i, 0] + centres[j, 0]) / lat.step)) - lat.nx // 2
+        z0[m] = int(round(0.5 * (centres[i, 1] + centres[j, 1]) / lat.step)) + lat.low
+        m += 1
+    return Cells(
+        front[:m].copy(), rear[:m].copy(), index, spans[:m].copy(),
+        t0[:m].copy(), z0[:m].copy(), x0[:m].copy(), slope[:m].copy(),
+    )  # fmt: skip
+
+
+class World(NamedTuple):
+    """Everything that the kernels read."""
+
+    ground: Ground
+    robot: Planar
+    front: Leg
+    rear: Leg
+    centres: Floats
+    s: Floats
+    lat: Lattice
+    front_table: LegTable
+    rear_table: LegTable
+    trunk: Floats32  # (pitches, rows, columns)
+    trunk_x0: int
+    trunk_z0: int
+    legs_gap: float
+    com: float
+
+
+@nb.njit(cache=True)
+def columns(w: World, cells: Cells, c: int, t: int, z: int) -> tuple[int, int, int, int, int, int]:
+    """Rows of the two leg tables and of the trunk's for row (t, z) of cell `c`, and the shift of
+    their columns against the window's; the front row is -1 where the window leaves a table."""
+    i, j = cells.front[c], cells.rear[c]
+    tt, zz = cells.t0[c] + t, cells.z0[c] + z
+    fz, rz = zz - w.front_table.z0[i, tt], zz - w.rear_table.z0[j, tt]
+    tz = zz - w.trunk_z0
+    rows = w.front_table.cost.shape[2]
+    if fz < 0 or fz >= rows or rz < 0 or rz >= rows or tz < 0 or tz >= w.trunk.shape[1]:
+        return -1, 0, 0, 0, 0, 0
+    return (
+        fz, rz, tz,
+        cells.x0[c] - w.front_table.x0[i, tt],
+        cells.x0[c] - w.rear_table.x0[j, tt],
+        cells.x0[c] - w.trunk_x0,
+    )  # fmt: skip
+
+
+@nb.njit(cache=True, error_model="numpy")
+def quality(w: World, cells: Cells, c: int, out: Bytes) -> bool:
+    """Quality (nt, nz, ROW) of the poses of cell `c`: 0 impossible, more is safer.
+
+    Returns whether any pose is possible. Collisions between the legs are not looked at yet.
+    """
+    lat = w.lat
+    i, j = cells.front[c], cells.rear[c]
+    spans = cells.spans[c]
+    lo, hi = np.float32(spans[0]), np.float32(spans[1])
+    rlo, rhi = np.float32(spans[2]), np.float32(spans[3])
+    if rlo > rhi:
+        rlo, rhi = np.float32(1e6), np.float32(-1e6)
+    mass = np.float32(1.0 / w.robot.mass)
+    share = np.float32(w.robot.trunk_mass / w.robot.mass)
+    least = np.float32(w.com)
+    scale = np.float32(1.0 / FULL_MARGIN)
+    step = np.float32(lat.step)
+    one = np.float32(1.0)
+    found = False
+    out[:] = 0
+    for t in range(lat.nt):
+        tt = cells.t0[c] + t
+        for z in range(lat.nz):
+            fz, rz, tz, sf, sr, st = columns(w, cells, c, t, z)
+            if fz < 0:
+                continue
+            a = max(0, max(-sf, -sr))
+            b = min(lat.nx, min(ROW - sf, ROW - sr))
+            if b <= a:
+                continue
+            fc = w.front_table.cost[i, tt, fz]
+            fm = w.front_table.moment[i, tt, fz]
+            rc = w.rear_table.cost[j, tt, rz]
+            rm = w.rear_table.moment[j, tt, rz]
+            tc = w.trunk[tt, tz]
+            row = out[t, z]
+            x_first = np.float32(cells.x0[c] * lat.step)
+            some = np.uint8(0)
+            for x in range(a, b):
+                e = fc[x + sf] + rc[x + sr] + tc[x + st]
+                com = share * (x_first + np.float32(x) * step) + mass * (fm[x + sf] + rm[x + sr])
+                m = min(com - lo, hi - com)
+                mr = min(com - rlo, rhi - com)
+                base = np.float32(99.0) * min(one, m * scale) + one
+                more = np.float32(154.0) * min(one, mr * scale) + np.float32(RESERVED)
+                level = more if mr >= least else base
+                level = level if m >= least else np.float32(0.0)
+                level = level if e < INF else np.float32(0.0)
+                q = np.uint8(level)
+                row[x] = q
+                some = some | q
+            if some > 0:
+                found = True
+    return found
+
+
+@nb.njit(cache=True)
+def legs_clear(w: World, cells: Cells, c: int, t: int, z: int, x: int, points: Floats) -> bool:
+    """Whether front and rear leg keep their gap in one lattice pose; `points` (2, 3, 2) is scratch."""
+    p, lat = w.robot, w.lat
+    pitch = (cells.t0[c] + t - lat.pitches // 2) * lat.turn
+    cos, sin = math.cos(pitch), math.sin(pitch)
+    bx, bz = (cells.x0[c] + x) * lat.step, (cells.z0[c] + z) * lat.step
+    for k in range(2):
+        leg = w.front if k == 0 else w.rear
+        s = cells.front[c] if k == 0 else cells.rear[c]
+        hx, hz = bx + cos * leg.hip_x + sin * leg.hip_z, bz - sin * leg.hip_x + cos * leg.hip_z
+        wx, wz = w.centres[s, 0], w.centres[s, 1]
+        kx, kz = knee_point(wx - hx, wz - hz, p.thigh, p.calf, leg.knee)
+        points[k, 0, 0], points[k, 0, 1] = hx, hz
+        points[k, 1, 0], points[k, 1, 1] = hx + kx, hz + kz
+        points[k, 2, 0], points[k, 2, 1] = wx, wz
+    thick = max(p.wheel_radius, max(p.thigh_radius, p.calf_radius))
+    ahead = min(points[0, 0, 0], min(points[0, 1, 0], points[0, 2, 0]))
+    behind = max(points[1, 0, 0], max(points[1, 1, 0], points[1, 2, 0]))
+    if ahead - behind > 2 * thick + w.legs_gap:
+        return True
+    gap = leg_gap(points[0], points[1], p.thigh_radius, p.calf_radius, p.wheel_radius)
+    return gap >= w.legs_gap

@@ -1,0 +1,112 @@
+"""Which faces a wheel touches at an arc length, and the CoM intervals that follow from them."""
+
+from __future__ import annotations
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from ...statics.contact import com_interval
+from ...terrain.wheel_path import curve_at
+
+Floats = NDArray[np.float64]
+
+TOUCH = 0.0018  # m; a wheel this near to a concave corner (by arc length) touches both faces
+
+
+@nb.njit(cache=True)
+def wheel_contacts(
+    pieces: Floats, corners: Floats, r: float, s: float, points: Floats, normals: Floats, at: int
+) -> int:
+    """Write the contacts of a wheel at `s` from row `at` on; returns how many there are (1 or 2)."""
+    x, z, nx, nz = curve_at(pieces, r, s)
+    k = np.searchsorted(corners, s)
+    near = -1
+    if k < len(corners) and corners[k] - s <= TOUCH:
+        near = k
+    if k > 0 and s - corners[k - 1] <= TOUCH and (near < 0 or s - corners[k - 1] < corners[k] - s):
+        near = k - 1
+    if near < 0:
+        points[at, 0], points[at, 1] = x - r * nx, z - r * nz
+        normals[at, 0], normals[at, 1] = nx, nz
+        return 1
+    for m in range(2):
+        side = -1e-7 if m == 0 else 1e-7
+        cx, cz, cnx, cnz = curve_at(pieces, r, corners[near] + side)
+        points[at + m, 0], points[at + m, 1] = cx - r * cnx, cz - r * cnz
+        normals[at + m, 0], normals[at + m, 1] = cnx, cnz
+    return 2
+
+
+@nb.njit(cache=True)
+def pair_interval(
+    pieces: Floats, corners: Floats, r: float, sf: float, sr: float, friction: float
+) -> tuple[float, float]:
+    """CoM interval (low, high) with the front wheels at `sf` and the rear wheels at `sr` [m]."""
+    points, normals = np.empty((4, 2)), np.empty((4, 2))
+    n = wheel_contacts(pieces, corners, r, sf, points, normals, 0)
+    n += wheel_contacts(pieces, corners, r, sr, points, normals, n)
+    return com_interval(points, normals, n, friction)
+
+
+@nb.njit(cache=True)
+def lagged_interval(
+    pieces: Floats, corners: Floats, r: float, sf: float, sr: float, friction: float, lag: float
+) -> tuple[float, float]:
+    """CoM interval that also holds if either wheel is still `lag` behind its plan.
+
+    A wheel that arrives late at a corner pushes on the face behind it; plans that tolerate this are
+    what a controller can follow. Low > high where no CoM suits all cases.
+    """
+    low, high = -np.inf, np.inf
+    points, normals = np.empty((2, 2)), np.empty((2, 2))
+    for a in range(3):
+        sa = sf if a == 0 else (sf - lag if a == 1 else sf - 0.3 * lag)
+        xa, za, nax, naz = curve_at(pieces, r, sa)
+        xf, zf, _, _ = curve_at(pieces, r, sf)
+        for b in range(3):
+            sb = sr if b == 0 else (sr - lag if b == 1 else sr - 0.3 * lag)
+            xb, zb, nbx, nbz = curve_at(pieces, r, sb)
+            xr, zr, _, _ = curve_at(pieces, r, sr)
+            # The lagging wheel's normal at the planned centre: the direction decides.
+            points[0, 0], points[0, 1] = xf - r * nax, zf - r * naz
+            points[1, 0], points[1, 1] = xr - r * nbx, zr - r * nbz
+            normals[0, 0], normals[0, 1] = nax, naz
+            normals[1, 0], normals[1, 1] = nbx, nbz
+            lo, hi = com_interval(points, normals, 2, friction)
+            low, high = max(low, lo), min(high, hi)
+            if low > high:
+                return low, high
+    return low, high
+
+
+@nb.njit(cache=True)
+def path_intervals(
+    pieces: Floats,
+    corners: Floats,
+    r: float,
+    s: Floats,
+    friction: float,
+    reserve: float,
+    lag: float,
+    out: Floats,
+) -> None:
+    """Rows (6,): interval at `friction`, interval at `reserve`, interval with lag, per pair `s`.
+
+    Where one of the stricter two is empty the interval before it stands in.
+    """
+    for k in range(len(s)):
+        lo, hi = pair_interval(pieces, corners, r, s[k, 0], s[k, 1], friction)
+        if lo > hi:
+            xf, _, _, _ = curve_at(pieces, r, s[k, 0])
+            xr, _, _, _ = curve_at(pieces, r, s[k, 1])
+            lo, hi = 0.5 * (xf + xr) + 0.05, 0.5 * (xf + xr) - 0.05
+        out[k, 0], out[k, 1] = lo, hi
+        lo, hi = pair_interval(pieces, corners, r, s[k, 0], s[k, 1], reserve)
+        if lo > hi:
+            lo, hi = out[k, 0], out[k, 1]
+        out[k, 2], out[k, 3] = lo, hi
+        lo, hi = lagged_interval(pieces, corners, r, s[k, 0], s[k, 1], friction, lag)
+        if lo > hi:
+            lo, hi = out[k, 2], out[k, 3]
+        out[k, 4], out[k, 5] = lo, hi

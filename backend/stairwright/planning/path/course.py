@@ -1,0 +1,163 @@
+"""The course of one plan: where it starts and ends, and the wheel samples between."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...robot.description import Robot
+from ...terrain.profile import Terrain
+from ...terrain.wheel_path import WheelPath
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+CORNER = 0.15  # rad; concave corners with a smaller kink need no samples of their own
+_EDGE = 0.0015  # m; samples this near to a corner touch both faces
+_LEVEL = 0.01  # m; a stretch whose wheel centre stays within this height is level
+_SLOPE = 0.2  # rad; and nowhere steeper than this
+
+
+class NoStand(Exception):
+    """There is no place to stand: `kind` is start or goal, `needed` and `available` lengths [m]."""
+
+    def __init__(self, kind: str, s: float, needed: float, available: float, message: str) -> None:
+        super().__init__(message)
+        self.kind, self.s, self.needed, self.available = kind, s, needed, available
+
+
+@dataclass(frozen=True)
+class Stand:
+    """A resting pose: wheel arc lengths (front, rear) and trunk (x, z, pitch)."""
+
+    wheels: tuple[float, float]
+    body: Floats
+
+
+def scale(robot: Robot) -> float:
+    """Size of the robot's legs against those the lengths here were chosen with (0.4 m)."""
+    return (robot.thigh.length + robot.calf.length) / 0.4
+
+
+def stretches(path: WheelPath) -> tuple[float, float]:
+    """End of the first and begin of the last level stretch, as arc lengths [m]."""
+    s = np.unique(np.concatenate([path.pieces[:, 1], [path.length]]))
+    inner = np.concatenate([s[:-1] + 1e-7, s[1:] - 1e-7])
+    inner.sort()
+    z, n = path.centres(inner)[:, 1], path.normals(inner)
+    steep = np.abs(np.arctan2(n[:, 0], n[:, 1]))
+
+    def run(order: Ints) -> float:
+        level = (np.abs(z[order] - z[order[0]]) <= _LEVEL) & (steep[order] <= _SLOPE)
+        stop = len(order) if level.all() else int(np.argmin(level))
+        if stop < 2:  # a slope from the first point on: its own straight piece
+            stop = 2
+        return float(inner[order[stop - 1]])
+
+    count = np.arange(len(inner))
+    return run(count), run(count[::-1])
+
+
+def stand(path: WheelPath, robot: Robot, front: float, rear: float) -> Stand:
+    """The nominal pose over wheels at arc lengths `front`, `rear`: trunk along their line."""
+    a, b = path.centres(np.array([front, rear]))
+    slope = math.atan2(a[1] - b[1], a[0] - b[0])
+    # Wheels may stand on unequal heights; the trunk follows half of a slope, all of a small one.
+    pitch = -slope if abs(slope) < 0.35 else -0.8 * slope
+    up = np.array([math.sin(-pitch) * -1.0, math.cos(pitch)])
+    middle = (a + b) / 2 + (robot.nominal_height - robot.wheel.radius) * up
+    return Stand((front, rear), np.array([middle[0], middle[1], pitch]))
+
+
+def find_stands(terrain: Terrain, robot: Robot, path: WheelPath) -> tuple[Stand, Stand]:
+    """Start and goal of `terrain`.
+
+    Raises:
+        NoStand: If a stretch is too short for the robot, or start does not lie before goal.
+    """
+    first, last = stretches(path)
+    gap = robot.hips.front[0] - robot.hips.rear[0]
+    least = max(2 * robot.wheel.radius + 0.01, 0.6 * gap)
+    lead, tail = 0.25 * scale(robot), 0.15 * scale(robot)
+    edge = min(robot.wheel.radius, 0.05)
+    flat = first >= path.length - 1e-6
+
+    if terrain.start is not None:
+        begin = _at(path, robot, terrain.start, "start")
+    else:
+        front = edge + gap if flat else max(first - lead, min(first - 0.02, edge + gap))
+        rear = max(front - gap, min(edge, 0.5 * (first - least)))
+        if front - rear < least:
+            raise NoStand("start", first, least, first, "the first flat stretch is too short")
+        begin = stand(path, robot, front, rear)
+    if terrain.goal is not None:
+        end = _at(path, robot, terrain.goal, "goal")
+    else:
+        room = path.length - last
+        rear = (
+            path.length - edge - gap
+            if flat
+            else min(last + tail, max(last + 0.02, path.length - edge - gap))
+        )
+        front = min(rear + gap, max(path.length - edge, path.length - 0.5 * (room - least)))
+        if front - rear < least:
+            raise NoStand("goal", last, least, room, "the last flat stretch is too short")
+        end = stand(path, robot, front, rear)
+    if end.wheels[0] <= begin.wheels[0] or end.wheels[1] <= begin.wheels[1]:
+        raise NoStand(
+            "goal", end.wheels[0], begin.wheels[0], end.wheels[0], "the goal is not ahead"
+        )
+    return begin, end
+
+
+def _at(path: WheelPath, robot: Robot, x: float, kind: str) -> Stand:
+    """The stand whose trunk is at `x`."""
+    ahead, behind = x + robot.hips.front[0], x + robot.hips.rear[0]
+    x0, x1 = path.centres(np.array([0.0, path.length]))[:, 0]
+    if behind < x0 - 1e-9 or ahead > x1 + 1e-9:
+        side = x0 - behind if behind < x0 else ahead - x1
+        gap = ahead - behind
+        raise NoStand(
+            kind, path.at_x(min(max(x, x0), x1)), gap, gap - side, "a wheel leaves the profile"
+        )
+    return stand(path, robot, path.at_x(ahead), path.at_x(behind))
+
+
+def sample_course(path: WheelPath, begin: Stand, end: Stand, step: float, size: float) -> Floats:
+    """Arc lengths (n,) of the lattice's wheel positions, rising.
+
+    They are at most `step` apart; round every concave corner two touch both faces and two, a little
+    farther away, touch one: they force a pose that stands on one face alone.
+    """
+    s0, s1 = begin.wheels[1], end.wheels[0]
+    marks = [begin.wheels[0], begin.wheels[1], end.wheels[0], end.wheels[1]]
+    for corner in path.corners[(path.corners > s0) & (path.corners < s1)]:
+        if kink(path, float(corner)) > CORNER:
+            for offset in (-0.008 * size, -_EDGE, _EDGE, 0.008 * size):
+                marks.append(float(corner) + offset)
+    fixed = set(marks[:4])
+    kept: list[float] = []
+    for mark in sorted(m for m in marks if s0 <= m <= s1):
+        if kept and mark - kept[-1] < 5e-4:
+            if mark in fixed and kept[-1] not in fixed:
+                kept[-1] = mark
+            elif mark not in fixed or mark - kept[-1] < 1e-12:
+                continue
+            else:
+                kept.append(mark)
+        else:
+            kept.append(mark)
+    out: list[float] = []
+    for a, b in zip(kept[:-1], kept[1:], strict=True):
+        n = max(1, math.ceil((b - a) / step - 1e-6))
+        out.extend(a + (b - a) * k / n for k in range(n))
+    return np.array([*out, kept[-1]])
+
+
+def kink(path: WheelPath, corner: float) -> float:
+    """Angle between the two normals at a concave corner [rad]."""
+    a, b = path.normals(np.array([corner - 1e-7, corner + 1e-7]))
+    return math.atan2(a[0] * b[1] - a[1] * b[0], float(a @ b))

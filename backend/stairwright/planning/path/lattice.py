@@ -1,0 +1,253 @@
+"""One lattice problem from start to goal: tables, cells, and the way through them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...robot.description import Robot
+from ...terrain.wheel_path import WheelPath
+from ..weights import PathWeights
+from .cells import Cells, World, build_cells
+from .course import Stand, sample_course, scale
+from .ground import Ground
+from .legs import make_legs
+from .search import FORWARD, MOVES, cheapest, flood, trace
+from .tables import INF, ROW, Bounds, Lattice, LegTable, Pulls, hip_grid, on_lattice, trunk_grid
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+LAG = 0.02  # m; how late a wheel may arrive at a corner
+_SWEEPS = 12  # most sweeps when wheels may roll back
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What the search found.
+
+    Attributes:
+        s: (n, 2) arc lengths of front and rear wheel; None if there is no way.
+        body: (n, 3) trunk poses.
+        quality: Least quality on the widest way (0 without one).
+        reached: (2,) arc lengths of the pair farthest along that was reached, None if none was.
+        back: Whether wheels had to roll back.
+    """
+
+    s: Floats | None
+    body: Floats | None
+    quality: int
+    reached: tuple[float, float] | None
+    back: bool = False
+
+
+def make_lattice(robot: Robot, pitches: float, fine: float = 1.0) -> Lattice:
+    """A lattice for legs of this size; `fine` < 1 refines it, `pitches` is the largest pitch."""
+    legs = make_legs(robot.planar)
+    reach = max(leg.reach_max for leg in legs)
+    step = reach / 12.1 * fine
+    turn = 0.12 * fine
+    half = math.ceil(reach / (0.5 * step))
+    return Lattice(
+        step=step,
+        turn=turn,
+        pitches=2 * int(pitches / turn) + 1,
+        nt=2 * round(8 / fine) + 1,
+        nz=round(17 / fine),
+        nx=min(ROW - 4, 2 * round(13 / fine)),
+        low=-round(3 / fine),
+        half=half,
+    )
+
+
+class Search:
+    """A lattice between two stands. Tables are built once; friction and margins may change."""
+
+    def __init__(
+        self,
+        path: WheelPath,
+        ground: Ground,
+        robot: Robot,
+        begin: Stand,
+        end: Stand,
+        lattice: Lattice,
+        weights: PathWeights,
+        bounds: Bounds,
+    ) -> None:
+        self.path, self.robot, self.lattice, self.bounds = path, robot, lattice, bounds
+        self.begin, self.end, self.weights = begin, end, weights
+        p = robot.planar
+        self.planar = p
+        self.legs = make_legs(p)
+        size = scale(robot)
+        self.s = sample_course(path, begin, end, lattice.step, size)
+        self.centres = np.ascontiguousarray(path.centres(self.s))
+        self.pulls = Pulls(
+            weights.com_margin, weights.clearance, weights.torque, weights.smoothness, weights.pitch
+        )
+        front, rear = self.legs
+        self.rear_table = self._leg_table(ground, rear)
+        self.front_table = self._leg_table(ground, front)
+        self.ground = ground
+        self.far = 2 * max(leg.reach_max for leg in self.legs) + math.hypot(
+            front.hip_x - rear.hip_x, front.hip_z - rear.hip_z
+        )
+        self.near = 2 * p.wheel_radius + bounds.legs
+        self.trunk, self.trunk_x0, self.trunk_z0 = self._trunk_table()
+
+    def _leg_table(self, ground: Ground, leg: object) -> LegTable:
+        grid = hip_grid(
+            ground, self.planar, leg, self.centres, self.lattice, self.pulls, self.bounds
+        )
+        return on_lattice(grid, leg, self.centres, self.lattice, 0.02 + self.bounds.thigh)
+
+    def _trunk_table(self) -> tuple[NDArray[np.float32], int, int]:
+        lat, c = self.lattice, self.centres
+        x0 = math.floor(c[:, 0].min() / lat.step) - lat.nx // 2 - 2
+        x1 = math.ceil(c[:, 0].max() / lat.step) + lat.nx // 2 + 2
+        z0 = math.floor(c[:, 1].min() / lat.step) + lat.low - 2
+        z1 = math.ceil(c[:, 1].max() / lat.step) + lat.low + lat.nz + 2
+        used = np.zeros((z1 - z0 + 1, x1 - x0 + 1), np.bool_)
+        half = lat.nx // 2 + 2
+        # Every window lies round the mean of two wheels at most `far` apart.
+        step = max(1, len(c) // 400)
+        for i in range(0, len(c), step):
+            close = np.flatnonzero(np.abs(c[:, 0] - c[i, 0]) <= self.far)
+            mean = 0.5 * (c[close] + c[i])
+            a = int(mean[:, 0].min() / lat.step) - half - x0
+            b = int(mean[:, 0].max() / lat.step) + half - x0
+            d = int(mean[:, 1].min() / lat.step) + lat.low - 2 - z0
+            e = int(mean[:, 1].max() / lat.step) + lat.low + lat.nz + 2 - z0
+            used[max(0, d) : e + 1, max(0, a) : b + 1] = True
+        grid = trunk_grid(self.ground, self.planar, lat, self.pulls, self.bounds, used, x0, z0)
+        return grid, x0, z0
+
+    def find(self, friction: float, reserve: float, com: float, cheap: bool = True) -> Finding:
+        """The way from start to goal at `friction`, wide at the `reserve` friction if possible.
+
+        Args:
+            friction: Coulomb friction.
+            reserve: Lower friction that is kept where the terrain allows it.
+            com: Least CoM margin [m].
+            cheap: Also trace the smoothest way; otherwise only the verdict is given.
+        """
+        p, lat = self.planar, self.lattice
+        i0, j0 = self._index(self.begin)
+        i1, j1 = self._index(self.end)
+        cells = build_cells(
+            self.path.pieces, self.path.corners, p.wheel_radius, self.s, self.centres,
+            0, len(self.s) - 1, self.near, self.far, lat, friction, reserve, LAG, com,
+        )  # fmt: skip
+        source, goal = int(cells.index[i0, j0]), int(cells.index[i1, j1])
+        if source < 0 or goal < 0:
+            return Finding(None, None, 0, None)
+        w = self._world(com)
+        seed, target = self._seed(cells, source, self.begin), self._seed(cells, goal, self.end)
+        n = len(cells.front)
+        shape = (n, lat.nt, lat.nz, ROW)
+        qual, width = np.empty(shape, np.uint8), np.zeros(shape, np.uint8)
+        state, alive = np.zeros(n, np.uint8), np.zeros(n, np.bool_)
+        moves = FORWARD
+        flood(w, cells, source, seed, moves, False, qual, state, width, alive)
+        best, pose = self._best(width[goal], target)
+        if best == 0:
+            moves = len(MOVES)
+            for k in range(_SWEEPS):
+                if not flood(w, cells, source, seed, moves, False, qual, state, width, alive):
+                    break
+                best, pose = self._best(width[goal], target)
+                if best > 0 and k > 1:
+                    break
+        if best == 0:
+            return Finding(None, None, 0, self._farthest(cells, alive))
+        if not cheap:
+            return Finding(None, None, best, None, moves > FORWARD)
+        rest, alive_back = np.zeros(shape, np.uint8), np.zeros(n, np.bool_)
+        state[~alive] = 2
+        for _ in range(1 if moves == FORWARD else _SWEEPS):
+            if not flood(w, cells, goal, pose, moves, True, qual, state, rest, alive_back):
+                break
+        value = np.full(shape, INF, np.float32)
+        reached = np.zeros(n, np.bool_)
+        level = max(1, min(best, 150) if best > 100 else int(0.7 * best))
+        pulls = np.array(
+            [
+                self.weights.com_margin,
+                self.weights.pitch,
+                self.robot.nominal_height - p.wheel_radius,
+                0.09 * scale(self.robot),
+            ]
+        )
+        smooth = 0.25 * self.weights.smoothness
+        for _ in range(1 if moves == FORWARD else 2 * _SWEEPS):
+            if not cheapest(
+                w, cells, source, seed, moves, smooth, pulls, level, width, rest, value, reached,
+                False,
+            ):  # fmt: skip
+                break
+        rows = np.empty((4 * len(self.s) + 400, 5), np.int32)
+        last = self._cheapest_pose(value[goal], pose)
+        count = trace(w, cells, source, goal, last, moves, smooth, value, rows)
+        if count < 0:
+            return Finding(None, None, 0, self._farthest(cells, alive))
+        rows = rows[:count][::-1]
+        s = np.stack([self.s[rows[:, 0]], self.s[rows[:, 1]]], axis=1)
+        body = np.stack(
+            [rows[:, 4] * lat.step, rows[:, 3] * lat.step, rows[:, 2] * lat.turn], axis=1
+        )
+        return Finding(s, body, best, (float(s[-1, 0]), float(s[-1, 1])), moves > FORWARD)
+
+    def _world(self, com: float) -> World:
+        return World(
+            self.ground, self.planar, *self.legs, self.centres, self.s, self.lattice,
+            self.front_table, self.rear_table, self.trunk, self.trunk_x0, self.trunk_z0,
+            self.bounds.legs, com,
+        )  # fmt: skip
+
+    def _index(self, where: Stand) -> tuple[int, int]:
+        return (
+            int(np.argmin(np.abs(self.s - where.wheels[0]))),
+            int(np.argmin(np.abs(self.s - where.wheels[1]))),
+        )
+
+    def _seed(self, cells: Cells, c: int, where: Stand) -> Ints:
+        lat, body = self.lattice, where.body
+        seed = [
+            round(body[2] / lat.turn) + lat.pitches // 2 - cells.t0[c],
+            round(body[1] / lat.step) - cells.z0[c],
+            round(body[0] / lat.step) - cells.x0[c],
+        ]
+        sizes = (lat.nt, lat.nz, lat.nx)
+        return np.array(
+            [min(max(int(v), 0), n - 1) for v, n in zip(seed, sizes, strict=True)], np.int32
+        )
+
+    @staticmethod
+    def _near(volume: NDArray[np.generic], pose: Ints) -> tuple[slice, ...]:
+        return tuple(slice(max(0, int(v) - 2), int(v) + 3) for v in pose)
+
+    def _best(self, volume: NDArray[np.uint8], target: Ints) -> tuple[int, Ints]:
+        """Best quality near the resting pose `target` at the goal, and that pose."""
+        part = self._near(volume, target)
+        near = volume[part]
+        if near.size == 0 or near.max() == 0:
+            return 0, target
+        at = np.unravel_index(int(near.argmax()), near.shape)
+        pose = [int(k) + part[m].start for m, k in enumerate(at)]
+        return int(near.max()), np.array(pose, np.int32)
+
+    def _cheapest_pose(self, volume: NDArray[np.float32], pose: Ints) -> Ints:
+        part = self._near(volume, pose)
+        at = np.unravel_index(int(volume[part].argmin()), volume[part].shape)
+        return np.array([int(k) + part[m].start for m, k in enumerate(at)], np.int32)
+
+    def _farthest(self, cells: Cells, alive: NDArray[np.bool_]) -> tuple[float, float] | None:
+        found = np.flatnonzero(alive)
+        if len(found) == 0:
+            return None
+        sums = self.s[cells.front[found]] + self.s[cells.rear[found]]
+        c = found[int(np.argmax(sums))]
+        return float(self.s[cells.front[c]]), float(self.s[cells.rear[c]])

@@ -1,0 +1,169 @@
+"""Compiled closed-form kinematics of one pose, and everything that a pose is judged by."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from ...robot.description import Planar
+from .ground import Ground, box_clearance, link_clearance, point_segment, segment_gap
+
+Floats = NDArray[np.float64]
+
+
+class Leg(NamedTuple):
+    """One leg pair: hip in the trunk frame, knee side, thigh range and what the calf's range means
+    for the distance from hip to wheel centre."""
+
+    hip_x: float
+    hip_z: float
+    knee: float
+    thigh_min: float
+    thigh_max: float
+    reach_min: float
+    reach_max: float
+    calf_min: float
+    calf_max: float
+
+
+def make_legs(p: Planar) -> tuple[Leg, Leg]:
+    """Front and rear leg of a robot."""
+
+    def leg(hip_x: float, hip_z: float, knee: float, limits: tuple[float, ...]) -> Leg:
+        thigh_min, thigh_max, calf_min, calf_max = limits
+        bends = sorted((abs(calf_min), abs(calf_max)))
+        near, far = (
+            math.sqrt(max(0.0, p.thigh**2 + p.calf**2 + 2 * p.thigh * p.calf * math.cos(bend)))
+            for bend in (min(bends[1], math.pi), min(bends[0], math.pi))
+        )
+        return Leg(hip_x, hip_z, knee, thigh_min, thigh_max, near, far, calf_min, calf_max)
+
+    return (
+        leg(
+            p.hip_front_x,
+            p.hip_front_z,
+            p.knee_front,
+            (p.thigh_front_min, p.thigh_front_max, p.calf_front_min, p.calf_front_max),
+        ),
+        leg(
+            p.hip_rear_x,
+            p.hip_rear_z,
+            p.knee_rear,
+            (p.thigh_rear_min, p.thigh_rear_max, p.calf_rear_min, p.calf_rear_max),
+        ),
+    )
+
+
+@nb.njit(cache=True)
+def knee_point(dx: float, dz: float, thigh: float, calf: float, side: float) -> tuple[float, float]:
+    """Knee relative to the hip for a wheel at (dx, dz) from it; the reach is clamped."""
+    d = max(math.hypot(dx, dz), 1e-9)
+    ex, ez = dx / d, dz / d
+    a = (thigh * thigh - calf * calf + d * d) / (2.0 * d)
+    a = min(thigh, max(-thigh, a))
+    h = math.sqrt(max(0.0, thigh * thigh - a * a))
+    return a * ex - side * h * ez, a * ez + side * h * ex
+
+
+@nb.njit(cache=True)
+def thigh_joint(kx: float, kz: float, pitch: float, leg: Leg) -> float:
+    """Thigh joint angle for a knee at (kx, kz) from the hip, nearest to the middle of its range."""
+    middle = 0.5 * (leg.thigh_min + leg.thigh_max)
+    turn = math.atan2(-kx, -kz) - pitch - middle
+    return middle + turn - 2 * math.pi * math.floor((turn + math.pi) / (2 * math.pi))
+
+
+@nb.njit(cache=True)
+def calf_joint(dx: float, dz: float, thigh: float, calf: float, side: float) -> float:
+    """Calf joint angle for a wheel at (dx, dz) from the hip; the reach is clamped."""
+    c = (dx * dx + dz * dz - thigh * thigh - calf * calf) / (2.0 * thigh * calf)
+    return side * math.acos(min(1.0, max(-1.0, c)))
+
+
+@nb.njit(cache=True)
+def leg_gap(a: Floats, b: Floats, rt: float, rc: float, rw: float) -> float:
+    """Distance between two legs in one plane [m]: thighs, calves and wheels; negative if they touch.
+
+    `a` and `b` are (3, 2): hip, knee, wheel centre.
+    """
+    best = math.hypot(a[2, 0] - b[2, 0], a[2, 1] - b[2, 1]) - 2.0 * rw
+    for i in range(2):
+        ri = rt if i == 0 else rc
+        for j in range(2):
+            rj = rt if j == 0 else rc
+            gap = segment_gap(
+                a[i, 0], a[i, 1], a[i + 1, 0], a[i + 1, 1],
+                b[j, 0], b[j, 1], b[j + 1, 0], b[j + 1, 1],
+            )  # fmt: skip
+            best = min(best, gap - ri - rj)
+        to_b = point_segment(b[2, 0], b[2, 1], a[i, 0], a[i, 1], a[i + 1, 0], a[i + 1, 1])
+        to_a = point_segment(a[2, 0], a[2, 1], b[i, 0], b[i, 1], b[i + 1, 0], b[i + 1, 1])
+        best = min(best, math.sqrt(min(to_a, to_b)) - ri - rw)
+    return best
+
+
+# Columns of a pose's record.
+Q0, COM_X, COM_Z, TRUNK, LINKS, LEGS, SLACK, REACH = 0, 4, 5, 6, 7, 8, 9, 10
+RECORD = 11
+
+
+@nb.njit(cache=True)
+def evaluate(
+    g: Ground,
+    p: Planar,
+    front: Leg,
+    rear: Leg,
+    body: Floats,
+    wheels: Floats,
+    look: float,
+    points: Floats,
+    out: Floats,
+) -> None:
+    """Fill the record `out` (RECORD,) of one pose.
+
+    Joints (4), CoM x and z, clearance of the trunk and of the four links, gap between the legs,
+    least slack of the joint limits [rad], least slack of the hip-wheel distances [m].
+
+    Args:
+        g, p, front, rear: Terrain and robot.
+        body: (3,) trunk x, z, pitch.
+        wheels: (4,) front and rear wheel centre.
+        look: Clearances beyond this distance are not told apart [m].
+        points: (2, 3, 2) filled with hip, knee, wheel of the front and the rear leg.
+        out: The record.
+    """
+    c, s = math.cos(body[2]), math.sin(body[2])
+    mx, mz = p.trunk_mass * body[0], p.trunk_mass * body[1]
+    out[LINKS], out[SLACK], out[REACH] = look, np.inf, np.inf
+    for k in range(2):
+        leg = front if k == 0 else rear
+        hx = body[0] + c * leg.hip_x + s * leg.hip_z
+        hz = body[1] - s * leg.hip_x + c * leg.hip_z
+        wx, wz = wheels[2 * k], wheels[2 * k + 1]
+        kx, kz = knee_point(wx - hx, wz - hz, p.thigh, p.calf, leg.knee)
+        q1 = thigh_joint(kx, kz, body[2], leg)
+        q2 = calf_joint(wx - hx, wz - hz, p.thigh, p.calf, leg.knee)
+        kx, kz = kx + hx, kz + hz
+        points[k, 0, 0], points[k, 0, 1] = hx, hz
+        points[k, 1, 0], points[k, 1, 1] = kx, kz
+        points[k, 2, 0], points[k, 2, 1] = wx, wz
+        out[Q0 + 2 * k], out[Q0 + 2 * k + 1] = q1, q2
+        mx += p.thigh_mass * (hx + p.thigh_com * (kx - hx)) + p.wheel_mass * wx
+        mx += p.calf_mass * (kx + p.calf_com * (wx - kx))
+        mz += p.thigh_mass * (hz + p.thigh_com * (kz - hz)) + p.wheel_mass * wz
+        mz += p.calf_mass * (kz + p.calf_com * (wz - kz))
+        thigh = link_clearance(g, hx, hz, kx, kz, p.thigh_radius, look)
+        calf = link_clearance(g, kx, kz, wx, wz, p.calf_radius, look)
+        out[LINKS] = min(out[LINKS], min(thigh, calf))
+        slack = min(q1 - leg.thigh_min, leg.thigh_max - q1)
+        slack = min(slack, min(q2 - leg.calf_min, leg.calf_max - q2))
+        out[SLACK] = min(out[SLACK], slack)
+        d = math.hypot(wx - hx, wz - hz)
+        out[REACH] = min(out[REACH], min(d - leg.reach_min, leg.reach_max - d))
+    out[COM_X], out[COM_Z] = mx / p.mass, mz / p.mass
+    out[TRUNK] = box_clearance(g, body[0], body[1], c, s, p.half_length, p.half_height, look)
+    out[LEGS] = leg_gap(points[0], points[1], p.thigh_radius, p.calf_radius, p.wheel_radius)

@@ -1,0 +1,180 @@
+"""Polish: the body's poses along a fixed wheel path, by banded Gauss-Newton on hinge residuals."""
+
+from __future__ import annotations
+
+import math
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from ...robot.description import Planar
+from .ground import Ground
+from .legs import COM_X, LEGS, LINKS, REACH, RECORD, SLACK, TRUNK, Leg, evaluate
+
+Floats = NDArray[np.float64]
+
+TERMS = 13
+# Indices of `wish`: target values, then weights of the residuals.
+(
+    W_MARGIN, W_RESERVE, W_LAG, W_TRUNK, W_LINKS, W_LEGS, W_SLACK, W_REACH,
+    H_MARGIN, H_RESERVE, H_LAG, H_CLEAR, H_LEGS, H_SLACK, H_PITCH, H_HEIGHT, HEIGHT,
+) = range(17)  # fmt: skip
+WISHES = 17
+
+
+@nb.njit(cache=True)
+def _residuals(
+    record: Floats, body: Floats, wheels: Floats, spans: Floats, w: Floats, out: Floats
+) -> None:
+    x = record[COM_X]
+    for k in range(3):
+        target, weight = w[W_MARGIN + k], w[H_MARGIN + k]
+        # A narrow interval cannot give the target on both sides: aim at its middle.
+        target = min(target, 0.45 * max(0.0, spans[2 * k + 1] - spans[2 * k]))
+        out[2 * k] = max(0.0, target - (x - spans[2 * k])) * weight
+        out[2 * k + 1] = max(0.0, target - (spans[2 * k + 1] - x)) * weight
+    out[6] = max(0.0, w[W_TRUNK] - record[TRUNK]) * w[H_CLEAR]
+    out[7] = max(0.0, w[W_LINKS] - record[LINKS]) * w[H_CLEAR]
+    out[8] = max(0.0, w[W_LEGS] - record[LEGS]) * w[H_LEGS]
+    out[9] = max(0.0, w[W_SLACK] - record[SLACK]) * w[H_SLACK]
+    out[10] = max(0.0, w[W_REACH] - record[REACH]) * w[H_CLEAR]
+    slope = math.atan2(wheels[1] - wheels[3], wheels[0] - wheels[2])
+    out[11] = (body[2] + 0.8 * slope) * w[H_PITCH]
+    out[12] = (body[1] - 0.5 * (wheels[1] + wheels[3]) - w[HEIGHT]) * w[H_HEIGHT]
+
+
+@nb.njit(cache=True)
+def _solve_band(a: Floats, b: Floats, width: int) -> None:
+    """In-place banded Cholesky solve; a[i, k] = H[i, i - k]. The solution is left in `b`."""
+    n = len(b)
+    for i in range(n):
+        for j in range(max(0, i - width), i + 1):
+            v = a[i, i - j]
+            for k in range(max(0, i - width), j):
+                if j - k <= width:
+                    v -= a[i, i - k] * a[j, j - k]
+            if i == j:
+                a[i, 0] = math.sqrt(max(v, 1e-12))
+            else:
+                a[i, i - j] = v / a[j, 0]
+    for i in range(n):
+        v = b[i]
+        for k in range(max(0, i - width), i):
+            v -= a[i, i - k] * b[k]
+        b[i] = v / a[i, 0]
+    for i in range(n - 1, -1, -1):
+        v = b[i]
+        for k in range(i + 1, min(n, i + width + 1)):
+            v -= a[k, k - i] * b[k]
+        b[i] = v / a[i, 0]
+
+
+@nb.njit(cache=True)
+def polish(
+    g: Ground,
+    p: Planar,
+    front: Leg,
+    rear: Leg,
+    body: Floats,
+    wheels: Floats,
+    spans: Floats,
+    wish: Floats,
+    slow: float,
+    even: float,
+    turn: float,
+    fixed: NDArray[np.bool_],
+    rounds: int,
+    look: float,
+) -> float:
+    """Levenberg-Marquardt on trunk poses `body` (n, 3), changed in place; returns the cost left.
+
+    Args:
+        g, p, front, rear: Terrain and robot.
+        body: Trunk x, z, pitch per node.
+        wheels: (n, 4) wheel centres.
+        spans: (n, 6) CoM intervals: at friction, at the reserve, with lag.
+        wish: (WISHES,) targets and weights.
+        slow, even: Weights of first and second differences along the nodes.
+        turn: Length that one radian counts as in those differences [m].
+        fixed: (n,) nodes that must not move.
+        rounds: Most iterations.
+        look: Range of clearances looked at [m].
+    """
+    n = len(body)
+    unit = np.array([1.0, 1.0, turn])
+    second = np.array([1.0, -2.0, 1.0])
+    record, points = np.empty(RECORD), np.empty((2, 3, 2))
+    r, rp, jac = np.empty(TERMS), np.empty(TERMS), np.empty((TERMS, 3))
+    h, grad = np.zeros((3 * n, 7)), np.zeros(3 * n)
+    kept_h, kept_grad, best = h.copy(), grad.copy(), body.copy()
+    damping, least = 1e-3, np.inf
+    x = np.empty(3)
+    for _ in range(rounds):
+        h[:] = 0.0
+        grad[:] = 0.0
+        cost = 0.0
+        for k in range(n):
+            evaluate(g, p, front, rear, body[k], wheels[k], look, points, record)
+            _residuals(record, body[k], wheels[k], spans[k], wish, r)
+            for m in range(TERMS):
+                cost += r[m] * r[m]
+            for v in range(3):
+                x[:] = body[k]
+                x[v] += 1e-5
+                evaluate(g, p, front, rear, x, wheels[k], look, points, record)
+                _residuals(record, x, wheels[k], spans[k], wish, rp)
+                for m in range(TERMS):
+                    jac[m, v] = (rp[m] - r[m]) * 1e5
+            for a in range(3):
+                for m in range(TERMS):
+                    grad[3 * k + a] += jac[m, a] * r[m]
+                for b in range(a + 1):
+                    acc = 0.0
+                    for m in range(TERMS):
+                        acc += jac[m, a] * jac[m, b]
+                    h[3 * k + a, a - b] += acc
+        for a in range(3):
+            q = unit[a]
+            for k in range(1, n):
+                e = (body[k, a] - body[k - 1, a]) * q
+                cost += slow * e * e
+                grad[3 * k + a] += slow * q * e
+                grad[3 * (k - 1) + a] -= slow * q * e
+                h[3 * k + a, 0] += slow * q * q
+                h[3 * (k - 1) + a, 0] += slow * q * q
+                h[3 * k + a, 3] -= slow * q * q
+            for k in range(1, n - 1):
+                e = (body[k - 1, a] - 2.0 * body[k, a] + body[k + 1, a]) * q
+                cost += even * e * e
+                for u in range(3):
+                    grad[3 * (k - 1 + u) + a] += even * q * e * second[u]
+                    for v in range(u + 1):
+                        h[3 * (k - 1 + u) + a, 3 * (u - v)] += even * q * q * second[u] * second[v]
+        if cost < least * (1.0 - 1e-12):
+            settled = cost > least * (1.0 - 2e-3)
+            least = cost
+            best[:] = body
+            damping = max(damping * 0.4, 1e-6)
+            kept_h[:] = h
+            kept_grad[:] = grad
+            if settled:
+                break
+        else:
+            damping *= 6.0
+        if damping > 1e4:
+            break
+        h[:] = kept_h
+        grad[:] = kept_grad
+        for k in range(n):
+            for a in range(3):
+                i = 3 * k + a
+                h[i, 0] += damping * (1.0 + h[i, 0])
+                if fixed[k]:
+                    h[i, 0] += 1e12
+        _solve_band(h, grad, 6)
+        for k in range(n):
+            for a in range(3):
+                body[k, a] = best[k, a] - min(0.05, max(-0.05, grad[3 * k + a]))
+    body[:] = best
+    return least

@@ -1,0 +1,151 @@
+"""What every node of a path is worth: joints, margins, forces and torques."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from ...robot.description import Planar, Robot
+from ...statics.contact import GRAVITY, least_friction
+from ...statics.margin import com_margin, friction_needed, leg_torques
+from ...terrain.wheel_path import WheelPath, curve_at
+from .contacts import wheel_contacts
+from .ground import Ground
+from .legs import COM_X, LEGS, LINKS, RECORD, SLACK, TRUNK, Leg, evaluate
+
+Floats = NDArray[np.float64]
+
+LEGS_GAP = 0.005  # m; front and rear leg stay this far apart
+
+
+@dataclass(frozen=True)
+class Record:
+    """Arrays over the nodes of a path. SI units.
+
+    Attributes:
+        poses: (n, RECORD) see `legs.evaluate`.
+        com: (n,) CoM margin at the friction there is.
+        need: (n,) friction needed.
+        forces: (n, 2, 2) force of each wheel pair, tangential and normal [N].
+        torque: (n,) largest static leg joint torque [Nm].
+        wheel_torque: (n,) largest static wheel torque [Nm].
+        friction, leg_limit, wheel_limit: What there is.
+    """
+
+    poses: Floats
+    com: Floats
+    need: Floats
+    forces: Floats
+    torque: Floats
+    wheel_torque: Floats
+    friction: float
+    leg_limit: float
+    wheel_limit: float
+
+    @property
+    def clearance(self) -> Floats:
+        """(n,) least distance of trunk and links from the terrain [m]."""
+        return np.minimum(self.poses[:, TRUNK], self.poses[:, LINKS])
+
+    @property
+    def worst(self) -> float:
+        """Least of all margins, each against its bound, in comparable sizes; negative: violated."""
+        return float(
+            min(
+                self.clearance.min(),
+                (self.poses[:, LEGS] - LEGS_GAP).min(),
+                0.2 * self.poses[:, SLACK].min(),
+                self.com.min(),
+                (self.leg_limit - self.torque.max()) * 0.01,
+                (self.wheel_limit - self.wheel_torque.max()) * 0.01,
+            )
+        )
+
+    @property
+    def good(self) -> bool:
+        """Whether every bound is kept with a little to spare."""
+        return self.worst > 5e-4
+
+
+@nb.njit(cache=True)
+def _evaluate_path(
+    pieces: Floats,
+    corners: Floats,
+    g: Ground,
+    p: Planar,
+    front: Leg,
+    rear: Leg,
+    s: Floats,
+    body: Floats,
+    friction: float,
+    look: float,
+) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
+    n = len(s)
+    r = p.wheel_radius
+    poses, com, need = np.empty((n, RECORD)), np.empty(n), np.empty(n)
+    forces, torque, wheel_torque = np.zeros((n, 2, 2)), np.empty(n), np.empty(n)
+    points, wheels = np.empty((2, 3, 2)), np.empty(4)
+    at, normals = np.empty((4, 2)), np.empty((4, 2))
+    pair_at, pair_n, pair_f = np.empty((2, 2)), np.empty((2, 2)), np.empty((2, 2))
+    kept = np.zeros((2, 2))
+    weight = p.mass * GRAVITY
+    for k in range(n):
+        for m in range(2):
+            wheels[2 * m], wheels[2 * m + 1], _, _ = curve_at(pieces, r, s[k, m])
+        evaluate(g, p, front, rear, body[k], wheels, look, points, poses[k])
+        x = poses[k, COM_X]
+        a = wheel_contacts(pieces, corners, r, s[k, 0], at, normals, 0)
+        b = wheel_contacts(pieces, corners, r, s[k, 1], at, normals, a)
+        com[k] = com_margin(at, normals, a + b, friction, x)
+        need[k] = friction_needed(at, normals, a + b, x)
+        # Of the faces that a wheel touches take those with the least need; later faces first.
+        least = np.inf
+        for i in range(a - 1, -1, -1):
+            for j in range(b - 1, -1, -1):
+                pair_at[0], pair_at[1] = at[i], at[a + j]
+                pair_n[0], pair_n[1] = normals[i], normals[a + j]
+                mu = least_friction(pair_at, pair_n, x, pair_f)
+                if mu < least - 1e-9:
+                    least = mu
+                    kept[:] = pair_f
+                    ni, nj = i, a + j
+        if least < np.inf:
+            forces[k] = kept * weight
+        elif k > 0:
+            forces[k] = forces[k - 1]
+            ni, nj = 0, a
+        else:
+            forces[k, 0, 1] = forces[k, 1, 1] = 0.5 * weight
+            ni, nj = 0, a
+        torque[k] = 0.0
+        wheel_torque[k] = 0.0
+        for m in range(2):
+            nx, nz = (
+                (normals[ni, 0], normals[ni, 1]) if m == 0 else (normals[nj, 0], normals[nj, 1])
+            )
+            t, f = forces[k, m, 0], forces[k, m, 1]
+            fx, fz = t * nz + f * nx, -t * nx + f * nz
+            touch = at[ni] if m == 0 else at[nj]
+            thigh, calf = leg_torques(p, points[m, 0], points[m, 1], points[m, 2], touch, fx, fz)
+            torque[k] = max(torque[k], thigh, calf)
+            wheel_torque[k] = max(wheel_torque[k], 0.5 * abs(t) * r)
+    return poses, com, need, forces, torque, wheel_torque
+
+
+def evaluate_path(
+    path: WheelPath,
+    ground: Ground,
+    robot: Robot,
+    legs: tuple[Leg, Leg],
+    s: Floats,
+    body: Floats,
+    friction: float,
+    reserve: float,
+) -> Record:
+    """Judge the nodes `s` (n, 2), `body` (n, 3) of a path exactly."""
+    p = robot.planar
+    values = _evaluate_path(path.pieces, path.corners, ground, p, *legs, s, body, friction, 0.3)
+    return Record(*values, friction, p.leg_torque, p.wheel_torque)

@@ -1,0 +1,132 @@
+"""From lattice poses to the final nodes: resampling, smoothing, polish, dense nodes, records."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...robot.description import Robot
+from ...terrain.wheel_path import WheelPath
+from ..weights import PathWeights
+from . import polish as po
+from .contacts import path_intervals
+from .course import Stand, scale
+from .densify import densify
+from .ground import Ground
+from .lattice import LAG
+from .legs import Leg
+from .record import Record, evaluate_path
+
+Floats = NDArray[np.float64]
+
+_HOP = 0.006  # m of path per node
+_BODY_SHARE = 0.3  # body motion counts this much against wheel travel in a node's spacing
+_CLEAR = 0.016  # m; clearance that the polish aims at
+_TRIES = (1.0, 0.5, 0.15)  # smoothing of one attempt after the other
+
+
+@dataclass(frozen=True)
+class Refined:
+    """Final nodes: arc lengths (n, 2), trunk poses (n, 3), and what they are worth."""
+
+    s: Floats
+    body: Floats
+    record: Record
+
+
+def refine(
+    path: WheelPath,
+    ground: Ground,
+    robot: Robot,
+    legs: tuple[Leg, Leg],
+    stands: tuple[Stand, Stand],
+    s: Floats,
+    body: Floats,
+    friction: float,
+    reserve: float,
+    weights: PathWeights,
+) -> Refined:
+    """Turn lattice poses into dense, smooth ones; the smoothest attempt that keeps all bounds."""
+    best: Refined | None = None
+    body = body.copy()
+    s = s.copy()
+    for k in range(2):
+        body[-k] = stands[k].body
+    u = _spacing(s, body)
+    for soft in _TRIES:
+        n = max(40, int(u[-1] / (_HOP * scale(robot))))
+        even = np.linspace(0.0, u[-1], n)
+        hop = even[1]
+        nodes_s = np.stack([np.interp(even, u, s[:, k]) for k in range(2)], axis=1)
+        nodes_body = np.stack([np.interp(even, u, body[:, k]) for k in range(3)], axis=1)
+        nodes_s = _smooth(nodes_s, soft * 0.02 * scale(robot) / hop)
+        nodes_body = _smooth(nodes_body, soft * 0.05 * scale(robot) / hop)
+        if (np.diff(s, axis=0) >= 0).all():
+            nodes_s = np.maximum.accumulate(nodes_s, axis=0)
+        for k in range(2):
+            nodes_s[-k], nodes_body[-k] = stands[k].wheels, stands[k].body
+        nodes_body = np.ascontiguousarray(nodes_body)
+        spans = np.empty((n, 6))
+        p = robot.planar
+        path_intervals(
+            path.pieces, path.corners, p.wheel_radius, nodes_s, friction, reserve, LAG, spans
+        )
+        wheels = np.concatenate([path.centres(nodes_s[:, k]) for k in range(2)], axis=1)
+        fixed = np.zeros(n, np.bool_)
+        fixed[0] = fixed[-1] = True
+        share = hop / 0.015
+        po.polish(
+            ground, p, *legs, nodes_body, wheels, spans, _wishes(robot, weights, share),
+            20.0 * weights.smoothness / share, 600.0 * soft * weights.smoothness / share**3,
+            0.25 * scale(robot), fixed, 40, 0.06 * scale(robot),
+        )  # fmt: skip
+        dense_s, dense_body = densify(path.pieces, path.corners, p, legs, nodes_s, nodes_body)
+        record = evaluate_path(path, ground, robot, legs, dense_s, dense_body, friction, reserve)
+        found = Refined(dense_s, dense_body, record)
+        if best is None or record.worst > best.record.worst:
+            best = found
+        if record.good:
+            break
+    assert best is not None
+    return best
+
+
+def _spacing(s: Floats, body: Floats) -> Floats:
+    """Path parameter (n,) of lattice poses: wheel travel and some of the body's motion."""
+    rolled = 0.5 * np.abs(np.diff(s, axis=0)).sum(axis=1)
+    moved = np.hypot(np.diff(body[:, 0]), np.diff(body[:, 1])) + 0.25 * np.abs(np.diff(body[:, 2]))
+    return np.concatenate([[0.0], np.cumsum(np.hypot(rolled, _BODY_SHARE * moved) + 1e-9)])
+
+
+def _smooth(a: Floats, sigma: float) -> Floats:
+    """Gaussian smoothing along axis 0 with point-mirrored ends, which stay in place."""
+    if sigma < 0.3:
+        return a
+    k = min(int(4 * sigma) + 1, len(a) - 1)
+    before, after = 2 * a[0] - a[k:0:-1], 2 * a[-1] - a[-2 : -k - 2 : -1]
+    w = np.exp(-0.5 * (np.arange(-k, k + 1) / sigma) ** 2)
+    w /= w.sum()
+    padded = np.vstack([before, a, after])
+    return np.stack([np.convolve(padded[:, i], w, "valid") for i in range(a.shape[1])], axis=1)
+
+
+def _wishes(robot: Robot, weights: PathWeights, share: float) -> Floats:
+    """Targets and weights of the polish; `share` scales weights with the nodes' spacing."""
+    size = scale(robot)
+    wish = np.zeros(po.WISHES)
+    wish[po.W_MARGIN], wish[po.W_RESERVE], wish[po.W_LAG] = 0.02, 0.02 * size, 0.06 * size
+    wish[po.W_TRUNK] = wish[po.W_LINKS] = _CLEAR
+    wish[po.W_LEGS], wish[po.W_SLACK], wish[po.W_REACH] = 0.012, 0.05, 0.006 * size
+    root = share**0.5
+    wish[po.H_MARGIN] = 60.0 * root
+    wish[po.H_RESERVE] = 30.0 * root * weights.com_margin**0.5
+    wish[po.H_LAG] = 15.0 * root * weights.com_margin**0.5
+    wish[po.H_CLEAR] = 150.0 * root * weights.clearance**0.5
+    wish[po.H_LEGS] = 60.0 * root
+    wish[po.H_SLACK] = 30.0 * root
+    wish[po.H_PITCH] = 0.05 * root * weights.pitch**0.5
+    wish[po.H_HEIGHT] = 0.3 * root
+    wish[po.HEIGHT] = robot.nominal_height - robot.wheel.radius
+    return wish

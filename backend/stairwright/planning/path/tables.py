@@ -1,0 +1,212 @@
+"""Tables of the lattice search: what a leg or the trunk costs at each place, or that it cannot be.
+
+A leg's cost depends on where the hip lies relative to the wheel and on the terrain there, so it is
+computed once per wheel sample on a hip grid, then read onto the body lattice for every pitch: a
+pose of the search costs one read per leg and one for the trunk.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from ...robot.description import Planar
+from .ground import Ground, box_clearance, link_clearance
+from .legs import Leg, knee_point
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Ints = NDArray[np.int32]
+
+INF = np.float32(1e9)
+ROW = 32  # lattice columns stored per row: whole vector registers
+
+
+class Lattice(NamedTuple):
+    """The body lattice: x = i * step, z = j * step, pitch = (t - pitches // 2) * turn."""
+
+    step: float  # m
+    turn: float  # rad
+    pitches: int  # of the whole table
+    nt: int  # pitches of one cell's window
+    nz: int  # rows of one cell's window
+    nx: int  # columns of one cell's window, at most ROW
+    low: int  # first row of a window, relative to the mean wheel height
+    half: int  # the hip grid spans -half..half of step / 2 round the wheel
+
+
+class Pulls(NamedTuple):
+    """Cost weights of the search, from the user's weights."""
+
+    com: float
+    clearance: float
+    torque: float
+    smooth: float
+    pitch: float
+
+
+class Bounds(NamedTuple):
+    """Bounds that every lattice pose keeps. The obstruction search relaxes one at a time."""
+
+    trunk: float  # least clearance of the trunk [m]
+    links: float  # least clearance of the links [m]
+    legs: float  # least gap between front and rear leg [m]
+    reach: float  # slack of the hip-wheel distance; negative widens the calf's range [m]
+    thigh: float  # slack of the thigh joints; negative widens their range [rad]
+    com: float  # least CoM margin [m]
+
+
+class LegTable(NamedTuple):
+    """Per wheel sample, pitch, row, column: cost (INF: impossible), CoM moment [kg m]; the lattice
+    index of the first column and row."""
+
+    cost: Floats32
+    moment: Floats32
+    x0: Ints
+    z0: Ints
+
+
+@nb.njit(cache=True)
+def hip_grid(
+    g: Ground, p: Planar, leg: Leg, centres: Floats, lat: Lattice, pulls: Pulls, b: Bounds
+) -> tuple[Floats32, Floats32, Floats32]:
+    """Cost, moment and world thigh angle per wheel sample and hip position, split by parity.
+
+    Arrays are (n, 2, 2, m, m): sample, parity of row and column, row // 2, column // 2, so that the
+    body lattice (every second hip position) reads neighbours in memory.
+    """
+    n, size = len(centres), 2 * lat.half + 1
+    m = size // 2 + 1
+    fine = 0.5 * lat.step
+    cost = np.full((n, 2, 2, m, m), INF, np.float32)
+    moment = np.zeros((n, 2, 2, m, m), np.float32)
+    angle = np.zeros((n, 2, 2, m, m), np.float32)
+    near, far = leg.reach_min + b.reach, leg.reach_max - b.reach
+    far = min(far, 0.9995 * (p.thigh + p.calf))
+    span = leg.reach_max - leg.reach_min
+    soft = 0.15 * (p.thigh + p.calf) / 2.0
+    load = p.mass * 9.81 / 4.0 / p.leg_torque
+    for i in range(n):
+        wx, wz = centres[i, 0], centres[i, 1]
+        for v in range(size):
+            dz = (v - lat.half) * fine
+            for u in range(size):
+                dx = (u - lat.half) * fine
+                d = math.hypot(dx, dz)
+                if d < near or d > far:
+                    continue
+                hx, hz = wx + dx, wz + dz
+                ax, az = knee_point(-dx, -dz, p.thigh, p.calf, leg.knee)
+                kx, kz = hx + ax, hz + az
+                c = link_clearance(g, hx, hz, kx, kz, p.thigh_radius, soft)
+                if c < b.links:
+                    continue
+                c = min(c, link_clearance(g, kx, kz, wx, wz, p.calf_radius, soft))
+                if c < b.links:
+                    continue
+                e = max(0.0, soft - c) / soft
+                f = max(0.0, leg.reach_min + 0.1 * span - d) + max(
+                    0.0, d - leg.reach_max + 0.1 * span
+                )
+                f /= 0.1 * span
+                tau = load * load * ((wx - kx) ** 2 + dx * dx)
+                at = (i, v % 2, u % 2, v // 2, u // 2)
+                cost[at] = pulls.clearance * 0.25 * e * e + 0.2 * f * f + pulls.torque * tau
+                angle[at] = math.atan2(-ax, -az)
+                moment[at] = p.thigh_mass * (hx + p.thigh_com * ax) + p.wheel_mass * wx
+                moment[at] += p.calf_mass * (kx + p.calf_com * (wx - kx))
+    return cost, moment, angle
+
+
+@nb.njit(cache=True, error_model="numpy")
+def on_lattice(
+    grid: tuple[Floats32, Floats32, Floats32],
+    leg: Leg,
+    centres: Floats,
+    lat: Lattice,
+    slack: float,
+) -> LegTable:
+    """Read a hip grid onto the body lattice for every pitch; thigh limits are applied here."""
+    cost, moment, angle = grid
+    n, m = len(centres), cost.shape[3]
+    fine = 0.5 * lat.step
+    out = np.full((n, lat.pitches, m, ROW), INF, np.float32)
+    mom = np.zeros((n, lat.pitches, m, ROW), np.float32)
+    x0, z0 = np.empty((n, lat.pitches), np.int32), np.empty((n, lat.pitches), np.int32)
+    middle = np.float32(0.5 * (leg.thigh_min + leg.thigh_max))
+    half_range = np.float32(0.5 * (leg.thigh_max - leg.thigh_min) - slack)
+    turn_over, full = np.float32(math.pi), np.float32(2 * math.pi)
+    soft = np.float32(0.15)
+    zero, one, weight = np.float32(0.0), np.float32(1.0), np.float32(0.2)
+    for i in range(n):
+        for t in range(lat.pitches):
+            pitch = (t - lat.pitches // 2) * lat.turn
+            c, s = math.cos(pitch), math.sin(pitch)
+            # Hip = body + (ox, oz); first lattice point whose hip lies on the grid.
+            ox, oz = c * leg.hip_x + s * leg.hip_z, -s * leg.hip_x + c * leg.hip_z
+            bx = math.ceil((centres[i, 0] - lat.half * fine - ox) / lat.step)
+            bz = math.ceil((centres[i, 1] - lat.half * fine - oz) / lat.step)
+            u = int(round((bx * lat.step + ox - centres[i, 0]) / fine)) + lat.half
+            v = int(round((bz * lat.step + oz - centres[i, 1]) / fine)) + lat.half
+            x0[i, t], z0[i, t] = bx, bz
+            shift = np.float32(pitch) + middle
+            for j in range(m - v // 2):
+                src = cost[i, v % 2, u % 2, v // 2 + j]
+                ang = angle[i, v % 2, u % 2, v // 2 + j]
+                mos = moment[i, v % 2, u % 2, v // 2 + j]
+                for k in range(min(ROW, m - u // 2)):
+                    w = ang[k + u // 2] - shift
+                    w = w - full * np.floor((w + turn_over) / full)
+                    room = half_range - abs(w)
+                    e = max(zero, soft - room) / soft
+                    value = src[k + u // 2] + weight * e * e
+                    out[i, t, j, k] = value if room >= zero else INF
+                    mom[i, t, j, k] = mos[k + u // 2]
+    return LegTable(out, mom, x0, z0)
+
+
+@nb.njit(cache=True)
+def trunk_grid(
+    g: Ground,
+    p: Planar,
+    lat: Lattice,
+    pulls: Pulls,
+    b: Bounds,
+    used: NDArray[np.bool_],
+    x0: int,
+    z0: int,
+) -> Floats32:
+    """Cost (pitches, rows, columns) of the trunk at lattice points (z0 + j, x0 + i), where `used`.
+
+    `used` (rows, columns) marks points that some cell's window covers; the others stay INF.
+    """
+    nz, nx = used.shape
+    out = np.full((lat.pitches, nz, nx + ROW), INF, np.float32)
+    soft = 0.15 * (p.thigh + p.calf) / 2.0
+    radius = math.hypot(p.half_length, p.half_height)
+    for j in range(nz):
+        z = (z0 + j) * lat.step
+        for i in range(nx):
+            if not used[j, i]:
+                continue
+            x = (x0 + i) * lat.step
+            # One look at the centre settles most points for all pitches.
+            far = link_clearance(g, x, z, x, z, 0.0, radius + soft)
+            if far < min(p.half_height, p.half_length) + b.trunk:
+                continue
+            for t in range(lat.pitches):
+                c = soft
+                if far < radius + soft:
+                    pitch = (t - lat.pitches // 2) * lat.turn
+                    c = box_clearance(
+                        g, x, z, math.cos(pitch), math.sin(pitch), p.half_length, p.half_height,
+                        soft,
+                    )  # fmt: skip
+                if c >= b.trunk:
+                    e = max(0.0, soft - c) / soft
+                    out[t, j, i] = pulls.clearance * 0.5 * e * e
+    return out

@@ -1,0 +1,65 @@
+"""Margins of a pose against tipping and slipping, and static joint torques."""
+
+from __future__ import annotations
+
+import math
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from ..robot.description import Planar
+from .contact import GRAVITY, com_interval
+
+Floats = NDArray[np.float64]
+
+
+@nb.njit(cache=True)
+def com_margin(points: Floats, normals: Floats, count: int, friction: float, com_x: float) -> float:
+    """How far the CoM may shift in x, the smaller way, with equilibrium [m]; negative outside."""
+    low, high = com_interval(points, normals, count, friction)
+    if low > high:
+        return -np.inf
+    return min(com_x - low, high - com_x)
+
+
+@nb.njit(cache=True)
+def friction_needed(points: Floats, normals: Floats, count: int, com_x: float) -> float:
+    """Least friction with which any number of contacts hold a CoM at `com_x`; inf if none does."""
+    lo, hi = 0.0, 1.0
+    while com_margin(points, normals, count, hi, com_x) < 0.0:
+        lo, hi = hi, 2.0 * hi
+        if hi > 1e3:
+            return np.inf
+    for _ in range(24):
+        mid = 0.5 * (lo + hi)
+        if com_margin(points, normals, count, mid, com_x) >= 0.0:
+            hi = mid
+        else:
+            lo = mid
+    return hi
+
+
+@nb.njit(cache=True)
+def leg_torques(
+    robot: Planar, hip: Floats, knee: Floats, wheel: Floats, contact: Floats, fx: float, fz: float
+) -> tuple[float, float]:
+    """Static torque of thigh and calf [Nm], of one leg of the pair that carries (fx, fz).
+
+    Args:
+        robot: Planar robot; its link masses are those of a leg pair.
+        hip, knee, wheel: (2,) positions in the world [m].
+        contact: (2,) where the ground pushes [m]. The wheel's motor sits in the calf, so for the
+            leg's joints the wheel is one body with it.
+        fx, fz: Ground force on the wheels of the pair [N].
+    """
+    g = GRAVITY
+    # About +y the moment of (fx, fz) at r is z fx - x fz; the joint must balance everything below.
+    cx = knee[0] + robot.calf_com * (wheel[0] - knee[0])
+    tx = hip[0] + robot.thigh_com * (knee[0] - hip[0])
+    calf = (contact[1] - knee[1]) * fx - (contact[0] - knee[0]) * fz
+    calf += (cx - knee[0]) * robot.calf_mass * g + (wheel[0] - knee[0]) * robot.wheel_mass * g
+    thigh = (contact[1] - hip[1]) * fx - (contact[0] - hip[0]) * fz
+    thigh += (tx - hip[0]) * robot.thigh_mass * g + (cx - hip[0]) * robot.calf_mass * g
+    thigh += (wheel[0] - hip[0]) * robot.wheel_mass * g
+    return 0.5 * math.fabs(thigh), 0.5 * math.fabs(calf)
