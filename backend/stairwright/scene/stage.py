@@ -1,0 +1,472 @@
+"""What stands in the scene: terrain, robot, ghosts, paths, forces, margins and the problem."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.errors import InputError
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
+
+from . import shapes
+from .bodies import Bodies, place
+from .clearance import clearance, nearest
+from .motion import Moment, Motion
+from .palette import DARK, Palette, deep
+from .robot_nodes import RobotNodes, part_colours
+
+Floats = NDArray[np.float64]
+
+LAYERS = {
+    "terrain": True,
+    "grid": True,
+    "robot": True,
+    "ghosts": True,
+    "collision_points": True,
+    "wheel_path": True,
+    "com_path": True,
+    "com": True,
+    "support": True,
+    "forces": True,
+    "problem": True,
+}
+HALF_WIDTH = 0.5  # m, of the extruded terrain
+DEPTH = 0.25  # m, of solid below its lowest point
+MAX_GHOSTS = 12
+METRES_PER_NEWTON = 0.003
+# Of the light that casts shadows, from the trunk [m]. Near: the client's shadow camera starts at
+# 1 mm, so its depth resolution fades with the square of the distance.
+_SPOT = np.array([-0.25, -0.35, 1.25])
+
+
+def check_layers(layers: Mapping[str, Any]) -> dict[str, bool]:
+    """Layer names and whether they are shown.
+
+    Raises:
+        InputError: For an unknown name or a value that is not a truth value.
+    """
+    for name, shown in layers.items():
+        if name not in LAYERS:
+            raise InputError(f"unknown layer; there are: {', '.join(LAYERS)}", ("layers", name))
+        if not isinstance(shown, bool):
+            raise InputError("must be true or false", ("layers", name))
+    return dict(layers)
+
+
+class Stage:
+    """Draws into one viser scene. Not thread-safe: the session holds the lock.
+
+    Node names are fixed, so that drawing again replaces; unique names would leave tombstones.
+    """
+
+    def __init__(self, scene: Any) -> None:
+        self._scene = scene
+        self.colours: Palette = DARK
+        self.layers = dict(LAYERS)
+        self._terrain: Terrain | None = None
+        self._robot: Robot | None = None
+        self._nodes: RobotNodes | None = None
+        self._ghosts: RobotNodes | None = None
+        self._handles: dict[str, tuple[str, Any]] = {}  # node -> (layer, handle)
+        self._margins: tuple[Floats, Floats] | None = None  # time, CoM margin
+        self._problem: Mapping[str, Any] | None = None
+        self._problem_from = np.inf
+        self.draw_lights()
+        self.draw_grid()
+
+    # --- what rarely changes -------------------------------------------------------------------
+
+    def draw_lights(self) -> None:
+        """A spot that follows the robot and casts its shadow, and unshadowed light from all sides.
+
+        viser's default light casts cascaded shadows whose borders show on large plain faces.
+        """
+        dark = self.colours.theme == "dark"
+        self._scene.configure_default_lights(enabled=False)
+        self._scene.configure_environment_map(
+            "studio", environment_intensity=0.12 if dark else 0.30
+        )
+        for name, position, strength in (
+            ("key", (-1.0, -1.2, 4.0), 1.0 if dark else 1.5),
+            ("fill", (-3.0, -4.0, 1.6), 0.8 if dark else 1.1),
+            ("rim", (4.0, 3.0, 1.0), 0.3 if dark else 0.5),
+        ):
+            self._scene.add_light_directional(
+                f"/lights/{name}", intensity=strength, position=position, cast_shadow=False
+            )
+        self._spot = self._scene.add_light_spot(
+            "/lights/spot",
+            intensity=1.3 if dark else 1.6,
+            angle=1.0,
+            penumbra=1.0,
+            decay=0.0,
+            cast_shadow=True,
+            position=tuple(_SPOT),
+            direction=tuple(-_SPOT),
+        )
+
+    def draw_grid(self) -> None:
+        """The floor grid, below the terrain."""
+        c = self.colours
+        floor = 0.0
+        if self._terrain is not None:
+            floor = float(self._terrain.vertices[:, 1].min()) - DEPTH
+        centre = 0.0 if self._terrain is None else float(self._terrain.vertices[:, 0].mean())
+        self._keep(
+            "grid",
+            "/grid",
+            self._scene.add_grid(
+                "/grid",
+                width=24.0,
+                height=24.0,
+                cell_size=0.25,
+                section_size=1.0,
+                cell_color=c.grid_cell,
+                section_color=c.grid_section,
+                cell_thickness=0.8,
+                section_thickness=1.0,
+                fade_distance=9.0,
+                fade_strength=1.6,
+                shadow_opacity=0.18,
+                position=(centre, 0.0, floor),
+                visible=self.layers["grid"],
+            ),
+        )
+
+    def draw_terrain(self, terrain: Terrain | None, friction: float | None = None) -> None:
+        """The extruded profile, its faces tinted by friction; None clears it."""
+        self._terrain = terrain
+        if terrain is None:
+            self._drop("terrain")
+            self.draw_grid()
+            return
+        solid = shapes.extrude(terrain.vertices, HALF_WIDTH, DEPTH)
+        tints = self.colours.terrain(terrain.friction if friction is None else friction)
+        for name, mesh, tint in zip(("treads", "risers", "flanks"), solid[:3], tints, strict=True):
+            node = f"/terrain/{name}"
+            handle = self._scene.add_mesh_simple(
+                node,
+                mesh.vertices,
+                mesh.faces,
+                color=tint,
+                flat_shading=True,
+                side="double",
+                visible=self.layers["terrain"],
+            )
+            self._keep("terrain", node, handle)
+        self._lines("terrain", "/terrain/edges", solid.edges, self.colours.edge, 1.4)
+        self.draw_grid()
+
+    def set_robot(self, robot: Robot) -> None:
+        """Which robot is drawn from now on."""
+        if robot == self._robot:
+            return
+        for nodes in (self._nodes, self._ghosts):
+            if nodes is not None:
+                nodes.remove()
+        self._robot = robot
+        self._nodes = RobotNodes(self._scene, "/robot", robot)
+        self._ghosts = RobotNodes(self._scene, "/ghosts", robot, opacity=self.colours.ghost_opacity)
+
+    def draw_plan(self, plan: Mapping[str, Any] | None, motion: Motion | None) -> None:
+        """Ghosts of the key poses, the paths of wheel centres and CoM, and the problem."""
+        self._problem, self._problem_from, self._margins = None, np.inf, None
+        for layer in ("wheel_path", "com_path", "problem"):
+            self._drop(layer)
+        if self._ghosts is not None and (plan is None or motion is None or not plan["critical"]):
+            self._ghosts.remove()
+        if plan is None or motion is None or self._robot is None:
+            return
+        poses = plan["poses"]
+        times = np.interp([p["progress"] for p in poses], motion.progress, motion.time)
+        self._margins = (times, np.array([pose["margins"]["com"] for pose in poses], float))
+        bodies = place(self._robot, motion.position, motion.quaternion, motion.q)
+        self._draw_paths(bodies)
+        self._draw_ghosts(plan, motion, times)
+        if plan.get("problem") is not None:
+            self._problem = plan["problem"]
+            self._problem_from = motion.duration - 1e-3
+            self._draw_problem(plan["problem"])
+
+    # --- every frame ---------------------------------------------------------------------------
+
+    def draw_moment(self, time: float, moment: Moment | None) -> Bodies | None:
+        """The robot at one moment with everything that hangs on it."""
+        for layer in ("forces",):
+            if moment is None or moment.forces is None:
+                self._drop(layer)
+        if moment is None or self._robot is None or self._nodes is None:
+            for layer in ("com", "support", "collision_points"):
+                self._drop(layer)
+            if self._nodes is not None:
+                self._nodes.remove()
+            return None
+        bodies = place(self._robot, moment.position, moment.quaternion, moment.q)
+        self._nodes.visible = self.layers["robot"]
+        self._nodes.update(bodies, self.colours)
+        self._spot.position = bodies.trunk[0] + _SPOT
+        if self._terrain is None:
+            return bodies
+        feet = nearest(self._terrain.vertices, bodies.wheels[0][:, [0, 2]])
+        gaps = clearance(self._terrain.vertices, bodies.points[0][:, [0, 2]])
+        self._draw_points(bodies, gaps)
+        self._draw_support(time, bodies, feet)
+        if moment.forces is not None:
+            self._draw_forces(bodies, feet, moment.forces)
+        self._paint_problem(time, bodies, gaps)
+        return bodies
+
+    def show_layers(self, layers: Mapping[str, bool]) -> None:
+        """Show or hide layers by name."""
+        self.layers.update(layers)
+        for layer, handle in self._handles.values():
+            handle.visible = self.layers[layer]
+        for name, nodes in (("robot", self._nodes), ("ghosts", self._ghosts)):
+            if nodes is not None:
+                nodes.visible = self.layers[name]
+
+    def repaint(self, colours: Palette) -> None:
+        """Take another palette; what hangs on it must be drawn again by the caller."""
+        self.colours = colours
+        self.draw_lights()
+        if self._robot is not None and self._ghosts is not None:
+            self._ghosts.remove()
+            self._ghosts = RobotNodes(
+                self._scene, "/ghosts", self._robot, opacity=colours.ghost_opacity
+            )
+        for layer in ("com", "support", "collision_points", "forces"):
+            self._drop(layer)
+
+    # --- parts ---------------------------------------------------------------------------------
+
+    def _draw_paths(self, bodies: Bodies) -> None:
+        y = self._robot.hips.half_track if self._robot is not None else 0.0
+        width = self._robot.wheel.width if self._robot is not None else 0.0
+        # Beside the wheels, on the camera's side, where nothing covers them.
+        path = bodies.wheels[:, 1].copy()
+        rear = bodies.wheels[:, 3].copy()
+        course = np.concatenate([rear[rear[:, 0] < path[0, 0]], path])
+        course[:, 1] = -y - 0.7 * width
+        self._lines("wheel_path", "/wheel_path", _dashes(course), self.colours.path, 1.6)
+        com = bodies.com.copy()
+        self._lines(
+            "com_path", "/com_path", np.stack([com[:-1], com[1:]], 1), self.colours.com, 2.0
+        )
+
+    def _draw_ghosts(self, plan: Mapping[str, Any], motion: Motion, times: Floats) -> None:
+        if self._robot is None or self._ghosts is None or not plan["critical"]:
+            return
+        keys = list(plan["critical"])
+        if len(keys) > MAX_GHOSTS:
+            keys = [keys[i] for i in np.linspace(0, len(keys) - 1, MAX_GHOSTS).round().astype(int)]
+        moments = [motion.at(float(times[k])) for k in keys]
+        bodies = place(
+            self._robot,
+            np.array([m.position for m in moments]),
+            np.array([m.quaternion for m in moments]),
+            np.array([m.q for m in moments]),
+        )
+        self._ghosts.visible = self.layers["ghosts"]
+        self._ghosts.update(bodies, self.colours)
+
+    def _draw_points(self, bodies: Bodies, gaps: Floats) -> None:
+        # Just outside the legs' sides, where they can be seen.
+        points = bodies.points[0] + np.array([0.0, 0.016, 0.0]) * np.sign(bodies.points[0][:, 1:2])
+        colours = self.colours.clearance_colours(gaps)
+        node = "/collision_points"
+        if node in self._handles and len(self._handles[node][1].batched_positions) == len(points):
+            handle = self._handles[node][1]
+            handle.batched_positions = points.astype(np.float32)
+            if not np.array_equal(handle.batched_colors, colours):
+                handle.batched_colors = colours
+            return
+        ball = shapes.sphere(0.0075)
+        handle = self._scene.add_batched_meshes_simple(
+            node,
+            ball.vertices,
+            ball.faces,
+            np.tile([1.0, 0.0, 0.0, 0.0], (len(points), 1)),
+            points,
+            batched_colors=colours,
+            lod="off",
+            cast_shadow=False,
+            receive_shadow=False,
+            visible=self.layers["collision_points"],
+        )
+        self._keep("collision_points", node, handle)
+
+    def _draw_support(self, time: float, bodies: Bodies, feet: Floats) -> None:
+        """CoM, its plumb line and the quadrilateral of the contacts, coloured by the CoM margin."""
+        com = bodies.com[0]
+        corners = np.column_stack([feet[:, 0], bodies.wheels[0][:, 1], feet[:, 1] + 0.003])
+        fl, fr, rl, rr = corners
+        lo, hi = sorted((feet[:2, 0].mean(), feet[2:, 0].mean()))
+        share = (com[0] - feet[2:, 0].mean()) / max(hi - lo, 1e-6)
+        below = (1 - share) * (rl + rr) / 2 + share * (fl + fr) / 2
+        margin = min(com[0] - lo, hi - com[0])
+        if self._margins is not None:
+            margin = float(np.interp(time, *self._margins))
+        tint = self._margin_colour(margin)
+        quad = shapes.polygons(np.array([[fr, fl, rl, rr]]))
+        outline = np.array([[fr, fl], [fl, rl], [rl, rr], [rr, fr]])
+        plumb = np.array([[com, [com[0], com[1], below[2]]]])
+        room = np.array([margin, 0.0, 0.0])
+        reach = np.array([[below - room, below + room]])
+        self._mesh("support", "/support/area", quad, tint, opacity=0.22)
+        self._lines("support", "/support/outline", outline, tint, 2.0)
+        self._lines("com", "/com/plumb", np.concatenate([plumb, reach]), self.colours.com, 2.0)
+        node = "/com/ball"
+        if node in self._handles:
+            self._handles[node][1].position = com
+        else:
+            ball = self._scene.add_icosphere(
+                node,
+                radius=0.017,
+                color=self.colours.com,
+                position=com,
+                cast_shadow=False,
+                visible=self.layers["com"],
+            )
+            self._keep("com", node, ball)
+
+    def _draw_forces(self, bodies: Bodies, feet: Floats, forces: Floats) -> None:
+        wheels = bodies.wheels[0]
+        width = self._robot.wheel.width if self._robot is not None else 0.03
+        y = wheels[:, 1] + np.sign(wheels[:, 1]) * 0.75 * width  # beside the wheel, not inside it
+        start = np.column_stack([feet[:, 0], y, feet[:, 1]])
+        end = start + METRES_PER_NEWTON * np.column_stack([forces[:, 0], np.zeros(4), forces[:, 1]])
+        points = np.stack([start, end], axis=1).astype(np.float32)
+        node = "/forces"
+        if node in self._handles:
+            self._handles[node][1].points = points
+            return
+        handle = self._scene.add_arrows(
+            node,
+            points,
+            self.colours.force,
+            shaft_radius=0.006,
+            head_radius=0.016,
+            head_length=0.034,
+            visible=self.layers["forces"],
+        )
+        self._keep("forces", node, handle)
+
+    def _draw_problem(self, problem: Mapping[str, Any]) -> None:
+        x, z = problem["at"]
+        y = self._robot.hips.half_track if self._robot is not None else 0.0
+        halo = shapes.ring(0.052, 0.042, 0.010, 0.002)
+        both = shapes.merge(*(shapes.moved(halo, (x, side * (y + 0.03), z)) for side in (-1, 1)))
+        line = np.array([[(x, -HALF_WIDTH, z), (x, HALF_WIDTH, z)]])
+        self._mesh("problem", "/problem/halo", both, self.colours.error)
+        self._lines("problem", "/problem/line", line, self.colours.error, 3.0)
+
+    def _paint_problem(self, time: float, bodies: Bodies, gaps: Floats) -> None:
+        """Turn red what cannot go on: the link that cuts, or the leg nearest to the place."""
+        if self._nodes is None or self._robot is None:
+            return
+        usual = part_colours(self.colours)
+        if self._problem is None or time < self._problem_from:
+            for part in ("thighs", "calves", "trunk"):
+                self._nodes.paint(part, usual[part])
+            return
+        part, pair = self._culprit(self._problem, bodies, gaps)
+        red = usual[part].copy()
+        red[slice(None) if part == "trunk" else [2 * pair, 2 * pair + 1]] = deep(self.colours.error)
+        self._nodes.paint(part, red)
+
+    def _culprit(self, problem: Mapping[str, Any], bodies: Bodies, gaps: Floats) -> tuple[str, int]:
+        """Kind of part and leg pair (0 front, 1 rear) that the problem is about."""
+        assert self._robot is not None
+        layout = self._robot.collision_points
+        if problem["kind"] == "clearance":
+            k = int(np.argmin(gaps[: layout.count]))
+            if k < len(layout.trunk):
+                return "trunk", 0
+            pair, k = divmod(k - len(layout.trunk), len(layout.thigh) + len(layout.calf))
+            return ("thighs" if k < len(layout.thigh) else "calves"), pair
+        if problem["kind"] == "statics":
+            return "trunk", 0
+        away = np.hypot(*(bodies.wheels[0][[0, 2]][:, [0, 2]] - problem["at"]).T)
+        return "calves", int(np.argmin(away))
+
+    def _margin_colour(self, margin: float) -> tuple[int, int, int]:
+        ample, fair, thin, critical = self.colours.strip
+        if margin >= 0.04:
+            return ample
+        if margin >= 0.02:
+            return fair
+        return thin if margin >= 0.005 else critical
+
+    # --- bookkeeping ---------------------------------------------------------------------------
+
+    def _keep(self, layer: str, node: str, handle: Any) -> None:
+        self._handles[node] = (layer, handle)
+
+    def _drop(self, layer: str) -> None:
+        for node in [n for n, (of, _) in self._handles.items() if of == layer]:
+            self._handles.pop(node)[1].remove()
+
+    def _mesh(
+        self,
+        layer: str,
+        node: str,
+        mesh: shapes.Mesh,
+        colour: tuple[int, int, int],
+        opacity: float | None = None,
+    ) -> None:
+        if node in self._handles:
+            handle = self._handles[node][1]
+            handle.vertices = mesh.vertices.astype(np.float32)
+            handle.color = colour
+            return
+        handle = self._scene.add_mesh_simple(
+            node,
+            mesh.vertices,
+            mesh.faces,
+            color=colour,
+            opacity=opacity,
+            side="double",
+            cast_shadow=False,
+            receive_shadow=False,
+            visible=self.layers[layer],
+        )
+        self._keep(layer, node, handle)
+
+    def _lines(
+        self,
+        layer: str,
+        node: str,
+        segments: Floats,
+        colour: tuple[int, int, int],
+        pixels: float,
+    ) -> None:
+        if len(segments) == 0:
+            segments = np.zeros((1, 2, 3))
+        if node in self._handles:
+            handle = self._handles[node][1]
+            handle.points = segments.astype(np.float32)
+            handle.colors = np.array(colour, np.uint8)
+            return
+        handle = self._scene.add_line_segments(
+            node,
+            segments.astype(np.float32),
+            colour,
+            thickness=pixels,
+            thickness_units="screen",
+            visible=self.layers[layer],
+        )
+        self._keep(layer, node, handle)
+
+
+def _dashes(course: Floats, dash: float = 0.022) -> Floats:
+    """Every second piece (k, 2, 3) of a polyline (n, 3) cut evenly by arc length."""
+    step = np.hypot(*np.diff(course[:, [0, 2]], axis=0).T)
+    s = np.concatenate([[0.0], np.cumsum(step)])
+    grid = np.arange(0.0, s[-1], dash)
+    points = np.column_stack([np.interp(grid, s, column) for column in course.T])
+    count = len(points) // 2 * 2
+    return points[:count].reshape(-1, 2, 3)
