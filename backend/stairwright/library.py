@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 from collections.abc import Mapping
 from pathlib import Path
@@ -58,7 +59,8 @@ def _load(model: type[D], folder: str, source: str | os.PathLike[str] | Mapping[
     if not isinstance(source, (str, os.PathLike)):
         raise InputError(f"expected a name, a path or a mapping, got {type(source).__name__}")
     if str(source) in _names(folder):
-        return parse(model, load_mapping(data_folder(folder) / f"{source}.yaml"))
+        preset = data_folder(folder) / f"{source}.yaml"
+        return _preset(model, preset, preset.stat().st_mtime_ns)
     path = Path(source)
     if path.suffix.lower() in (".yaml", ".yml", ".json"):
         return parse(model, load_mapping(path))
