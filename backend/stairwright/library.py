@@ -51,6 +51,11 @@ def _names(folder: str) -> list[str]:
     return sorted(path.stem for path in data_folder(folder).glob("*.yaml"))
 
 
+@functools.cache
+def _preset(model: type[D], path: Path, changed: int) -> D:  # noqa: ARG001 - part of the key
+    return parse(model, load_mapping(path))
+
+
 def _load(model: type[D], folder: str, source: str | os.PathLike[str] | Mapping[str, Any] | D) -> D:
     if isinstance(source, model):
         return source
