@@ -13,8 +13,7 @@ from stairwright.documents import parse
 from stairwright.planning.interpolation import reference
 from stairwright.planning.plan import Plan
 from stairwright.robot.description import Robot
-
-from .bodies import lift
+from stairwright.robot.spatial import lift
 
 Floats = NDArray[np.float64]
 

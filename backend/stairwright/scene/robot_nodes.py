@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.robot.description import Robot
+from stairwright.robot.spatial import Bodies
 
 from . import shapes
-from .bodies import Bodies
 from .palette import Palette, deep
 
 Floats = NDArray[np.float64]

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from stairwright.errors import InputError
 from stairwright.robot.description import Robot
+from stairwright.robot.spatial import Bodies, place
 from stairwright.terrain.profile import Terrain
 
 from . import shapes
-from .bodies import Bodies, place
 from .clearance import clearance, nearest
 from .motion import Moment, Motion
 from .palette import DARK, Palette, deep

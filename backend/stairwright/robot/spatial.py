@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.robot.description import Robot
+from .description import Robot
 
 Floats = NDArray[np.float64]
 
@@ -79,7 +79,7 @@ def place(robot: Robot, position: Floats, quaternion: Floats, q: Floats) -> Bodi
     thigh = multiply(base, quaternion_y(angles[..., 0]))
     calf = multiply(base, quaternion_y(angles[..., 0] + angles[..., 1]))
     wheel = multiply(base, quaternion_y(angles.sum(axis=-1)))
-    hips = position[:, None, :] + turn(base, _hip_offsets(robot))
+    hips = position[:, None, :] + turn(base, hip_offsets(robot))
     down = np.array([0.0, 0.0, -1.0])
     knees = hips + robot.thigh.length * turn(thigh, down)
     wheels = knees + robot.calf.length * turn(calf, down)
@@ -123,7 +123,8 @@ def lift(robot: Robot, trunk: Floats, q: Floats, rolled: Floats) -> tuple[Floats
     return position, quaternion_y(trunk[:, 2]), joints.reshape(n, 12)
 
 
-def _hip_offsets(robot: Robot) -> Floats:
+def hip_offsets(robot: Robot) -> Floats:
+    """Hip axes (4, 3) in the trunk frame [m]: FL, FR, RL, RR."""
     (fx, fz), (rx, rz), y = robot.hips.front, robot.hips.rear, robot.hips.half_track
     return np.array([(fx, y, fz), (fx, -y, fz), (rx, y, rz), (rx, -y, rz)])
 

@@ -1,0 +1,108 @@
+"""MJCF: terrain, robot and one keyframe per pose, for MuJoCo and its viewer.
+
+The motors become position servos, limited to the robot's torque, and each keyframe's controls
+carry the torques that hold its pose at rest, so that a loaded keyframe stands still.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.planning.plan import Plan, Pose
+from stairwright.robot import spatial
+from stairwright.robot.description import JOINTS, Robot
+from stairwright.robot.mujoco_model import build_spec
+
+from .columns import FRAMES, UNITS, plan_arrays
+
+Floats = NDArray[np.float64]
+GRAVITY = 9.81  # m/s^2
+WHEEL_STIFFNESS = 60.0  # Nm/rad; the wheels are braked at the keyframe's angle
+WHEEL_DAMPING = 1.0  # Nm s/rad
+
+
+def plan_mjcf(plan: Plan) -> bytes:
+    """One self-contained XML file."""
+    robot = plan.robot_description
+    spec = build_spec(robot, plan.terrain, plan.friction)
+    spec.modelname = "stairwright"
+    stiffness = _make_servos(spec, robot)
+    arrays = plan_arrays(plan)
+    position, quaternion, joints = spatial.lift(
+        robot, arrays["trunk"], arrays["q"], arrays["wheel_progress"]
+    )
+    for i, pose in enumerate(plan.poses):
+        hold = joints[i] + static_torques(robot, pose) / stiffness
+        key = spec.add_key(name=f"pose_{i}", time=pose.time)
+        key.qpos = np.concatenate([position[i], quaternion[i], joints[i]])
+        key.ctrl = hold
+    about = {
+        "schema": plan.schema_,
+        "plan_id": plan.id,
+        "terrain_hash": plan.terrain_hash,
+        "robot_hash": plan.robot_hash,
+        "units": UNITS,
+        "frames": FRAMES,
+        "joint_order": " ".join(JOINTS),
+        "key_poses": " ".join(f"pose_{i}" for i in plan.critical) or "none",
+    }
+    for name, text in about.items():
+        spec.add_text(name=name, data=text)
+    spec.compile()  # checks the model, and is needed before it can be written
+    return str(spec.to_xml()).encode()
+
+
+def _make_servos(spec: Any, robot: Robot) -> Floats:
+    """Turn the motors into servos; returns their stiffnesses (12,) [Nm/rad]."""
+    stiffness = []
+    for name in JOINTS:
+        wheel = name.endswith("wheel")
+        motor = robot.actuators.wheel if wheel else robot.actuators.leg
+        kp = WHEEL_STIFFNESS if wheel else robot.gains.joint_stiffness
+        kv = WHEEL_DAMPING if wheel else robot.gains.joint_damping
+        actuator = spec.actuator(name)
+        actuator.biastype = mujoco.mjtBias.mjBIAS_AFFINE
+        actuator.gainprm[0] = kp
+        actuator.biasprm[1], actuator.biasprm[2] = -kp, -kv
+        actuator.ctrllimited = False
+        actuator.forcelimited = True
+        actuator.forcerange = [-motor.torque, motor.torque]
+        stiffness.append(kp)
+    return np.array(stiffness)
+
+
+def static_torques(robot: Robot, pose: Pose) -> Floats:
+    """Torques (12,) [Nm] that hold `pose` at rest under its contact forces and gravity.
+
+    Each joint balances what lies beyond it: the moment about +y of a force (fx, fz) at the lever
+    (rx, rz) is ``rz fx - rx fz``. Zero without planned forces.
+    """
+    if pose.forces is None:
+        return np.zeros(12)
+    trunk = np.array([[pose.x_c, pose.z_c, pose.pitch]])
+    bodies = spatial.place_planar(robot, trunk, np.array([pose.q]), np.array([pose.wheel_progress]))
+    torques = np.zeros((4, 3))
+    for leg in range(4):
+        hip, knee, wheel = (p[0, leg, [0, 2]] for p in (bodies.hips, bodies.knees, bodies.wheels))
+        contact = np.array(pose.contacts[leg // 2])
+        normal = (wheel - contact) / np.hypot(*(wheel - contact))
+        along, across = (value / 2 for value in pose.forces[leg // 2])
+        force = along * np.array([normal[1], -normal[0]]) + across * normal
+        loads = [
+            (wheel, np.array([0.0, -robot.wheel.mass * GRAVITY])),
+            (knee + robot.calf.com * (wheel - knee), np.array([0.0, -robot.calf.mass * GRAVITY])),
+            (hip + robot.thigh.com * (knee - hip), np.array([0.0, -robot.thigh.mass * GRAVITY])),
+        ]
+        for j, (joint, carried) in enumerate(((hip, 3), (knee, 2), (wheel, 1))):
+            moment = _moment(contact - joint, force)
+            moment += sum(_moment(place - joint, load) for place, load in loads[:carried])
+            torques[leg, j] = -moment
+    return torques.ravel()
+
+
+def _moment(lever: Floats, force: Floats) -> float:
+    return float(lever[1] * force[0] - lever[0] * force[1])
