@@ -6,8 +6,15 @@ RUN npm ci
 COPY frontend/ ./
 RUN npm run build
 
+FROM python:3.11-slim-bookworm AS base
+# OpenMP, for the solver ProxQP
+# hadolint ignore=DL3008
+RUN apt-get update \
+    && apt-get install --yes --no-install-recommends libgomp1 \
+    && rm -rf /var/lib/apt/lists/*
+
 # The program and its locked dependencies, in a virtual environment that is copied as a whole.
-FROM python:3.11-slim-bookworm AS program
+FROM base AS program
 ENV PATH=/opt/stairwright/bin:$PATH \
     PIP_DISABLE_PIP_VERSION_CHECK=1 \
     PIP_NO_CACHE_DIR=1
@@ -24,7 +31,7 @@ COPY --from=page /src/frontend/dist/ frontend/dist/
 RUN pip install --no-deps --no-build-isolation . \
     && NUMBA_CACHE_DIR=/opt/stairwright/kernels python -m stairwright.warmup
 
-FROM python:3.11-slim-bookworm
+FROM base
 LABEL org.opencontainers.image.title="Stairwright" \
       org.opencontainers.image.licenses="MIT"
 RUN useradd --uid 10001 --user-group --no-create-home --home-dir /data stairwright \

@@ -70,7 +70,7 @@ def _serve(data: Path, **variables: str) -> Iterator[Server]:
         port = probe.getsockname()[1]
     url = f"http://127.0.0.1:{port}"
     log = data.with_name(f"{data.name}-{port}.log")
-    command = [sys.executable, "-m", "stairwright.cli", "serve"]
+    command = [sys.executable, "-m", "stairwright", "serve"]
     command += ["--host", "127.0.0.1", "--port", str(port)]
     env = os.environ | {"STAIRWRIGHT_DATA": str(data)} | variables
     with log.open("wb") as output:
