@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
 from fastapi import APIRouter, FastAPI
+from starlette.middleware.gzip import GZipMiddleware
 
 from stairwright import __version__
 
 from . import problems
-from .routes import health, page, plans, robots, terrains, tuning
+from .middleware import Gate, LimitBody, Observe
+from .routes import health, jobs, page, plans, robots, rollouts, scene, sessions, terrains, tuning
+from .services import Services
 from .settings import Settings
 
 PREFIX = "/api/v1"
@@ -16,8 +22,20 @@ SI units and radians; x forward, y left, z up; nose-up pitch is negative."""
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
-    """The ASGI application; without `settings` they come from the environment."""
+    """The ASGI application; without `settings` they come from the environment.
+
+    Raises:
+        InputError: If a setting is bad or the data folder cannot be used.
+    """
     settings = settings or Settings.from_env()
+    services = Services(settings)
+
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        await services.start()
+        yield
+        await services.stop()
+
     app = FastAPI(
         title="Stairwright",
         version=__version__,
@@ -25,14 +43,25 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         openapi_url=f"{PREFIX}/openapi.json",
         docs_url=f"{PREFIX}/docs",
         redoc_url=None,
-        responses=problems.describe(400, 413, 422),
+        lifespan=lifespan,
+        responses=problems.describe(400, 401, 403, 413, 422),
+        redirect_slashes=False,
     )
-    app.state.settings = settings
+    app.state.services = services
     problems.install(app)
+    # The last one added is the outermost.
+    app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=4)
+    app.add_middleware(
+        LimitBody, limit=settings.body_limit, upload_limit=settings.upload_limit + 65536
+    )
+    app.add_middleware(Gate, token=settings.token, origins=settings.allowed_origins)
+    app.add_middleware(Observe, metrics=services.metrics)
     api = APIRouter(prefix=PREFIX)
-    for routes in (health, tuning, robots, terrains, plans):
+    for routes in (health, tuning, robots, terrains, plans, rollouts, jobs, sessions):
         api.include_router(routes.router)
     app.include_router(api)
     app.include_router(health.router, include_in_schema=False)
+    app.include_router(health.metrics_router)
+    app.include_router(scene.router)
     page.mount(app, settings.page)
     return app

@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, StrictBool, Tag
+from pydantic import AliasChoices, BeforeValidator, Discriminator, Field, StrictBool, Tag
 
 from stairwright.documents import Model
 from stairwright.planning.plan import Method, Plan
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
+from stairwright.terrain.stairs import Direction
 
 
 def _form(value: Any) -> str:
     return "~name" if isinstance(value, str) else "~document"
 
 
+def _without_readonly(value: Any) -> Any:
+    """GET adds `readonly` to a terrain; what was got can be sent back as it is."""
+    if isinstance(value, dict) and isinstance(value.get("readonly"), bool):
+        return {key: each for key, each in value.items() if key != "readonly"}
+    return value
+
+
 Name = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[\w .+-]+$")]
+SentTerrain = Annotated[Terrain, BeforeValidator(_without_readonly)]
 TerrainSource = Annotated[
-    Annotated[Name, Tag("~name")] | Annotated[Terrain, Tag("~document")], Discriminator(_form)
+    Annotated[Name, Tag("~name")] | Annotated[SentTerrain, Tag("~document")], Discriminator(_form)
 ]
 RobotSource = Annotated[
     Annotated[Name, Tag("~name")] | Annotated[Robot, Tag("~document")], Discriminator(_form)
@@ -93,11 +103,113 @@ class TerrainDocument(Terrain):
     readonly: bool = Field(description="a preset; it cannot be changed or deleted")
 
 
+Length = Annotated[float, Field(gt=0.0, le=100.0)]
+Name100 = Annotated[Name | None, Field(description="made from the measures by default")]
+
+
+class _Generated(Model):
+    approach: Length = Field(1.5, description="level ground before it [m]")
+    platform: Length = Field(2.0, description="level ground on top and after it [m]")
+    direction: Direction = "up"
+    name: Name100 = None
+    friction: Friction = 0.6
+
+
+class StairParameters(_Generated):
+    """A flight of equal steps."""
+
+    kind: Literal["stair"]
+    rise: Length = Field(description="height of a step [m]")
+    run: Length = Field(0.30, description="from edge to edge [m]")
+    count: int = Field(
+        1, ge=1, le=200, validation_alias=AliasChoices("count", "steps"), description="of steps"
+    )
+    face_angle: float = Field(
+        math.pi / 2, gt=0.0, le=math.pi / 2, description="of the faces from the horizontal [rad]"
+    )
+
+
+class RampParameters(_Generated):
+    """One inclined plane."""
+
+    kind: Literal["ramp"]
+    rise: Length = Field(
+        validation_alias=AliasChoices("rise", "height"), description="height gained [m]"
+    )
+    slope: float = Field(
+        gt=0.0,
+        lt=math.pi / 2,
+        validation_alias=AliasChoices("slope", "angle"),
+        description="from the horizontal [rad]",
+    )
+
+
+class FlatParameters(Model):
+    """Level ground."""
+
+    kind: Literal["flat"]
+    length: Length = Field(4.0, description="[m]")
+    name: Name = "flat"
+    friction: Friction = 0.6
+
+
+Generation = Annotated[StairParameters | RampParameters | FlatParameters, Discriminator("kind")]
+
+
 class SettingsDocument(Model):
     """JSON Schemas of everything that can be tuned; each property has bounds, unit and scale."""
 
     weights: dict[Method, dict[str, Any]]
     controller: dict[str, Any]
+
+
+class StoredEntry(Model):
+    """A stored plan or rollout in a list."""
+
+    id: str
+    digest: str = Field(description="SHA-256 of its JSON")
+    created: float = Field(description="seconds since 1970")
+    summary: dict[str, Any]
+
+
+class JobDocument(Model):
+    """A job's state."""
+
+    id: str
+    kind: Literal["rollout"]
+    state: Literal["queued", "running", "done", "failed", "cancelled"]
+    progress: float = Field(ge=0.0, le=1.0)
+    eta: float | None = Field(description="seconds left, as far as known")
+    result: str | None = Field(description="where the result is, when done")
+    error: dict[str, Any] | None = Field(description="a problem document, when failed")
+    links: dict[str, str]
+
+
+class SessionDocument(Model):
+    """A 3D scene of one browser session."""
+
+    id: str
+    scene: str = Field(description="path of the scene's page")
+
+
+class SceneRequest(Model):
+    """What the scene shows; what is left out stays, null shows none."""
+
+    plan_id: Id | None = None
+    rollout_id: Id | None = None
+    compare_plan_id: Id | None = Field(None, description="a second plan, as a ghost")
+    theme: Literal["dark", "light"] | None = None
+    layers: Annotated[dict[SettingName, StrictBool], Field(max_length=32)] | None = None
+    camera: Literal["side", "iso", "front", "follow"] | None = None
+
+
+class PlaybackRequest(Model):
+    """The scene's clock; what is left out stays."""
+
+    time: float | None = Field(None, ge=0.0, le=1e6, description="[s]")
+    progress: float | None = Field(None, ge=-1e3, le=1e3, description="[m] along the course")
+    playing: StrictBool | None = None
+    speed: float | None = Field(None, gt=0.0, le=20.0, description="factor on real time")
 
 
 class Health(Model):

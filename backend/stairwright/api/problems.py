@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import logging
+import math
 import re
 from collections.abc import Mapping, Sequence
 from http import HTTPStatus
@@ -12,10 +14,12 @@ from typing import Any
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, Field
+from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from stairwright.errors import InputError
+from stairwright.jobs.failures import Failure
 
 MEDIA_TYPE = "application/problem+json"
 MAX_ERRORS = 20
@@ -139,6 +143,26 @@ def install(app: FastAPI) -> None:
     async def on_input_error(_: Request, error: InputError) -> Response:
         return from_input_error(error).response()
 
+    @app.exception_handler(Failure)
+    async def on_failure(_: Request, error: Failure) -> Response:
+        seconds = str(math.ceil(error.retry_after or 1.0))
+        problem = Problem(
+            error.status, error.message, kind=error.kind, headers={"retry-after": seconds}
+        )
+        return problem.response()
+
+    @app.exception_handler(OperationalError)
+    async def on_database(_: Request, error: OperationalError) -> Response:
+        logger.error("the database cannot be used now", exc_info=error)
+        return _unavailable("the database is busy or cannot be written").response()
+
+    @app.exception_handler(OSError)
+    async def on_system(_: Request, error: OSError) -> Response:
+        if error.errno not in (errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.EROFS):
+            return await on_bug(_, error)
+        logger.error("the system refused", exc_info=error)
+        return _unavailable(f"the server has a problem: {error.strerror}").response()
+
     @app.exception_handler(HTTPException)
     async def on_http(request: Request, error: HTTPException) -> Response:
         detail = str(error.detail)
@@ -152,6 +176,10 @@ def install(app: FastAPI) -> None:
     async def on_bug(_: Request, error: Exception) -> Response:
         logger.error("unexpected error", exc_info=error)
         return Problem(500, "this is a bug in the service; its log says more").response()
+
+
+def _unavailable(detail: str) -> Problem:
+    return Problem(503, detail, kind="unavailable", headers={"retry-after": "2"})
 
 
 def describe(*statuses: int) -> dict[int | str, dict[str, Any]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import uvicorn
 
+from . import logs
 from .app import create_app
 from .settings import Settings
 
@@ -11,11 +12,14 @@ from .settings import Settings
 def serve(host: str | None = None, port: int | None = None) -> int:
     """Serve until interrupted; `host` and `port` win over the environment."""
     settings = Settings.from_env(host=host, port=port)
+    logs.configure(settings.log_level)
     uvicorn.run(
         create_app(settings),
         host=settings.host,
         port=settings.port,
-        log_level=settings.log_level,
+        log_config=None,
+        access_log=False,
+        timeout_graceful_shutdown=3,
         ws_per_message_deflate=False,
         server_header=False,
     )

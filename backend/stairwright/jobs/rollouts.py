@@ -52,6 +52,7 @@ class Rollouts:
         self._jobs: OrderedDict[str, Job] = OrderedDict()
         self._runs: dict[str, Run] = {}
         self._stopping: set[asyncio.Task[None]] = set()
+        self._writing = asyncio.Lock()  # a job's states reach the database in order
 
     async def submit(self, question: RolloutQuestion, owner: str) -> Job:
         """A new job; done at once where the answer is known.
@@ -137,7 +138,7 @@ class Rollouts:
                     watcher.cancel()
         except asyncio.CancelledError:
             raise
-        except Exception as error:  # noqa: BLE001 - whatever it is, the job must learn of it
+        except Exception as error:  # whatever it is, the job must learn of it
             document = problem_of(error)
             if document["status"] == 500:
                 logger.error("a rollout failed", exc_info=error)
@@ -180,7 +181,8 @@ class Rollouts:
             del self._jobs[old.id]
 
     async def _write_down(self, job: Job) -> None:
-        await asyncio.to_thread(self._store.jobs.put, job.record)
+        async with self._writing:
+            await asyncio.to_thread(self._store.jobs.put, job.record)
 
     def counts(self) -> dict[str, int]:
         """Jobs in memory by state."""

@@ -1,16 +1,28 @@
-"""Is the service ready?"""
+"""Is the service ready, and how is it doing?"""
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+import asyncio
+
+from fastapi import APIRouter, Response
 
 from stairwright import __version__
 from stairwright.api.bodies import Health
+from stairwright.api.deps import Service
+from stairwright.api.problems import describe
 
 router = APIRouter(tags=["service"])
+metrics_router = APIRouter(include_in_schema=False)
 
 
-@router.get("/healthz")
-async def healthz() -> Health:
-    """Answers as soon as the service can take requests."""
+@router.get("/healthz", responses=describe(503))
+async def healthz(services: Service) -> Health:
+    """Answers when the service can take requests."""
+    await asyncio.to_thread(services.store.ready)
     return Health(version=__version__)
+
+
+@metrics_router.get("/metrics")
+async def metrics(services: Service) -> Response:
+    """Figures for Prometheus."""
+    return Response(services.metrics.text(), media_type="text/plain; version=0.0.4")

@@ -7,6 +7,7 @@ from pathlib import Path
 from fastapi import FastAPI
 from starlette.exceptions import HTTPException
 from starlette.responses import PlainTextResponse, Response
+from starlette.routing import Match, Mount
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
@@ -35,6 +36,17 @@ class Page(StaticFiles):
         return response
 
 
+class _PageRoute(Mount):
+    """Everything but REST, so that a wrong method there is a 405 and not a missing file."""
+
+    def matches(self, scope: Scope) -> tuple[Match, Scope]:
+        """Whether the page's folder answers."""
+        path = scope.get("path", "")
+        if scope["type"] == "http" and path.startswith(("/api/", "/scene/")):
+            return Match.NONE, {}
+        return super().matches(scope)
+
+
 def mount(app: FastAPI, folder: Path) -> None:
     """Serve the page at /; must come after all other routes."""
-    app.mount("/", Page(folder), name="page")
+    app.router.routes.append(_PageRoute("/", Page(folder), name="page"))

@@ -1,18 +1,88 @@
-"""Plans: ask for one."""
+"""Plans: ask for one, look it up, take it along."""
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+import asyncio
+from typing import Annotated, Any, Literal
 
-from stairwright.api.bodies import PlanRequest
+from fastapi import APIRouter, Path, Query, Request, Response
+
+from stairwright.api.bodies import PlanRequest, StoredEntry
+from stairwright.api.deps import (
+    JSON_BODY,
+    Idempotent,
+    Limit,
+    Offset,
+    Owner,
+    Service,
+    resolve_robot,
+    resolve_terrain,
+)
+from stairwright.api.problems import describe
+from stairwright.api.responses import stored_json
+from stairwright.api.services import Services
+from stairwright.jobs.questions import PlanQuestion
 from stairwright.planning.plan import Plan
 
+from . import stored
+
 router = APIRouter(prefix="/plans", tags=["plans"])
+PlanId = Annotated[str, Path(max_length=64, examples=["p-0123456789abcdef"])]
+PlanFormat = Literal["json", "csv", "npz", "mcap", "mjcf"]
+FILE: dict[int | str, dict[str, Any]] = {
+    200: {"content": {"application/octet-stream": {}}, "description": "The file"}
+}
 
 
-@router.post("")
-def post_plan(body: PlanRequest) -> Plan:
-    """Plan; the answer is the plan, an infeasible one too."""
-    from stairwright.planning.planner import plan
+def plan_question(services: Services, body: PlanRequest) -> PlanQuestion:
+    """The question behind a request, names resolved and defaults filled in."""
+    terrain = resolve_terrain(services, body.terrain)
+    robot = resolve_robot(body.robot)
+    return PlanQuestion.of(terrain, robot, body.friction, body.method, body.weights)
 
-    return plan(body.terrain, body.robot, body.friction, body.method, body.weights)
+
+@router.post(
+    "",
+    response_model=Plan,
+    dependencies=[JSON_BODY],
+    responses=describe(409, 415, 429, 503),
+)
+async def post_plan(
+    request: Request, services: Service, owner: Owner, body: PlanRequest, once: Idempotent
+) -> Response:
+    """Plan; the answer is the plan, an infeasible one too. The same question has the same id."""
+    question = await asyncio.to_thread(plan_question, services, body)
+    answer = await services.planning.solve(question, owner)
+    services.metrics.plans.labels(str(answer.cached).lower()).inc()
+    once.result = answer.entry.id
+    headers = {"content-location": f"/api/v1/plans/{answer.entry.id}"}
+    return await stored_json(request, answer.packed, answer.entry.digest, headers)
+
+
+@router.get("", response_model=list[StoredEntry])
+async def list_plans(
+    request: Request, services: Service, limit: Limit = 100, offset: Offset = 0
+) -> Response:
+    """Stored plans, newest first."""
+    return await stored.listing(request, services, "plan", limit, offset)
+
+
+@router.get("/{plan_id}", response_model=Plan, responses=describe(404))
+async def get_plan(request: Request, services: Service, plan_id: PlanId) -> Response:
+    """One plan."""
+    return await stored.document(request, services, "plan", plan_id)
+
+
+@router.get(
+    "/{plan_id}/export",
+    response_class=Response,
+    responses={**FILE, **describe(404, 429, 503)},
+)
+async def export_plan(
+    request: Request,
+    services: Service,
+    plan_id: PlanId,
+    format_name: Annotated[PlanFormat, Query(alias="format")] = "json",
+) -> Response:
+    """One plan as a file."""
+    return await stored.export(request, services, "plan", plan_id, format_name)

@@ -1,29 +1,135 @@
-"""Terrains: the presets."""
+"""Terrains: presets, saved ones, generated ones, imported ones."""
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from pathlib import PurePath
+from typing import Annotated, Any
 
-from stairwright.api.bodies import TerrainDocument
-from stairwright.api.problems import describe, not_found
+from fastapi import APIRouter, File, Form, Path, Request, Response, UploadFile
+
+from stairwright.api.bodies import Friction, Generation, Name, SentTerrain, TerrainDocument
+from stairwright.api.deps import JSON_BODY, Limit, Offset, Service
+from stairwright.api.problems import Problem, describe, not_found
+from stairwright.api.responses import model_json, models_json
+from stairwright.api.services import UPLOAD_DEADLINE, Services
+from stairwright.jobs import uploads
 from stairwright.library import load_terrain, terrains
+from stairwright.terrain import stairs
+from stairwright.terrain.profile import Terrain
 
 router = APIRouter(prefix="/terrains", tags=["terrains"])
 
-
-@router.get("")
-def list_terrains() -> list[TerrainDocument]:
-    """All terrains: presets first."""
-    return [_preset(name) for name in terrains()]
+TerrainName = Annotated[str, Path(min_length=1, max_length=100, pattern=r"^[\w .+-]+$")]
+MOST_SAVED = 10_000
 
 
-@router.get("/{name}", responses=describe(404))
-def get_terrain(name: str) -> TerrainDocument:
+def _shown(terrain: Terrain, *, readonly: bool) -> TerrainDocument:
+    return TerrainDocument(**terrain.model_dump(), readonly=readonly)
+
+
+@router.get("", response_model=list[TerrainDocument])
+def list_terrains(
+    request: Request, services: Service, limit: Limit = 1000, offset: Offset = 0
+) -> Response:
+    """All terrains: presets first, then saved ones by name."""
+    shown = [_shown(load_terrain(name), readonly=True) for name in terrains()]
+    shown += [_shown(each, readonly=False) for each in services.store.terrains.all()]
+    page = shown[offset : offset + limit]
+    return models_json(request, page, total=len(shown), limit=limit, offset=offset)
+
+
+@router.post("/generate", dependencies=[JSON_BODY], responses=describe(415))
+def generate(body: Generation) -> Terrain:
+    """A stair, a ramp or level ground from a few measures; it is not saved."""
+    parameters = body.model_dump(exclude={"kind"})
+    make: Any = {"stair": stairs.stair, "ramp": stairs.ramp, "flat": stairs.flat}[body.kind]
+    made: Terrain = make(**parameters)
+    return made
+
+
+@router.post("/import", responses=describe(503))
+async def import_terrain(
+    services: Service,
+    file: Annotated[UploadFile, File(description="STL, OBJ, PLY, OFF, CSV, JSON or YAML")],
+    name: Annotated[Name | None, Form(description="the file's by default")] = None,
+    friction: Annotated[Friction | None, Form()] = None,
+    x: Annotated[float, Form(ge=-1e6, le=1e6, description="of the cut's origin [m]")] = 0.0,
+    y: Annotated[float | None, Form(ge=-1e6, le=1e6, description="of the cut [m]")] = None,
+    heading: Annotated[float, Form(ge=-7.0, le=7.0, description="of the cut [rad]")] = 0.0,
+    scale: Annotated[float, Form(gt=0.0, le=1e3, description="metres per unit")] = 1.0,
+) -> Terrain:
+    """The profile in a file; of a mesh, the upper edge of a vertical cut. It is not saved."""
+    options: dict[str, Any] = {"heading": heading, "scale": scale}
+    if y is not None:
+        options["origin"] = (x, y)
+    if friction is not None:
+        options["friction"] = friction
+    file_name = PurePath(file.filename or "").name
+    suffix = PurePath(file_name).suffix.lower()
+    if name is not None:
+        options["name"] = name
+    elif suffix not in (".json", ".yaml", ".yml"):
+        options["name"] = _usable(PurePath(file_name).stem)
+    data = await file.read()
+    async with services.uploading:
+        document = await services.upload_pool.run(
+            uploads.import_terrain, data, f"upload{suffix}", options, deadline=UPLOAD_DEADLINE
+        )
+    return Terrain.model_validate(document)
+
+
+def _usable(stem: str) -> str:
+    """A terrain's name from a file's."""
+    kept = "".join(c if c.isalnum() or c in " .+-_" else "-" for c in stem).strip()
+    return kept[:100] or "imported"
+
+
+@router.get("/{name}", response_model=TerrainDocument, responses=describe(404))
+def get_terrain(request: Request, services: Service, name: TerrainName) -> Response:
     """One terrain."""
-    if name not in terrains():
+    return model_json(request, _find(services, name))
+
+
+def _find(services: Services, name: str) -> TerrainDocument:
+    if name in terrains():
+        return _shown(load_terrain(name), readonly=True)
+    saved = services.store.terrains.get(name)
+    if saved is None:
         raise not_found("terrain", name)
-    return _preset(name)
+    return _shown(saved, readonly=False)
 
 
-def _preset(name: str) -> TerrainDocument:
-    return TerrainDocument(**load_terrain(name).model_dump(), readonly=True)
+@router.put(
+    "/{name}",
+    response_model=TerrainDocument,
+    dependencies=[JSON_BODY],
+    responses={201: {"model": TerrainDocument}, **describe(403, 409, 415)},
+)
+def put_terrain(
+    request: Request, services: Service, name: TerrainName, body: SentTerrain
+) -> Response:
+    """Save a terrain under a name; 201 if the name is new."""
+    _refuse_preset(name)
+    if "name" in body.model_fields_set and body.name != name:
+        raise Problem(
+            422, f"name: the body says {body.name!r}, the address {name!r}", kind="bad-input"
+        )
+    if services.store.terrains.count() >= MOST_SAVED:
+        raise Problem(409, f"{MOST_SAVED} terrains are saved already", kind="full")
+    terrain = body.model_copy(update={"name": name})
+    new = services.store.terrains.put(terrain)
+    headers = {"location": request.url.path} if new else None
+    return model_json(request, _shown(terrain, readonly=False), 201 if new else 200, headers)
+
+
+@router.delete("/{name}", status_code=204, responses=describe(403, 404))
+def delete_terrain(services: Service, name: TerrainName) -> None:
+    """Remove a saved terrain."""
+    _refuse_preset(name)
+    if not services.store.terrains.delete(name):
+        raise not_found("terrain", name)
+
+
+def _refuse_preset(name: str) -> None:
+    if name in terrains():
+        raise Problem(403, f"{name!r} is a preset: save under another name", kind="read-only")

@@ -1,0 +1,141 @@
+"""What routes ask for: services, who asks, and names resolved to documents."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+from collections.abc import AsyncIterator
+from typing import Annotated
+
+from fastapi import Depends, Header, Query, Request
+
+from stairwright.library import load_robot, load_terrain, robots, terrains
+from stairwright.robot.description import Robot
+from stairwright.storage.idempotency import Verdict
+from stairwright.terrain.profile import Terrain
+
+from .middleware import owner_of
+from .problems import FieldError, Problem
+from .services import Services
+
+
+async def get_services(request: Request) -> Services:
+    """The application's services."""
+    services: Services = request.app.state.services
+    return services
+
+
+async def get_owner(request: Request) -> str:
+    """Who asks, for the fair queues."""
+    return owner_of(request.scope)
+
+
+async def require_json(request: Request) -> None:
+    """Refuse bodies of another type, which browsers would send across origins unasked."""
+    kind = request.headers.get("content-type", "").split(";")[0].strip().lower()
+    if kind != "application/json" and not (
+        kind.startswith("application/") and kind.endswith("+json")
+    ):
+        raise Problem(415, "the body must be application/json", kind="media-type")
+
+
+Service = Annotated[Services, Depends(get_services)]
+Owner = Annotated[str, Depends(get_owner)]
+JSON_BODY = Depends(require_json)
+Limit = Annotated[int, Query(ge=1, le=1000, description="at most this many")]
+Offset = Annotated[int, Query(ge=0, le=10**9, description="after this many")]
+
+
+class Idempotency:
+    """The key that a request brought, if any; `result` is remembered for the next one."""
+
+    def __init__(self, earlier: str | None = None) -> None:
+        self.earlier = earlier
+        self.result: str | None = None
+
+
+async def idempotency(
+    request: Request,
+    services: Service,
+    idempotency_key: Annotated[
+        str | None,
+        Header(
+            min_length=1,
+            max_length=255,
+            pattern=r"^[\x21-\x7e]+$",
+            description="a repeated request with the same key does its work once",
+        ),
+    ] = None,
+) -> AsyncIterator[Idempotency]:
+    """Claim the key before the work; remember the result after it.
+
+    Raises:
+        Problem: 409 while the first request is at work, 422 if the key belongs to another body.
+    """
+    if idempotency_key is None:
+        yield Idempotency()
+        return
+    keys, scope = services.store.idempotency, request.url.path
+    fingerprint = hashlib.sha256(await request.body()).hexdigest()
+    verdict, earlier = await asyncio.to_thread(keys.begin, scope, idempotency_key, fingerprint)
+    if verdict is Verdict.BUSY:
+        raise Problem(
+            409,
+            "the first request with this key is at work",
+            kind="idempotency",
+            headers={"retry-after": "1"},
+        )
+    if verdict is Verdict.OTHER:
+        raise Problem(422, "this key came with another body before", kind="idempotency")
+    claim = Idempotency(earlier)
+    try:
+        yield claim
+    finally:
+        if claim.result is not None:
+            await asyncio.to_thread(keys.finish, scope, idempotency_key, claim.result)
+        elif verdict is Verdict.NEW:
+            await asyncio.to_thread(keys.release, scope, idempotency_key)
+
+
+# The claim must be settled before the answer leaves, or a quick repetition would find it open.
+Idempotent = Annotated[Idempotency, Depends(idempotency, scope="function")]
+
+
+def resolve_terrain(services: Services, source: str | Terrain) -> Terrain:
+    """A preset or saved terrain by name; a document as it is. Never a file.
+
+    Raises:
+        Problem: 422 if there is none of that name.
+    """
+    if isinstance(source, Terrain):
+        return source
+    if source in terrains():
+        return load_terrain(source)
+    saved = services.store.terrains.get(source)
+    if saved is None:
+        raise _unknown("terrain", source, [*terrains(), *services.store.terrains.names()])
+    return saved
+
+
+def resolve_robot(source: str | Robot) -> Robot:
+    """A robot by name; a document as it is. Never a file.
+
+    Raises:
+        Problem: 422 if there is none of that name.
+    """
+    if isinstance(source, Robot):
+        return source
+    if source not in robots():
+        raise _unknown("robot", source, robots())
+    return load_robot(source)
+
+
+def _unknown(kind: str, name: str, known: list[str]) -> Problem:
+    shown = ", ".join(known[:30]) + (", …" if len(known) > 30 else "")
+    message = f"no {kind} is called {name!r}; there are: {shown}"
+    return Problem(
+        422,
+        f"{kind}: {message}",
+        kind="bad-input",
+        errors=[FieldError(field=kind, message=message)],
+    )

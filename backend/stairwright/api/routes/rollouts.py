@@ -1,0 +1,109 @@
+"""Rollouts: start one as a job, look at the result, take it along."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Path, Query, Request, Response
+
+from stairwright.api.bodies import JobDocument, PlanRequest, RolloutRequest, StoredEntry
+from stairwright.api.deps import JSON_BODY, Idempotent, Limit, Offset, Owner, Service
+from stairwright.api.problems import FieldError, Problem, describe
+from stairwright.api.services import Services
+from stairwright.control.settings import ControllerSettings
+from stairwright.documents import parse
+from stairwright.errors import InputError
+from stairwright.jobs.questions import PlanQuestion, RolloutQuestion
+from stairwright.planning.plan import Plan
+
+from . import stored
+from .jobs import job_document
+from .plans import FILE, plan_question
+
+router = APIRouter(prefix="/rollouts", tags=["rollouts"])
+RolloutId = Annotated[str, Path(max_length=64, examples=["r-0123456789abcdef"])]
+RolloutFormat = Literal["json", "csv", "npz", "mcap", "html"]
+
+
+@router.post(
+    "",
+    status_code=202,
+    response_model=JobDocument,
+    dependencies=[JSON_BODY],
+    responses=describe(404, 409, 415, 429, 503),
+)
+async def post_rollout(
+    services: Service, owner: Owner, body: RolloutRequest, once: Idempotent
+) -> Response:
+    """Start a rollout; the answer is its job. A known result makes a job that is done."""
+    job = await services.rollouts.get(once.earlier) if once.earlier else None
+    if job is None:
+        question = await asyncio.to_thread(_question, services, body)
+        job = await services.rollouts.submit(question, owner)
+        once.result = job.id
+    shown = job_document(job)
+    headers = {"location": shown.links["self"], "retry-after": "1"}
+    return Response(shown.model_dump_json(), 202, headers=headers, media_type="application/json")
+
+
+def _question(services: Services, body: RolloutRequest) -> RolloutQuestion:
+    try:
+        settings = parse(ControllerSettings, dict(body.controller))
+    except InputError as error:
+        raise error.within("controller") from None
+    controller = settings.model_dump(mode="json")
+    return RolloutQuestion(_source(services, body), body.friction, controller, body.seed)
+
+
+def _source(services: Services, body: RolloutRequest) -> PlanQuestion | Plan | str:
+    given: dict[str, Any] = {
+        name: value
+        for name in ("plan_id", "plan", "terrain")
+        if (value := getattr(body, name)) is not None
+    }
+    if len(given) != 1:
+        message = "give exactly one of plan_id, plan and terrain"
+        field = list(given)[-1] if given else "plan_id"
+        raise Problem(
+            422, message, kind="bad-input", errors=[FieldError(field=field, message=message)]
+        )
+    if body.plan is not None:
+        return body.plan
+    if body.terrain is not None:
+        names = ("terrain", "robot", "friction", "method", "weights")
+        values = {name: getattr(body, name) for name in names}
+        return plan_question(services, PlanRequest.model_construct(**values))
+    entry = services.store.documents.get("plan", str(body.plan_id))
+    if entry is None:
+        raise Problem(404, f"there is no plan {body.plan_id!r}", kind="not-found")
+    return entry.digest
+
+
+@router.get("", response_model=list[StoredEntry])
+async def list_rollouts(
+    request: Request, services: Service, limit: Limit = 100, offset: Offset = 0
+) -> Response:
+    """Stored rollouts, newest first."""
+    return await stored.listing(request, services, "rollout", limit, offset)
+
+
+@router.get("/{rollout_id}", response_model=dict[str, Any], responses=describe(404))
+async def get_rollout(request: Request, services: Service, rollout_id: RolloutId) -> Response:
+    """One rollout with all its series; may be several MB."""
+    return await stored.document(request, services, "rollout", rollout_id)
+
+
+@router.get(
+    "/{rollout_id}/export",
+    response_class=Response,
+    responses={**FILE, **describe(404, 429, 503)},
+)
+async def export_rollout(
+    request: Request,
+    services: Service,
+    rollout_id: RolloutId,
+    format_name: Annotated[RolloutFormat, Query(alias="format")] = "json",
+) -> Response:
+    """One rollout as a file; html replays it in 3D without a server."""
+    return await stored.export(request, services, "rollout", rollout_id, format_name)

@@ -1,0 +1,103 @@
+"""Everything that lives as long as the application: store, pools, jobs, scenes, figures."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+from functools import partial
+
+from stairwright.jobs.failures import problem
+from stairwright.jobs.planning import Planning
+from stairwright.jobs.pool import WorkerPool
+from stairwright.jobs.rollouts import Rollouts
+from stairwright.jobs.worker import Limits
+from stairwright.storage.store import Store
+
+from .metrics import Metrics
+from .sessions import Sessions
+from .settings import Settings
+
+logger = logging.getLogger(__name__)
+
+COLLECT_EVERY = 3600.0  # s
+UPLOAD_MEMORY = 2048  # MiB
+UPLOAD_DEADLINE = 20.0  # s
+EXPORT_DEADLINE = 60.0  # s
+ROLLOUT_NICENESS = 10
+
+
+class Services:
+    """Made with the application, started and stopped with it."""
+
+    def __init__(self, settings: Settings) -> None:
+        self.settings = settings
+        self.metrics = Metrics()
+        self.store = Store(settings.data)
+        memory = settings.worker_memory
+        self.plan_pool = WorkerPool("plans", settings.plan_workers, Limits(memory=memory))
+        self.rollout_pool = WorkerPool(
+            "rollouts", settings.rollout_workers, Limits(memory=memory, nice=ROLLOUT_NICENESS)
+        )
+        self.upload_pool = WorkerPool("uploads", 1, Limits(memory=UPLOAD_MEMORY, sealed=True))
+        self.planning = Planning(
+            self.store, self.plan_pool, settings.plan_queue_limit, settings.plan_deadline
+        )
+        self.rollouts = Rollouts(
+            self.store, self.rollout_pool, settings.queue_limit, settings.rollout_deadline
+        )
+        self.uploading = asyncio.Semaphore(1)
+        self.sessions = Sessions(settings.session_limit, settings.session_idle)
+        self._tasks: list[asyncio.Task[None]] = []
+        self._show_gauges()
+
+    @property
+    def pools(self) -> tuple[WorkerPool, ...]:
+        """All worker pools."""
+        return (self.plan_pool, self.rollout_pool, self.upload_pool)
+
+    async def start(self) -> None:
+        """Settle what an earlier process left behind, then start workers and housekeeping."""
+        gone = problem(503, "interrupted", "the service was restarted; please ask again")
+        interrupted = await asyncio.to_thread(self.store.jobs.interrupt, gone)
+        await asyncio.to_thread(self.store.idempotency.release_unfinished)
+        if interrupted:
+            logger.warning("%d jobs were interrupted by a restart", interrupted)
+        for pool in self.pools:
+            await pool.start()
+        self._tasks = [
+            asyncio.create_task(self._collect()),
+            asyncio.create_task(self.sessions.close_idle_forever()),
+        ]
+
+    async def stop(self) -> None:
+        """End everything in order."""
+        for task in self._tasks:
+            task.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await task
+        await self.rollouts.stop()
+        await self.sessions.close_all()
+        await asyncio.gather(*(pool.stop() for pool in self.pools))
+        self.store.close()
+
+    async def _collect(self) -> None:
+        while True:
+            try:
+                removed = await asyncio.to_thread(
+                    self.store.collect, self.settings.keep_days, self.settings.keep_bytes
+                )
+                if removed:
+                    logger.info("removed %d old results", removed)
+            except Exception:
+                logger.exception("old results could not be removed")
+            await asyncio.sleep(COLLECT_EVERY)
+
+    def _show_gauges(self) -> None:
+        show = self.metrics.gauge
+        for pool in self.pools:
+            show(f"worker_deaths_{pool.name}", "Dead workers", partial(getattr, pool, "deaths"))
+        for queue in (self.planning.queue, self.rollouts.queue):
+            show(f"{queue.name}_waiting", "Waiting tasks", partial(getattr, queue, "length"))
+            show(f"{queue.name}_running", "Running tasks", partial(getattr, queue, "running"))
+        show("sessions", "Open 3D scenes", self.sessions.__len__)
