@@ -42,6 +42,13 @@ _BITS = {  # contype, conaffinity
     "RR": (0, _GROUND | _RIGHT),
 }
 _COLLISION_GROUP, _VISUAL_GROUP = 3, 2
+# Contact sensor of a wheel: how many contacts with the world, and their net force *on the world*.
+_WHEEL_SENSOR = [
+    (1 << int(mujoco.mjtConDataField.mjCONDATA_FOUND))
+    | (1 << int(mujoco.mjtConDataField.mjCONDATA_FORCE)),
+    3,  # reduce: net force, in world axes
+    1,
+]
 _COLOURS = {
     "terrain": (0.62, 0.65, 0.70, 1.0),
     "trunk": (0.16, 0.22, 0.32, 1.0),
@@ -171,6 +178,16 @@ def _add_robot(spec: Any, robot: Robot, friction: float, visual: bool) -> None:
             ctrlrange=[-motor.torque, motor.torque],
         )
         actuator.gainprm[0] = 1.0
+    for leg in LEGS:
+        spec.add_sensor(
+            name=f"{leg}_contact",
+            type=mujoco.mjtSensor.mjSENS_CONTACT,
+            objtype=mujoco.mjtObj.mjOBJ_BODY,
+            objname=f"{leg}_wheel",
+            reftype=mujoco.mjtObj.mjOBJ_BODY,
+            refname="world",
+            intprm=_WHEEL_SENSOR,
+        )
 
 
 def _add_leg(trunk: Any, robot: Robot, leg: str, friction: float, visual: bool) -> None:

@@ -1,0 +1,97 @@
+"""The balance controller: PD on CoM and pitch, forces by a QP, torques by J' F (eqs 9-14)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.robot.description import Robot
+
+from .measurement import Measurement
+from .rigid_body import GRAVITY, wrench
+from .setpoint import Setpoint
+from .settings import ControllerSettings
+
+Floats = NDArray[np.float64]
+
+# Larger accelerations are not asked for: a far-away set point must not throw the robot.
+MAX_ACCELERATION = 3.5  # m/s^2, along x
+
+
+def desired_wrench(
+    robot: Robot,
+    settings: ControllerSettings,
+    offset: Floats,
+    drift: Floats,
+    state: Measurement,
+    target: Setpoint,
+) -> Floats:
+    """(3,) ``b_des`` of eqs 9-10.
+
+    `offset` and `drift` (2,) are desired minus measured position [m] and velocity [m/s] of the
+    body's centre.
+    """
+    acceleration = settings.com_stiffness * offset + settings.com_damping * drift
+    acceleration[0] = np.clip(acceleration[0], -MAX_ACCELERATION, MAX_ACCELERATION)
+    spin = settings.pitch_stiffness * (target.pitch - state.pitch)
+    spin += settings.pitch_damping * (target.pitch_rate - state.pitch_rate)
+    return wrench(robot.mass, state.inertia, acceleration, spin)
+
+
+def force_cost(
+    settings: ControllerSettings,
+    force_map: Floats,
+    desired: Floats,
+    resting: Floats,
+    previous: Floats,
+) -> tuple[Floats, Floats]:
+    """Hessian H (8, 8) and gradient g (8,) of ``F' H F / 2 + g' F``, half the cost of eq 13.
+
+    ``D' S D + alpha |F - F_rest|^2 + beta |F - F_prev|^2`` with ``D = A F - b_des``; the paper's
+    cost has ``F_rest = 0``.
+    """
+    weights = np.array([settings.force_weight, settings.force_weight, settings.moment_weight])
+    weighted = force_map.T * weights
+    hessian = weighted @ force_map + (settings.alpha + settings.beta) * np.eye(8)
+    gradient = -weighted @ desired - settings.alpha * resting - settings.beta * previous
+    return hessian, gradient
+
+
+def force_limits(settings: ControllerSettings, friction: float) -> tuple[Floats, Floats]:
+    """``C F <= d`` (eq 14): friction cones and saturation, C (16, 8) and d (16,).
+
+    Four rows a wheel: forward and backward friction, normal force at least 0, at most the limit.
+    """
+    mu = settings.friction_share * friction
+    block = np.array([[1.0, -mu], [-1.0, -mu], [0.0, -1.0], [0.0, 1.0]])
+    bound = np.array([0.0, 0.0, 0.0, settings.force_limit])
+    return np.kron(np.eye(4), block), np.tile(bound, 4)
+
+
+def force_torques(state: Measurement, points: Floats, forces: Floats) -> Floats:
+    """(4, 2) thigh and calf torques that put `forces` on the robot at `points`: J' F of eq 14.
+
+    `points` (4, 2) are where the forces act: wheel centres (the paper) or contact points [m];
+    `forces` (4, 2) are of the ground on the robot, world x and z [N].
+    """
+    return np.stack(
+        [-_moment(points - joint, forces) for joint in (state.hips, state.knees)], axis=-1
+    )
+
+
+def leg_weight_torques(robot: Robot, state: Measurement) -> Floats:
+    """(4, 2) thigh and calf torques that carry the legs' own weight."""
+    thigh = state.hips + robot.thigh.com * (state.knees - state.hips)
+    calf = state.knees + robot.calf.com * (state.wheels - state.knees)
+    parts = ((thigh, robot.thigh.mass), (calf, robot.calf.mass), (state.wheels, robot.wheel.mass))
+    torques = np.zeros((4, 2))
+    for place, mass in parts:
+        torques[:, 0] -= mass * GRAVITY * (place - state.hips)[:, 0]
+    for place, mass in parts[1:]:
+        torques[:, 1] -= mass * GRAVITY * (place - state.knees)[:, 0]
+    return torques
+
+
+def _moment(lever: Floats, force: Floats) -> Floats:
+    moment: Floats = lever[:, 1] * force[:, 0] - lever[:, 0] * force[:, 1]
+    return moment

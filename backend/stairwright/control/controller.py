@@ -1,0 +1,164 @@
+"""The controller in plain numpy, both forms: the readable reference of the compiled one.
+
+Form ``contact`` (default): forces act at the contact points, each in its own wheel's frame; the QP
+is pulled to the plan's static forces; the wheel motors get the QP's tangential force fed forward
+plus feedback on the absolute wheel rate; the legs' own weight is carried by feed-forward.
+
+Form ``paper``: forces act at the wheel centres, the traction comes from the rolling control alone
+and enters the QP as a known wrench (eq 11); the body is the trunk's point with the whole mass; a
+wheel's frame is that of the terrain under it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.robot.description import Robot
+from stairwright.terrain.wheel_path import WheelPath
+
+from . import balance, qp, rigid_body, rolling, tracking
+from .contact import face_normal, locate
+from .measurement import Measurement, measure
+from .setpoint import Setpoint
+from .settings import ControllerSettings
+
+Floats = NDArray[np.float64]
+
+LEG_PAIR = np.array([0, 0, 1, 1])  # legs FL, FR, RL, RR -> front, rear
+
+
+@dataclass(frozen=True)
+class Gains:
+    """Joint and wheel gains with the robot's own filled in."""
+
+    joint_stiffness: float
+    joint_damping: float
+    wheel_damping: float
+
+
+def gains(robot: Robot, settings: ControllerSettings) -> Gains:
+    """The settings' gains, or the robot's where a setting is empty."""
+    own = robot.gains
+
+    def pick(value: float | None, default: float) -> float:
+        return default if value is None else value
+
+    return Gains(
+        pick(settings.joint_stiffness, own.joint_stiffness),
+        pick(settings.joint_damping, own.joint_damping),
+        pick(settings.wheel_damping, own.wheel_damping),
+    )
+
+
+class Controller:
+    """Torques from measurements and set points. Keeps the last forces and the wheels' places.
+
+    Attributes:
+        forces: (8,) last solution of the QP, per wheel tangential and normal [N].
+        places: (4,) arc length of each wheel on the wheel-centre curve [m].
+    """
+
+    def __init__(
+        self, robot: Robot, path: WheelPath, friction: float, settings: ControllerSettings
+    ) -> None:
+        self.robot, self.path, self.friction, self.settings = robot, path, friction, settings
+        self.gains = gains(robot, settings)
+        self.forces = np.tile([0.0, robot.mass * rigid_body.GRAVITY / 4], 4)
+        self.places = np.full(4, np.nan)
+
+    def locate(self, state: Measurement) -> Floats:
+        """Update and return the wheels' places (4,)."""
+        for i, (x, z) in enumerate(state.wheels):
+            self.places[i] = locate(self.path.pieces, self.path.radius, x, z, self.places[i])
+        return self.places
+
+    def step(self, qpos: Floats, qvel: Floats, target: Setpoint) -> Floats:
+        """Joint torques (12,) [Nm] before the motors' limits."""
+        state = measure(self.robot, qpos, qvel)
+        self.locate(state)
+        form = self._paper if self.settings.form == "paper" else self._contact
+        return form(state, target)
+
+    def _contact(self, state: Measurement, target: Setpoint) -> Floats:
+        robot, settings, radius = self.robot, self.settings, self.path.radius
+        planned = target.wheel_progress[LEG_PAIR]
+        normals = np.array(
+            [
+                face_normal(self.path.pieces, radius, self.path.corners, here, there)
+                for here, there in zip(self.places, planned, strict=True)
+            ]
+        )
+        frames = rigid_body.contact_frames(normals)
+        points = state.wheels - radius * normals
+        A = rigid_body.force_map(frames, points - state.com)
+        desired = balance.desired_wrench(
+            robot,
+            settings,
+            target.com - state.com,
+            target.com_velocity - state.com_velocity,
+            state,
+            target,
+        )
+        resting = (target.forces / 2)[LEG_PAIR].ravel()
+        self._solve(A, desired, resting)
+        forces = np.einsum("nij,nj->ni", frames, self.forces.reshape(4, 2))
+        torques = balance.force_torques(state, points, forces)
+        torques += balance.leg_weight_torques(robot, state)
+        speeds = target.wheel_speed[LEG_PAIR] + settings.wheel_sync * (planned - self.places)
+        rates = rolling.wheel_rates(speeds, radius) + self._yaw(state, target)
+        wheel = radius * self.forces[0::2] + rolling.wheel_torques(
+            self.gains.wheel_damping, rates, state.rolling_rates
+        )
+        return self._joined(state, target, torques, wheel)
+
+    def _paper(self, state: Measurement, target: Setpoint) -> Floats:
+        robot, radius = self.robot, self.path.radius
+        normals = self.path.normals(self.places)
+        frames = rigid_body.contact_frames(normals)
+        rates = rolling.wheel_rates(target.wheel_speed[LEG_PAIR], radius)
+        rates = rates + self._yaw(state, target)
+        wheel = rolling.wheel_torques(self.gains.wheel_damping, rates, state.wheel_rates)
+        driven = np.zeros(8)
+        driven[0::2] = rigid_body.traction(wheel, radius)
+        to_centres = rigid_body.force_map(frames, state.wheels - state.trunk)
+        to_contacts = rigid_body.force_map(frames, state.wheels - radius * normals - state.trunk)
+        desired = balance.desired_wrench(
+            robot,
+            self.settings,
+            target.trunk - state.trunk,
+            target.trunk_velocity - state.trunk_velocity,
+            state,
+            target,
+        )
+        self._solve(to_centres, desired - to_contacts @ driven, np.zeros(8))
+        forces = np.einsum("nij,nj->ni", frames, self.forces.reshape(4, 2))
+        torques = balance.force_torques(state, state.wheels, forces)
+        return self._joined(state, target, torques, wheel)
+
+    def _solve(self, force_map: Floats, desired: Floats, resting: Floats) -> None:
+        H, g = balance.force_cost(self.settings, force_map, desired, resting, self.forces)
+        C, d = balance.force_limits(self.settings, self.friction)
+        self.forces = qp.solve(self.settings.solver, H, g, C, d, self.forces)
+
+    def _yaw(self, state: Measurement, target: Setpoint) -> Floats:
+        settings = self.settings
+        desired = target.yaw_rate - settings.heading_stiffness * state.heading
+        scale = self.robot.hips.half_track / self.robot.wheel.radius
+        return rolling.yaw_difference(settings.yaw_damping, desired, state.yaw_rate, scale)
+
+    def _joined(
+        self, state: Measurement, target: Setpoint, balance_torques: Floats, wheel: Floats
+    ) -> Floats:
+        legs = tracking.joint_torques(
+            balance_torques,
+            self.gains.joint_stiffness,
+            self.gains.joint_damping,
+            target.q.reshape(2, 2)[LEG_PAIR],
+            state.joints,
+            target.q_rate.reshape(2, 2)[LEG_PAIR],
+            state.joint_rates,
+        )
+        return np.column_stack([legs, wheel]).ravel()

@@ -1,0 +1,73 @@
+"""One instant of the reference: what the controller is asked to do now."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+# Columns of a set point's row: values, their rates of change, static forces. Compiled code and
+# reference tables use the same order.
+WHEELS = slice(0, 2)
+JOINTS = slice(2, 6)
+PITCH = 6
+COM = slice(7, 9)
+TRUNK = slice(9, 11)
+RATES = 11  # the rate of column k is column RATES + k
+FORCES = slice(22, 26)
+WIDTH = 26
+
+
+@dataclass(frozen=True)
+class Setpoint:
+    """Desired state and its rates. SI units; pairs are front, rear.
+
+    Attributes:
+        wheel_progress: (2,) place of each wheel pair on the wheel-centre curve [m].
+        q: (4,) planar joints [rad].
+        pitch: [rad].
+        com: (2,) centre of mass [m].
+        trunk: (2,) trunk point [m].
+        wheel_speed: (2,) along the wheel-centre curve [m/s].
+        q_rate: (4,) [rad/s].
+        pitch_rate: [rad/s].
+        com_velocity: (2,) [m/s].
+        trunk_velocity: (2,) [m/s].
+        forces: (2, 2) static force of each wheel pair, tangential and normal [N].
+        yaw_rate: commanded [rad/s].
+    """
+
+    wheel_progress: Floats
+    q: Floats
+    pitch: float
+    com: Floats
+    trunk: Floats
+    wheel_speed: Floats
+    q_rate: Floats
+    pitch_rate: float
+    com_velocity: Floats
+    trunk_velocity: Floats
+    forces: Floats
+    yaw_rate: float = 0.0
+
+    @classmethod
+    def from_row(cls, row: Floats, yaw_rate: float = 0.0) -> Setpoint:
+        """The set point held by a row (26,) in the module's order."""
+        rates = row[RATES : 2 * RATES]
+        return cls(
+            wheel_progress=row[WHEELS],
+            q=row[JOINTS],
+            pitch=float(row[PITCH]),
+            com=row[COM],
+            trunk=row[TRUNK],
+            wheel_speed=rates[WHEELS],
+            q_rate=rates[JOINTS],
+            pitch_rate=float(rates[PITCH]),
+            com_velocity=rates[COM],
+            trunk_velocity=rates[TRUNK],
+            forces=row[FORCES].reshape(2, 2),
+            yaw_rate=yaw_rate,
+        )

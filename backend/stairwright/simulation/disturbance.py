@@ -1,0 +1,123 @@
+"""What may differ between the plan's world and the real one: one set of deviations of a trial."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from stairwright.documents import Model, parse
+from stairwright.errors import InputError
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
+
+Floats = NDArray[np.float64]
+
+# Standard deviations of the sensors at noise 1: a good joint encoder, IMU and state estimator.
+JOINT_NOISE = 0.001  # rad
+JOINT_RATE_NOISE = 0.05  # rad/s
+POSITION_NOISE = 0.001  # m
+VELOCITY_NOISE = 0.02  # m/s
+TILT_NOISE = 0.002  # rad
+GYRO_NOISE = 0.02  # rad/s
+
+
+class Disturbance(Model):
+    """Deviations of one rollout from what the plan and the controller believe."""
+
+    friction: float = Field(0.0, ge=-5.0, le=5.0, description="added to the true friction")
+    mass: float = Field(0.0, ge=-0.5, le=1.0, description="share of the robot's mass, on the trunk")
+    com_x: float = Field(0.0, ge=-0.2, le=0.2, description="the robot's CoM moves forward [m]")
+    com_z: float = Field(0.0, ge=-0.2, le=0.2, description="the robot's CoM moves up [m]")
+    height: float = Field(0.0, ge=-0.2, le=0.2, description="added to the terrain's rise [m]")
+    noise: float = Field(0.0, ge=0.0, le=20.0, description="sensor noise, in units of the module's")
+    delay: float = Field(0.0, ge=0.0, le=0.1, description="from sensing to torque [s]")
+
+
+def parse_disturbance(value: Mapping[str, Any] | Disturbance | None) -> Disturbance:
+    """A disturbance with zeros filled in.
+
+    Raises:
+        InputError: For an unknown name or a value out of bounds.
+    """
+    if isinstance(value, Disturbance):
+        return value
+    try:
+        return parse(Disturbance, dict(value or {}))
+    except InputError as error:
+        raise error.within("disturbance") from None
+
+
+def real_terrain(terrain: Terrain, height: float) -> Terrain:
+    """The terrain with its rise (highest minus lowest point) changed by `height` [m]."""
+    z = np.array(terrain.points)[:, 1]
+    rise = float(np.ptp(z))
+    if height == 0.0 or rise < 1e-6:
+        return terrain
+    factor = max(0.0, 1.0 + height / rise)
+    base = terrain.points[0][1]
+    points = [(x, base + factor * (z - base)) for x, z in terrain.points]
+    return Terrain(
+        name=terrain.name,
+        points=points,
+        friction=terrain.friction,
+        start=terrain.start,
+        goal=terrain.goal,
+    )
+
+
+def disturb_trunk(spec: Any, robot: Robot, disturbance: Disturbance) -> None:
+    """Change the trunk of an uncompiled model: mass, and its place so that the CoM moves."""
+    trunk = spec.body("trunk")
+    added = disturbance.mass * robot.mass
+    mass = max(0.1, robot.trunk.mass + added)
+    total = robot.mass - robot.trunk.mass + mass
+    trunk.mass = mass
+    trunk.inertia = [value * mass / robot.trunk.mass for value in robot.trunk.inertia]
+    trunk.ipos = [disturbance.com_x * total / mass, 0.0, disturbance.com_z * total / mass]
+
+
+class Sensors:
+    """What the controller sees: the truth with noise, some control steps late."""
+
+    def __init__(self, disturbance: Disturbance, dt: float, seed: int) -> None:
+        self.noise = disturbance.noise
+        self.delay = round(disturbance.delay / dt)
+        self.random = np.random.default_rng(seed)
+        self.history: deque[tuple[Floats, Floats]] = deque(maxlen=self.delay + 1)
+        joints = [JOINT_NOISE, JOINT_NOISE, JOINT_NOISE] * 4
+        rates = [JOINT_RATE_NOISE] * 12
+        self.position_noise = np.array([POSITION_NOISE] * 3 + [0.0] * 4 + joints)
+        self.velocity_noise = np.array([VELOCITY_NOISE] * 3 + [GYRO_NOISE] * 3 + rates)
+
+    @property
+    def exact(self) -> bool:
+        """Whether the controller sees the truth at once."""
+        return self.noise == 0.0 and self.delay == 0
+
+    def sense(self, qpos: Floats, qvel: Floats) -> tuple[Floats, Floats]:
+        """Measured `qpos` (19,) and `qvel` (18,)."""
+        if self.noise > 0.0:
+            qpos = qpos + self.noise * self.position_noise * self.random.standard_normal(19)
+            qvel = qvel + self.noise * self.velocity_noise * self.random.standard_normal(18)
+            # A small turn about each axis of the trunk.
+            turn = 0.5 * self.noise * TILT_NOISE * self.random.standard_normal(3)
+            w, x, y, z = qpos[3:7]
+            a, b, c = turn
+            quaternion = np.array(
+                [
+                    w - x * a - y * b - z * c,
+                    x + w * a + y * c - z * b,
+                    y + w * b + z * a - x * c,
+                    z + w * c + x * b - y * a,
+                ]
+            )
+            qpos[3:7] = quaternion / np.linalg.norm(quaternion)
+        else:
+            qpos, qvel = qpos.copy(), qvel.copy()
+        self.history.append((qpos, qvel))
+        return self.history[0]

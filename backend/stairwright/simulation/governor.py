@@ -1,0 +1,190 @@
+"""How fast the plan advances: its own timing, limits along it, and a leash to the robot.
+
+The plan runs on its own clock, because a purely measured progress stalls (the robot waits for the
+plan and the plan for the robot). A leash holds it back: it slows down when it is ahead of the
+wheels, stops when it is too far ahead and retreats with a robot that slides back. It hurries after
+a robot that runs ahead only a little faster than planned, because it must not jump.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.control.setpoint import (
+    COM,
+    FORCES,
+    JOINTS,
+    PITCH,
+    RATES,
+    TRUNK,
+    WHEELS,
+    WIDTH,
+)
+from stairwright.control.settings import ControllerSettings
+from stairwright.planning.reference import Reference
+from stairwright.robot.description import Robot
+
+Floats = NDArray[np.float64]
+
+STEP = 0.0025  # m of progress between the rows of a track
+RATE_REACH = 0.005  # m; rates are differences over this far, both ways
+LIMIT_REACH = 0.03  # m; a speed limit holds this far before and after its place
+ACCELERATION = 0.4  # m/s^2, along the plan
+MIN_SPEED = 0.01  # m/s
+WHEEL_SPEED_SHARE = 0.6  # of the no-load speed: the rest leaves torque
+HURRY = 1.5  # how much faster than planned it may follow a robot that is ahead
+
+
+@dataclass(frozen=True)
+class Track:
+    """A reference on an even grid of progress, ready for compiled code.
+
+    Attributes:
+        start: Progress of the first row [m].
+        step: Progress between rows [m].
+        rows: (n, 26) set points; their rates are per metre of progress.
+        speeds: (n,) allowed speed of the progress [m/s].
+    """
+
+    start: float
+    step: float
+    rows: Floats
+    speeds: Floats
+
+    @property
+    def end(self) -> float:
+        """Progress of the last row [m]."""
+        return self.start + self.step * (len(self.rows) - 1)
+
+    @property
+    def duration(self) -> float:
+        """Time to the end without any leash [s]."""
+        return float(np.sum(self.step / np.maximum(self.speeds[:-1], MIN_SPEED)))
+
+
+def track(reference: Reference, robot: Robot, settings: ControllerSettings) -> Track:
+    """Resample `reference` and find the allowed speed along it."""
+    first, last = float(reference.progress[0]), float(reference.progress[-1])
+    count = max(3, math.ceil((last - first) / STEP) + 1)
+    grid = np.linspace(first, last, count)
+    columns = np.column_stack(
+        [
+            reference.wheel_progress,
+            reference.q,
+            reference.trunk[:, 2],
+            reference.com,
+            reference.trunk[:, :2],
+        ]
+    )
+    rows = np.zeros((count, WIDTH))
+    order = [*range(11)]
+    assert (
+        slice(0, 2),
+        slice(2, 6),
+        6,
+        slice(7, 9),
+        slice(9, 11),
+    ) == (WHEELS, JOINTS, PITCH, COM, TRUNK)
+    for k in order:
+        column = columns[:, k]
+        rows[:, k] = np.interp(grid, reference.progress, column)
+        low, high = np.maximum(grid - RATE_REACH, first), np.minimum(grid + RATE_REACH, last)
+        rise = np.interp(high, reference.progress, column) - np.interp(
+            low, reference.progress, column
+        )
+        rows[:, RATES + k] = rise / (high - low)
+    forces = reference.forces.reshape(-1, 4)
+    for k in range(4):
+        rows[:, FORCES.start + k] = np.interp(grid, reference.progress, forces[:, k])
+    speeds = _speeds(reference, grid, rows, robot, settings)
+    return Track(first, grid[1] - grid[0], rows, speeds)
+
+
+def _speeds(
+    reference: Reference, grid: Floats, rows: Floats, robot: Robot, settings: ControllerSettings
+) -> Floats:
+    """Allowed speed of the progress (n,): timing, joint and wheel speed limits, acceleration."""
+    if settings.speed is not None:
+        speeds = np.full(len(grid), settings.speed)
+    else:
+        time = np.interp(grid, reference.progress, reference.time)
+        step = np.diff(grid) / np.maximum(np.diff(time), 1e-9)
+        speeds = np.minimum(np.append(step, step[-1]), np.append(step[0], step))
+    joint_rates = np.abs(rows[:, RATES + JOINTS.start : RATES + JOINTS.stop]).max(axis=1)
+    wheel_rates = np.abs(rows[:, RATES + WHEELS.start : RATES + WHEELS.stop]).max(axis=1)
+    wheel_limit = WHEEL_SPEED_SHARE * robot.actuators.wheel.speed * robot.wheel.radius
+    speeds = np.minimum(speeds, settings.joint_speed / np.maximum(joint_rates, 1e-9))
+    speeds = np.minimum(speeds, wheel_limit / np.maximum(wheel_rates, 1e-9))
+    reach = max(1, round(LIMIT_REACH / (grid[1] - grid[0])))
+    padded = np.pad(speeds, reach, mode="edge")
+    speeds = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1).min(axis=1)
+    # A limit on acceleration: v^2 grows by at most 2 a per metre, from rest and to rest.
+    squares = np.minimum(speeds, 10.0) ** 2
+    squares[0] = squares[-1] = 0.0
+    gain = 2 * ACCELERATION * (grid[1] - grid[0])
+    for i in range(1, len(squares)):
+        squares[i] = min(squares[i], squares[i - 1] + gain)
+    for i in range(len(squares) - 2, -1, -1):
+        squares[i] = min(squares[i], squares[i + 1] + gain)
+    bounded: Floats = np.maximum(np.sqrt(squares), MIN_SPEED)
+    return bounded
+
+
+@nb.njit(cache=True)
+def advance(
+    start: float,
+    step: float,
+    rows: Floats,
+    speeds: Floats,
+    leash: float,
+    places: Floats,
+    moving: bool,
+    dt: float,
+    clock: Floats,
+    target: Floats,
+) -> None:
+    """Advance the plan by one control step and write the set point into `target` (26,).
+
+    `start`, `step`, `rows` and `speeds` are of the `Track`; `leash` is how far the plan may run ahead
+    [m]; `places` (4,) are where the wheels are, NaN before the first measurement; `moving` tells
+    whether the plan may advance yet; `clock` (3,) holds progress [m], its rate [m/s] and the robot's
+    lag [m], and is updated in place.
+    """
+    last = len(rows) - 1
+    spot = min(max((clock[0] - start) / step, 0.0), float(last))
+    k = min(int(spot), last - 1)
+    share = spot - k
+    df = rows[k, RATES] + share * (rows[k + 1, RATES] - rows[k, RATES])
+    dr = rows[k, RATES + 1] + share * (rows[k + 1, RATES + 1] - rows[k, RATES + 1])
+    front = rows[k, 0] + share * (rows[k + 1, 0] - rows[k, 0])
+    rear = rows[k, 1] + share * (rows[k + 1, 1] - rows[k, 1])
+    lag = 0.0
+    if not math.isnan(places[0]):
+        behind_front = front - 0.5 * (places[0] + places[1])
+        behind_rear = rear - 0.5 * (places[2] + places[3])
+        # Along the plan's own direction, so that it also holds where a wheel rolls back.
+        lag = (behind_front * df + behind_rear * dr) / max(df * df + dr * dr, 1e-6)
+    rate = 0.0
+    if moving:
+        allowed = speeds[k] + share * (speeds[k + 1] - speeds[k])
+        if lag >= 0.0:
+            rate = allowed * min(1.0, max(-0.5, 2.0 * (leash - lag) / leash))
+        else:
+            rate = allowed * min(HURRY, 1.0 - lag / leash * (HURRY - 1.0))
+    reach = 1.0 * dt  # m/s: the rate itself changes by at most 1 m/s^2
+    rate = min(max(rate, clock[1] - 4 * reach), clock[1] + reach)
+    progress = min(max(clock[0] + rate * dt, start), start + step * last)
+    rate = (progress - clock[0]) / dt
+    clock[0], clock[1], clock[2] = progress, rate, lag
+    spot = (progress - start) / step
+    k = min(int(spot), last - 1)
+    share = spot - k
+    for j in range(rows.shape[1]):
+        target[j] = rows[k, j] + share * (rows[k + 1, j] - rows[k, j])
+    for j in range(RATES, 2 * RATES):
+        target[j] *= rate

@@ -1,0 +1,298 @@
+"""Carry out a plan in headless MuJoCo: 1 ms physics, 500 Hz control, an honest outcome."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.control.compiled import parameters
+from stairwright.control.controller import Controller
+from stairwright.control.setpoint import Setpoint
+from stairwright.control.settings import ControllerSettings, parse_settings
+from stairwright.documents import content_hash, parse
+from stairwright.errors import InputError
+from stairwright.planning.interpolation import reference
+from stairwright.planning.plan import Plan
+from stairwright.robot.description import LEGS
+from stairwright.robot.mujoco_model import TIMESTEP, build_spec
+from stairwright.terrain.wheel_path import wheel_path
+
+from . import tick as score
+from .actuators import limit_torques
+from .disturbance import (
+    Disturbance,
+    Sensors,
+    disturb_trunk,
+    parse_disturbance,
+    real_terrain,
+)
+from .governor import Track, advance, track
+from .outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
+from .record import Recorder
+from .result import Metrics, Rollout
+
+Floats = NDArray[np.float64]
+
+CONTROL_STEPS = 2  # physics steps per control step: 500 Hz
+SETTLE = 0.4  # s at rest before the plan starts and after it ends
+CHUNK = 125  # control steps between reports of progress
+
+
+def rollout(
+    plan: Plan | Mapping[str, Any],
+    friction: float | None = None,
+    controller: Mapping[str, Any] | ControllerSettings | None = None,
+    seed: int = 0,
+    progress: Callable[[float], None] | None = None,
+    disturbance: Mapping[str, Any] | Disturbance | None = None,
+    record_hz: float = 100.0,
+    keep_plan: bool = True,
+) -> Rollout:
+    """Simulate a plan.
+
+    Args:
+        plan: A plan with at least two poses, or its document. An infeasible one may be tried.
+        friction: True Coulomb friction; the plan's by default. The controller knows the plan's.
+        controller: Settings by name, see `ControllerSettings`.
+        seed: Of the sensor noise.
+        progress: Called now and then with the share done, 0..1; may raise `Cancelled`.
+        disturbance: Deviations from what the plan believes, see `Disturbance`.
+        record_hz: Rate of the recorded series.
+        keep_plan: Embed the plan in the result.
+
+    Raises:
+        InputError: If an argument is bad or the plan has no poses.
+    """
+    if not isinstance(plan, Plan):
+        plan = parse(Plan, dict(plan))
+    if len(plan.poses) < 2:
+        raise InputError("the plan has no poses to carry out", ("plan", "poses"))
+    settings, deviations = parse_settings(controller), parse_disturbance(disturbance)
+    truth = plan.friction if friction is None else friction
+    if isinstance(truth, bool) or not isinstance(truth, (int, float)) or not 0.0 < truth <= 5.0:
+        raise InputError("must be a number above 0 and at most 5", ("friction",))
+    control_hz = 1.0 / (CONTROL_STEPS * TIMESTEP)
+    if not 1.0 <= record_hz <= control_hz:
+        raise InputError(f"must be between 1 and {control_hz:g}", ("record_hz",))
+    run = _Run(plan, float(truth), settings, deviations, int(seed), record_hz)
+    return run.result(run.simulate(progress), keep_plan)
+
+
+class _Run:
+    """One rollout: model, memory of the controller, score and record."""
+
+    def __init__(
+        self,
+        plan: Plan,
+        friction: float,
+        settings: ControllerSettings,
+        disturbance: Disturbance,
+        seed: int,
+        record_hz: float,
+    ) -> None:
+        self.plan, self.settings, self.seed = plan, settings, seed
+        self.friction, self.disturbance = friction, disturbance
+        self.robot = robot = plan.robot_description
+        self.path = wheel_path(plan.terrain, robot.wheel.radius)
+        terrain = real_terrain(plan.terrain, disturbance.height)
+        spec = build_spec(robot, terrain, max(0.01, friction + disturbance.friction), visual=False)
+        disturb_trunk(spec, robot, disturbance)
+        self.model = spec.compile()
+        self.data = mujoco.MjData(self.model)
+        self.dt = CONTROL_STEPS * self.model.opt.timestep
+        self.track: Track = track(reference(plan, joint_rate=None), robot, settings)
+        self.limit = 2.5 * self.track.duration + 5.0
+        self.sensors = Sensors(disturbance, self.dt, seed)
+        self.record = parameters(robot, plan.friction, settings)
+        native = settings.form == "contact" and settings.solver == "native"
+        self.controller = None if native else Controller(robot, self.path, plan.friction, settings)
+        self.clock = np.array([self.track.start, 0.0, 0.0])
+        self.places = np.full(4, np.nan)
+        self.forces = np.tile([0.0, robot.mass * 9.81 / 4], 4)
+        self.target = np.zeros(self.track.rows.shape[1])
+        self.wanted = np.zeros(12)
+        self.score = np.zeros(score.SCORES)
+        self.loads = LinkLoads(self.dt)
+        self.names = [self.model.geom(i).name for i in range(self.model.ngeom)]
+        self.floor = float(terrain.vertices[:, 1].min())
+        every = max(1, round(1.0 / (record_hz * self.dt)))
+        self.recorder = Recorder(every, self.track, robot.wheel.radius)
+        self.wall = 0.0
+        self._place()
+
+    def _place(self) -> None:
+        """Put the robot into the plan's first pose."""
+        pose = self.plan.poses[0]
+        front, rear = list(pose.q[:2]), list(pose.q[2:])
+        qpos = self.data.qpos
+        qpos[:3] = pose.x_c, 0.0, pose.z_c
+        qpos[3:7] = math.cos(pose.pitch / 2), 0.0, math.sin(pose.pitch / 2), 0.0
+        qpos[7:] = [*front, 0.0, *front, 0.0, *rear, 0.0, *rear, 0.0]
+        mujoco.mj_forward(self.model, self.data)
+        # A terrain other than planned may reach above or below the wheels: stand on it.
+        lift = max((-float(d) for d in self.data.contact.dist), default=0.0)
+        if lift > 1e-3:
+            qpos[2] += lift
+            mujoco.mj_forward(self.model, self.data)
+
+    def simulate(self, progress: Callable[[float], None] | None) -> Ending:
+        """Run the loop to its end."""
+        watch, begin = ProgressWatch(), time.perf_counter()
+        steps, settled = 0, 0
+        total = self.track.end - self.track.start
+        while True:
+            cause = self._chunk(steps * self.dt >= SETTLE)
+            steps += CHUNK
+            now = self.data.time
+            done = (self.clock[0] - self.track.start) / total
+            if progress is not None:
+                progress(min(1.0, 0.999 * done))
+            if cause:
+                break
+            if done >= 1.0 - 1e-9:
+                settled += CHUNK
+                if settled * self.dt > SETTLE and (self._at_rest() or settled * self.dt > 2.0):
+                    cause = ("arrived", "")
+                    break
+            elif watch.stuck(now, self.clock[0]):
+                cause = ("stuck", "")
+                break
+            if now > self.limit:
+                cause = ("timeout", "")
+                break
+        self.wall = time.perf_counter() - begin
+        reached = self.clock[0] - self.track.start
+        return Ending(cause[0], self.data.time, (reached, total), self._end_error(), cause[1])
+
+    def _chunk(self, moving: bool) -> tuple[str, str] | None:
+        """Some control steps; the cause and its words if the rollout is over."""
+        model, data, step = self.model, self.data, mujoco.mj_step
+        qpos, qvel, ctrl, contacts = data.qpos, data.qvel, data.ctrl, data.sensordata
+        track, exact = self.track, self.sensors.exact
+        recorder = self.recorder
+        seen_qpos, seen_qvel = qpos, qvel
+        compiled_tick: Callable[..., int] = score.tick  # mypy cannot see through numba
+        ground = (self.record, self.path.pieces, self.path.corners)
+        course = (track.start, track.step, track.rows, track.speeds, self.settings.leash)
+        common: tuple[Any, ...] = (*ground, *course, moving, self.dt, qpos, qvel)
+        memory: tuple[Any, ...] = (
+            self.clock,
+            self.places,
+            self.forces,
+            self.target,
+            self.wanted,
+            ctrl,
+            self.score,
+        )
+        for _ in range(CHUNK):
+            if not exact:
+                seen_qpos, seen_qvel = self.sensors.sense(qpos, qvel)
+            if self.controller is None:
+                wheels = compiled_tick(*common, seen_qpos, seen_qvel, *memory, contacts)
+            else:
+                wheels = self._tick(moving, seen_qpos, seen_qvel)
+            if recorder.due():
+                recorder.take(data, self.clock, self.target, self.places)
+            if data.ncon != wheels or self.loads.loads:
+                self._touch()
+            step(model, data, CONTROL_STEPS)
+        if (
+            not (np.isfinite(qpos).all() and np.isfinite(qvel).all())
+            or data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number
+        ):
+            return "diverged", ""
+        why = fallen(
+            self.score[score.LAST_PITCH_ERROR], self.score[score.TILT], qpos[2], self.floor
+        )
+        return ("fell", why) if why else None
+
+    def _tick(self, moving: bool, qpos: Floats, qvel: Floats) -> int:
+        """`tick.tick` with the numpy controller."""
+        assert self.controller is not None
+        t = self.track
+        args = (t.start, t.step, t.rows, t.speeds, self.settings.leash, self.places)
+        advance(*args, moving, self.dt, self.clock, self.target)
+        self.wanted[:] = self.controller.step(qpos, qvel, Setpoint.from_row(self.target))
+        self.places[:] = self.controller.places
+        data = self.data
+        limit_torques(self.record, data.qvel[6:], self.wanted, data.ctrl)
+        score.keep_score(data.qpos, data.qvel, data.ctrl, self.target, self.dt, self.score)
+        return int(data.sensordata[0:16:4].sum())
+
+    def _touch(self) -> None:
+        """Book contacts that are not a wheel on the terrain."""
+        force, own = np.zeros(6), False
+        loads: dict[str, float] = {}
+        for i, (a, b) in enumerate(self.data.contact.geom[: self.data.ncon]):
+            first, second = self.names[a], self.names[b]
+            if second.startswith("terrain"):
+                first, second = second, first
+            if not first.startswith("terrain"):
+                own = True
+            elif not second.endswith("wheel"):
+                mujoco.mj_contactForce(self.model, self.data, i, force)
+                loads[second] = loads.get(second, 0.0) + float(np.hypot(*force[:2]))
+        self.loads.self_contacts += own
+        self.loads.add(self.data.time, loads)
+
+    def _wheels(self) -> Floats:
+        return np.array([self.data.body(f"{leg}_wheel").xpos[[0, 2]] for leg in LEGS])
+
+    def _end_error(self) -> float:
+        end = np.array(self.plan.poses[-1].wheels)[[0, 0, 1, 1]]
+        error = float(np.hypot(*(self._wheels() - end).T).max())
+        return error if math.isfinite(error) else math.inf
+
+    def _at_rest(self) -> bool:
+        return bool(np.abs(self.data.qvel[:3]).max() < 0.02)
+
+    def result(self, ending: Ending, keep_plan: bool) -> Rollout:
+        """The document of what happened."""
+        plan, robot = self.plan, self.robot
+        outcome, reason = judge(ending, self.loads, robot.mass * 9.81)
+        series = self.recorder.series()
+        s, steps = self.score, max(1.0, self.score[score.STEPS])
+        reached, total = ending.progress
+        metrics = Metrics(
+            duration=ending.time,
+            pitch_error_max=s[score.PITCH_MAX],
+            pitch_error_rms=math.sqrt(s[score.PITCH_SQUARES] / steps),
+            joint_error_rms=math.sqrt(s[score.JOINT_SQUARES] / steps / 8),
+            torque_peak=s[score.LEG_TORQUE],
+            wheel_torque_peak=s[score.WHEEL_TORQUE],
+            energy=s[score.ENERGY],
+            link_contacts=self.loads.contacts,
+            link_force_peak=self.loads.peak,
+            self_contacts=self.loads.self_contacts,
+            end_error=min(ending.error, 1e6),
+            progress=reached / total,
+            speed_mean=reached / max(ending.time - SETTLE, self.dt),
+            real_time_factor=ending.time / max(self.wall, 1e-9),
+        )
+        deviations = {k: v for k, v in self.disturbance.model_dump().items() if v != 0.0}
+        key = [plan.id, plan.friction, self.friction, self.seed, self.settings.model_dump()]
+        return Rollout(
+            id="r-" + content_hash([*key, deviations]).removeprefix("sha256:"),
+            plan_id=plan.id,
+            method=plan.method,
+            terrain=plan.terrain,
+            terrain_hash=plan.terrain_hash,
+            robot=plan.robot,
+            robot_hash=plan.robot_hash,
+            robot_description=robot,
+            friction=self.friction,
+            seed=self.seed,
+            controller=self.settings,
+            disturbance=deviations,
+            outcome=outcome,
+            reason=reason,
+            metrics=metrics,
+            series=series,
+            plan=plan if keep_plan else None,
+        )
