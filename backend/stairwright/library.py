@@ -65,7 +65,8 @@ def _load(model: type[D], folder: str, source: str | os.PathLike[str] | Mapping[
         raise InputError(f"expected a name, a path or a mapping, got {type(source).__name__}")
     if str(source) in _names(folder):
         preset = data_folder(folder) / f"{source}.yaml"
-        return _preset(model, preset, preset.stat().st_mtime_ns)
+        loaded: D = _preset(model, preset, preset.stat().st_mtime_ns)
+        return loaded
     path = Path(source)
     if path.suffix.lower() in (".yaml", ".yml", ".json"):
         return parse(model, load_mapping(path))
