@@ -87,10 +87,14 @@ def torque_margin(robot: Robot, frames: Frames, held: Support, forces: Floats) -
     for leg in range(2):
         mine = held.owner == leg
         total = forces[mine].sum(axis=0)
+        # One face of a corner carries the wheel: see `Support.forces`.
+        loaded = held.points[mine][np.argmax(np.abs(forces[mine]).sum(axis=1))]
         hip, knee, wheel = (
             np.ascontiguousarray(f[leg]) for f in (frames.hips, frames.knees, frames.wheels)
         )
-        thigh, calf = leg_torques(planar, hip, knee, wheel, float(total[0]), float(total[1]))
+        thigh, calf = leg_torques(
+            planar, hip, knee, wheel, loaded, float(total[0]), float(total[1])
+        )
         spare = min(spare, planar.leg_torque - max(thigh, calf))
         tangents = np.stack([held.normals[mine, 1], -held.normals[mine, 0]], axis=1)
         traction = float(np.abs(np.sum(tangents * forces[mine], axis=1).sum()))
@@ -98,7 +102,7 @@ def torque_margin(robot: Robot, frames: Frames, held: Support, forces: Floats) -
     return float(spare)
 
 
-def contact_forces(weight: float, com_x: float, contacts: Floats, normals: Floats) -> Floats:
+def contact_forces(weight: float, com_x: Floats, contacts: Floats, normals: Floats) -> Floats:
     """Forces (n, 2, 2) [N] of many poses: wheel pair, then (tangential, normal).
 
     The equilibrium with the least friction need. Where two pushing contacts hold no equilibrium,
@@ -107,7 +111,8 @@ def contact_forces(weight: float, com_x: float, contacts: Floats, normals: Float
     Args:
         weight: Of the whole robot [N].
         com_x: (n,) centre of mass [m].
-        contacts, normals: (n, 2, 2) contact points [m] and unit normals.
+        contacts: (n, 2, 2) contact points [m].
+        normals: (n, 2, 2) unit normals out of the terrain.
     """
     out = np.empty((len(com_x), 2, 2))
     for i in range(len(com_x)):

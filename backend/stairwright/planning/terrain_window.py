@@ -82,9 +82,7 @@ def _merged(chains: list[Floats]) -> list[Floats]:
     """At most CELLS chains: the pair whose hull adds least ground is merged first."""
     chains = list(chains)
     while len(chains) > CELLS:
-        hulls = [
-            _upper_hull(np.concatenate(pair)) for pair in itertools.pairwise(chains)
-        ]
+        hulls = [_upper_hull(np.concatenate(pair)) for pair in itertools.pairwise(chains)]
         added = [
             _area(hull) - _area(a) - _area(b)
             for hull, a, b in zip(hulls, chains, chains[1:], strict=False)

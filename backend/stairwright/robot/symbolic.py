@@ -77,7 +77,7 @@ def to_world(trunk: Point, pitch: Scalar, offset: Point) -> Point:
 
 
 def forward(shape: Shape, x_c: Scalar, z_c: Scalar, pitch: Scalar, q: Any) -> Skeleton:
-    """Hips, knees and wheel centres with the trunk at (x_c, z_c, pitch) and planar joints `q` (4)."""
+    """Hips, knees and wheel centres; the trunk at (x_c, z_c, pitch), planar joints `q` (4)."""
     trunk = (x_c, z_c)
     hips, knees, wheels = [], [], []
     for leg in range(2):

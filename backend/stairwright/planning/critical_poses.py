@@ -1,0 +1,189 @@
+"""The paper's planner: optimal poses at critical places only (eqs 18-22), known ends.
+
+Two poses for each obstacle: the front wheel arriving at its face, and just past it, where the rear
+wheel is still below. The rear wheel's place is found by solving the problem at several places and
+keeping the pose with most room for the centre of mass. Poses of a uniform flight are solved once
+and moved along.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
+from stairwright.terrain.wheel_path import wheel_path
+
+from .certificate import certify
+from .diagnosis import diagnose, no_stand, statics_problem
+from .path.course import NoStand, Stand, find_stands
+from .plan import Plan, Pose, Problem, Timing, plan_id
+from .pose_locations import Obstacle, find_obstacles, front_places
+from .pose_search import Found, Place, PoseSearch
+from .poses import complete_pose
+from .solver import now
+from .timing import pose_times
+from .weights import CriticalWeights
+
+Floats = NDArray[np.float64]
+
+CONGRUENT = 1e-6  # m; moved poses of a uniform flight must fit the terrain this well
+
+
+def plan_critical(
+    terrain: Terrain, robot: Robot, friction: float, weights: CriticalWeights
+) -> Plan:
+    """Initial pose, two optimal poses per obstacle, final pose.
+
+    Args:
+        terrain: The profile.
+        robot: The robot.
+        friction: Between wheels and terrain.
+        weights: Q of eq 18, speed, and whether whole links are kept clear.
+
+    Returns:
+        The plan; infeasible with a problem where a pose has no solution or no equilibrium. The
+        poses found before it are kept.
+    """
+    started = now()
+    try:
+        path = wheel_path(terrain, robot.wheel.radius)
+        begin, end = find_stands(terrain, robot, path)
+    except NoStand as error:
+        stop = no_stand(terrain, robot, error)
+        return _document(terrain, robot, friction, weights, [], stop, now() - started)
+    search = PoseSearch(robot, path, friction, weights)
+    obstacles = find_obstacles(path, begin.wheels[1], end.wheels[0])
+    found, problem = _solve(search, obstacles, begin, end)
+    knots = [_standing(search, begin), *found]
+    if problem is None:
+        knots.append(_standing(search, end))
+    poses = _poses(search, knots, weights.speed)
+    if problem is None:
+        problem = _unbalanced(search, poses)
+    return _document(terrain, robot, friction, weights, poses, problem, now() - started)
+
+
+@dataclass(frozen=True)
+class _Knot:
+    trunk: tuple[float, float, float]
+    joints: Floats
+    wheels: tuple[float, float]
+
+
+def _standing(search: PoseSearch, stand: Stand) -> _Knot:
+    x, z, pitch = (float(value) for value in stand.body)
+    return _Knot((x, z, pitch), search.standing, stand.wheels)
+
+
+def _solve(
+    search: PoseSearch, obstacles: list[Obstacle], begin: Stand, end: Stand
+) -> tuple[list[_Knot], Problem | None]:
+    knots: list[_Knot] = []
+    rear = begin.wheels[1]
+    posture = np.array([begin.body[2], *search.standing])
+    pairs: list[tuple[_Knot, _Knot]] = []
+    fronts = front_places(obstacles, search.path.radius, end.wheels[0])
+    for k, (_obstacle, (first, second)) in enumerate(zip(obstacles, fronts, strict=True)):
+        moved = _moved_pair(search, obstacles, pairs, k) if len(pairs) > 1 else None
+        if moved is not None and moved[0].wheels[1] >= rear:
+            pair = moved
+        else:
+            places = (
+                Place(first, (rear, end.wheels[1]), True, posture),
+                Place(second, (rear, end.wheels[1]), False, posture),
+            )
+            both = search.best_pair(*places)
+            for place, one in zip(places, both, strict=True):
+                if one is None or not one.solution.solved:
+                    return knots, diagnose(search, place)
+                knots.append(_knot(one))
+            pair = (knots[-2], knots[-1])
+            del knots[-2:]
+        pairs.append(pair)
+        knots.extend(pair)
+        rear = pair[1].wheels[1]
+        posture = np.array([pair[1].trunk[2], *pair[1].joints])
+    return knots, None
+
+
+def _knot(found: Found) -> _Knot:
+    x = found.solution.x
+    return _Knot((float(x[0]), float(x[1]), float(x[2])), x[3:7], (float(x[7]), float(x[8])))
+
+
+def _moved_pair(
+    search: PoseSearch, obstacles: list[Obstacle], pairs: list[tuple[_Knot, _Knot]], k: int
+) -> tuple[_Knot, _Knot] | None:
+    """The last pair moved to obstacle `k`, if the flight is uniform there; else None."""
+    if not obstacles[k].same_as(obstacles[k - 1]):
+        return None
+    way = obstacles[k].begin - obstacles[k - 1].begin
+    path = search.path
+    step = np.diff(path.centres(np.array([obstacles[k - 1].begin, obstacles[k].begin])), axis=0)[0]
+    out = []
+    for knot in pairs[-1]:
+        wheels = (knot.wheels[0] + way, knot.wheels[1] + way)
+        before, after = path.centres(np.array(knot.wheels)), path.centres(np.array(wheels))
+        trunk = (knot.trunk[0] + step[0], knot.trunk[1] + step[1], knot.trunk[2])
+        if np.abs(after - before - step).max() > CONGRUENT or not search.clear(trunk, knot.joints):
+            return None
+        out.append(_Knot((float(trunk[0]), float(trunk[1]), trunk[2]), knot.joints, wheels))
+    return out[0], out[1]
+
+
+def _poses(search: PoseSearch, knots: list[_Knot], speed: float) -> list[Pose]:
+    wheels = np.array([knot.wheels for knot in knots])
+    times = pose_times(wheels, speed)
+    progress = wheels.mean(axis=1) - wheels[0].mean()
+    return [
+        complete_pose(
+            search.robot,
+            search.path,
+            search.friction,
+            knot.trunk,
+            knot.wheels,
+            q=knot.joints,
+            progress=float(progress[i]),
+            time=float(times[i]),
+        )
+        for i, knot in enumerate(knots)
+    ]
+
+
+def _unbalanced(search: PoseSearch, poses: list[Pose]) -> Problem | None:
+    worst = min(poses, key=lambda pose: pose.margins.com)
+    return None if worst.margins.com >= 0.0 else statics_problem(search, worst)
+
+
+def _document(
+    terrain: Terrain,
+    robot: Robot,
+    friction: float,
+    weights: CriticalWeights,
+    poses: list[Pose],
+    problem: Problem | None,
+    seconds: float,
+) -> Plan:
+    numbers = weights.model_dump()
+    plan = Plan(
+        id=plan_id(terrain, robot, friction, "critical", numbers),
+        method="critical",
+        terrain=terrain,
+        terrain_hash=terrain.hash,
+        robot=robot.name,
+        robot_hash=robot.hash,
+        robot_description=robot,
+        friction=friction,
+        weights=numbers,
+        status="feasible" if problem is None else "infeasible",
+        problem=problem,
+        poses=poses,
+        critical=list(range(1, len(poses) - 1 if problem is None else len(poses))),
+        timing=Timing(total=poses[-1].time if poses else 0.0, rule="paper"),
+        solve_time=seconds,
+    )
+    return plan if not poses else plan.model_copy(update={"certificate": certify(plan)})

@@ -1,0 +1,137 @@
+"""What stops the robot: the constraint that must give way for a pose to exist, and by how much."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
+
+from .path.course import NoStand
+from .plan import Limit, Pose, Problem
+from .pose_search import APART, CLEARANCE, Place, PoseSearch
+from .solver import Bounds
+
+Floats = NDArray[np.float64]
+
+
+def no_stand(terrain: Terrain, robot: Robot, error: NoStand) -> Problem:
+    """The problem of a course without room to stand at an end."""
+    from stairwright.terrain.wheel_path import wheel_path
+
+    path = wheel_path(terrain, robot.wheel.radius)
+    at = path.contacts(np.array([error.s]))[0]
+    limit = Limit(needed=error.needed, available=error.available, quantity="level length", unit="m")
+    kind = "start" if error.kind == "start" else "goal"
+    return Problem(
+        kind="start" if kind == "start" else "goal",
+        at=(float(at[0]), float(at[1])),
+        progress=0.0,
+        message=f"No place to stand at the {kind}: {error}.",
+        limit=limit,
+    )
+
+
+def statics_problem(search: PoseSearch, pose: Pose) -> Problem:
+    """The problem of a pose whose centre of mass has no equilibrium inside the friction cones."""
+    needed = search.friction - pose.margins.friction
+    return Problem(
+        kind="statics",
+        at=pose.contacts[0],
+        progress=pose.progress,
+        message=(
+            "The ground cannot hold the robot here: the centre of mass lies "
+            f"{-pose.margins.com * 1e3:.0f} mm outside what friction {search.friction:g} allows."
+            if pose.margins.com > -100.0
+            else f"No centre of mass is held here with friction {search.friction:g}."
+        ),
+        limit=Limit(
+            needed=float(min(needed, 1e3)),
+            available=search.friction,
+            quantity="friction",
+            unit="1",
+        ),
+    )
+
+
+def diagnose(search: PoseSearch, place: Place) -> Problem:
+    """Why no pose exists with the front wheel at a place.
+
+    One kind of constraint at a time is relaxed, at every place of the rear wheel, until a pose
+    exists; the relaxation that is smallest for its kind is the reason.
+    """
+    front = search.path.contacts(np.array([place.front]))[0]
+    at = (float(front[0]), float(front[1]))
+    rears = search.rear_places(place)
+    trials: list[tuple[str, float, Callable[[Bounds, float], Bounds]]] = [
+        ("clearance", 0.2, lambda b, d: replace(b, clearance=CLEARANCE - d, apart=APART - d)),
+        ("joint_limit", 1.5, _widen),
+        ("reach", 0.5, lambda b, d: replace(b, hip=-d)),
+    ]
+    found: list[tuple[float, str, float]] = []
+    for kind, most, relax in trials:
+        amount = _least(search, place, rears, relax, most)
+        if amount is not None:
+            found.append((amount / most, kind, amount))
+    if not found:
+        return Problem(
+            kind="reach",
+            at=at,
+            progress=0.0,
+            message=(
+                "The legs do not reach: no pose puts the front wheel here and the rear wheel "
+                "behind its hip, whatever single limit gives way."
+            ),
+        )
+    _, kind, amount = min(found)
+    if kind == "clearance":
+        text = f"Trunk or links would have to come {amount * 1e3:.0f} mm closer to the ground"
+        limit = Limit(
+            needed=CLEARANCE, available=CLEARANCE - amount, quantity="clearance", unit="m"
+        )
+        return Problem(kind="clearance", at=at, progress=0.0, message=text + ".", limit=limit)
+    if kind == "joint_limit":
+        text = f"A joint would have to turn {amount:.2f} rad beyond its limit."
+        limit = Limit(needed=amount, available=0.0, quantity="joint range beyond limit", unit="rad")
+        return Problem(kind="joint_limit", at=at, progress=0.0, message=text, limit=limit)
+    text = f"The rear wheel cannot stay behind its hip (eq 20): {amount * 1e3:.0f} mm are missing."
+    limit = Limit(needed=amount, available=0.0, quantity="rear hip behind contact", unit="m")
+    return Problem(kind="reach", at=at, progress=0.0, message=text, limit=limit)
+
+
+def _widen(bounds: Bounds, amount: float) -> Bounds:
+    lower, upper = bounds.lower.copy(), bounds.upper.copy()
+    lower[3:7] -= amount
+    upper[3:7] += amount
+    return replace(bounds, lower=lower, upper=upper)
+
+
+def _least(
+    search: PoseSearch,
+    place: Place,
+    rears: Floats,
+    relax: Callable[[Bounds, float], Bounds],
+    most: float,
+) -> float | None:
+    """Least relaxation with which some rear wheel place has a pose; None if `most` has none."""
+
+    def works(amount: float) -> bool:
+        nonlocal rears
+        for i, rear in enumerate(rears):
+            bounds = relax(search.bounds(place, float(rear)), amount)
+            if search.solve(place, float(rear), patient=False, bounds=bounds).solution.solved:
+                rears = np.concatenate([rears[i : i + 1], np.delete(rears, i)])
+                return True
+        return False
+
+    if not works(most):
+        return None
+    low, high = 0.0, most
+    for _ in range(7):
+        middle = (low + high) / 2
+        low, high = (low, middle) if works(middle) else (middle, high)
+    return high
