@@ -9,7 +9,6 @@ export default defineConfig({
   server: {
     proxy: {
       "/api": backend,
-      "/healthz": backend,
       "/scene": { target: backend, ws: true },
     },
   },

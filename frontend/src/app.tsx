@@ -9,6 +9,9 @@ import { Results } from "./results/results";
 import { Scene } from "./scene/scene";
 import { assertive, polite } from "./state/announce";
 import { connected } from "./state/connection";
+import { isEmpty } from "./state/drawing";
+import { plan, refusal, stale } from "./state/planning";
+import { activity, run } from "./state/rollouts";
 import { inspectorOpen, swapped, type Tab, tab } from "./state/view";
 import { Status } from "./status";
 import { ImportZone } from "./topbar/import-zone";
@@ -20,6 +23,13 @@ const TABS: [Tab, string][] = [
   ["scene", "Scene"],
   ["results", "Results"],
 ];
+
+/** In one word, for style sheets and tests. */
+function planState(): string {
+  if (isEmpty.value) return "none";
+  if (refusal.value) return "refused";
+  return stale.value || !plan.value ? "planning" : plan.value.status;
+}
 
 export function App() {
   useEffect(() => {
@@ -33,6 +43,8 @@ export function App() {
       data-swapped={swapped.value ? "" : undefined}
       data-inspector={inspectorOpen.value ? "open" : "shut"}
       data-tab={tab.value}
+      data-plan={planState()}
+      data-run={activity.value === "idle" ? (run.value?.outcome ?? "none") : activity.value}
     >
       <TopBar />
       <nav class="tabs" aria-label="Areas">

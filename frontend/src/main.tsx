@@ -1,5 +1,6 @@
 /** Start: read what there is, restore the address or open the sample, then follow every change. */
 
+import { effect } from "@preact/signals";
 import { render } from "preact";
 import { getRobots, getSettings, getTerrains } from "./api/client";
 import { App } from "./app";
@@ -8,8 +9,8 @@ import { renewSession, startScene } from "./scene/drive";
 import { startAnnouncing } from "./state/announce";
 import { report, watchConnection } from "./state/connection";
 import { drawing, open } from "./state/drawing";
-import { startPlanning } from "./state/planning";
-import { startClock } from "./state/playback";
+import { plan, startPlanning } from "./state/planning";
+import { duration, seek, startClock } from "./state/playback";
 import { restoreRollout } from "./state/rollouts";
 import { robotName, robots, settings, terrains } from "./state/setup";
 import { restoreFromAddress, startSharing } from "./state/share";
@@ -31,6 +32,17 @@ async function readCatalogue(): Promise<void> {
     robotName.value = allRobots[0]?.name ?? "";
 }
 
+/** A robot half-way up says more than one that waits at the foot. */
+const TELLING = 0.43;
+
+function showMiddle(): void {
+  const stop = effect(() => {
+    if (!plan.value) return;
+    seek(duration.peek() * TELLING);
+    queueMicrotask(() => stop());
+  });
+}
+
 let started = false;
 
 async function begin(): Promise<void> {
@@ -41,6 +53,7 @@ async function begin(): Promise<void> {
   if (!restored) {
     const sample = terrains.peek().find((t) => t.name === SAMPLE) ?? terrains.peek()[0];
     if (sample) open(sample, sample);
+    showMiddle();
   }
   fit(drawing.peek().points);
   startSharing();

@@ -32,8 +32,13 @@ function sentence(problem: ProblemDetail, status: number): string {
   return problem.detail ?? problem.title ?? `The service answered ${status}.`;
 }
 
-async function call(method: string, path: string, body?: unknown): Promise<Response> {
-  const init: RequestInit = { method };
+async function call(
+  method: string,
+  path: string,
+  body?: unknown,
+  signal?: AbortSignal,
+): Promise<Response> {
+  const init: RequestInit = { method, ...(signal ? { signal } : {}) };
   if (body instanceof FormData) init.body = body;
   else if (body !== undefined) {
     init.body = JSON.stringify(body);
@@ -41,8 +46,9 @@ async function call(method: string, path: string, body?: unknown): Promise<Respo
   }
   let response: Response;
   try {
-    response = await fetch(path.startsWith("/") ? path : `${BASE}/${path}`, init);
-  } catch {
+    response = await fetch(`${BASE}/${path}`, init);
+  } catch (error) {
+    if (signal?.aborted) throw error;
     throw new Offline("The service does not answer.");
   }
   if (response.ok) return response;
@@ -51,8 +57,13 @@ async function call(method: string, path: string, body?: unknown): Promise<Respo
   throw new ApiError(response.status, problem);
 }
 
-async function json<T>(method: string, path: string, body?: unknown): Promise<T> {
-  return (await (await call(method, path, body)).json()) as T;
+async function json<T>(
+  method: string,
+  path: string,
+  body?: unknown,
+  signal?: AbortSignal,
+): Promise<T> {
+  return (await (await call(method, path, body, signal)).json()) as T;
 }
 
 export const getTerrains = () => json<TerrainDocument[]>("GET", "terrains");
@@ -61,11 +72,12 @@ export const getSettings = () => json<Settings>("GET", "settings");
 export const getPlan = (id: string) => json<Plan>("GET", `plans/${id}`);
 export const getRollout = (id: string) => json<Rollout>("GET", `rollouts/${id}`);
 export const getJob = (id: string) => json<Job>("GET", `jobs/${id}`);
-export const postPlan = (request: PlanRequest) => json<Plan>("POST", "plans", request);
+export const postPlan = (request: PlanRequest, signal?: AbortSignal) =>
+  json<Plan>("POST", "plans", request, signal);
 
 export async function ping(): Promise<number> {
   const started = performance.now();
-  await call("GET", "/healthz");
+  await call("GET", "healthz");
   return performance.now() - started;
 }
 

@@ -2,48 +2,56 @@
  * At most one request in flight. While it runs only the newest question is kept; when the answer
  * comes back that question is sent. Answers older than the one already shown are dropped.
  */
+
+interface Asked<Question> {
+  question: Question;
+  sequence: number;
+  /** A newer question need not wait for this one: it is given up. */
+  interruptible: boolean;
+}
+
 export class NewestWins<Question, Answer> {
-  private waiting: { question: Question; sequence: number } | null = null;
-  private running = false;
+  private waiting: Asked<Question> | null = null;
+  private current: (Asked<Question> & { abort: AbortController }) | null = null;
   private asked = 0;
   private shown = 0;
 
   constructor(
-    private readonly solve: (question: Question) => Promise<Answer>,
+    private readonly solve: (question: Question, signal: AbortSignal) => Promise<Answer>,
     private readonly show: (answer: Answer, question: Question, newest: boolean) => void,
-    private readonly fail: (error: unknown, newest: boolean) => void,
+    private readonly fail: (error: unknown, question: Question, newest: boolean) => void,
   ) {}
 
-  get busy(): boolean {
-    return this.running;
-  }
-
-  ask(question: Question): void {
-    this.waiting = { question, sequence: ++this.asked };
-    if (!this.running) void this.pump();
+  ask(question: Question, interruptible = false): void {
+    this.waiting = { question, sequence: ++this.asked, interruptible };
+    if (this.current?.interruptible) this.current.abort.abort();
+    if (!this.current) void this.pump();
   }
 
   /** Forget what was asked: an answer still on its way will not be shown. */
   forget(): void {
     this.waiting = null;
-    this.shown = this.asked;
+    this.shown = ++this.asked;
+    this.current?.abort.abort();
   }
 
   private async pump(): Promise<void> {
-    this.running = true;
     while (this.waiting) {
-      const { question, sequence } = this.waiting;
+      const now = { ...this.waiting, abort: new AbortController() };
       this.waiting = null;
+      this.current = now;
       try {
-        const answer = await this.solve(question);
-        if (sequence > this.shown) {
-          this.shown = sequence;
-          this.show(answer, question, sequence === this.asked);
+        const answer = await this.solve(now.question, now.abort.signal);
+        if (now.sequence > this.shown) {
+          this.shown = now.sequence;
+          this.show(answer, now.question, now.sequence === this.asked);
         }
       } catch (error) {
-        this.fail(error, sequence === this.asked);
+        if (!now.abort.signal.aborted) {
+          this.fail(error, now.question, now.sequence === this.asked);
+        }
       }
     }
-    this.running = false;
+    this.current = null;
   }
 }

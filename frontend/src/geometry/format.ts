@@ -21,12 +21,11 @@ export function took(seconds: number): string {
 export function setting(value: number): string {
   const size = Math.abs(value);
   if (size === 0) return "0";
-  if (size < 0.001 || size >= 100_000) {
+  if (size < 0.01 || size >= 100_000) {
     return value
       .toExponential(size === 10 ** Math.round(Math.log10(size)) ? 0 : 1)
       .replace("-", "−");
   }
-  if (size < 0.01) return fixed(value, 4);
   if (size < 0.1) return fixed(value, 3);
   if (size < 10) return fixed(value, 2);
   return fixed(value, size < 100 ? 1 : 0);

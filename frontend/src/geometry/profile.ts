@@ -6,12 +6,15 @@ export type Points = readonly Vec2[];
 
 /** Shorter than this along x, a segment is a vertical face. */
 const UPRIGHT = 1e-6;
+/** Steeper than this (70 degrees), people call it a riser. */
+const STEEP = 2.75;
 const LEVEL = 1e-6;
 
 export type SegmentKind = "flat" | "upright" | "slope";
 
 export function segmentKind(a: Vec2, b: Vec2): SegmentKind {
-  if (Math.abs(b[0] - a[0]) < UPRIGHT) return "upright";
+  const run = Math.abs(b[0] - a[0]);
+  if (run < UPRIGHT || Math.abs(b[1] - a[1]) > STEEP * run) return "upright";
   return Math.abs(b[1] - a[1]) < LEVEL ? "flat" : "slope";
 }
 

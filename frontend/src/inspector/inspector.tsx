@@ -123,7 +123,6 @@ function Segments<T extends string>({ label, small, options, value, onChoose }: 
       {!small && <span class="lab">{label}</span>}
       <div class="seg" role="radiogroup" aria-label={label} tabIndex={-1} onKeyDown={onKeyDown}>
         {options.map(([each, text]) => (
-          // biome-ignore lint/a11y/useSemanticElements: a segmented control, not a list of dots
           <button
             key={each}
             type="button"

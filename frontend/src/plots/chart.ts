@@ -47,8 +47,7 @@ export interface ChartState {
   tint: Tint | null;
 }
 
-/** Value range of a half in its data. */
-function dataRange(lines: readonly Line[], least: number): [number, number] {
+function extremes(lines: readonly Line[]): [number, number] {
   let lo = Number.POSITIVE_INFINITY;
   let hi = Number.NEGATIVE_INFINITY;
   for (const line of lines) {
@@ -56,6 +55,19 @@ function dataRange(lines: readonly Line[], least: number): [number, number] {
       if (v < lo) lo = v;
       if (v > hi) hi = v;
     }
+  }
+  return [lo, hi];
+}
+
+/** Value range of a half in its data. */
+function dataRange(lines: readonly Line[], least: number): [number, number] {
+  const bands = extremes(lines.filter((line) => line.kind === "band"));
+  let [lo, hi] = extremes(lines);
+  if (bands[0] <= bands[1]) {
+    // A fall may leave the plot: what was asked for stays legible.
+    const room = 0.6 * Math.max(bands[1] - bands[0], least);
+    lo = Math.max(lo, bands[0] - room);
+    hi = Math.min(hi, bands[1] + room);
   }
   if (lo > hi) return [-least / 2, least / 2];
   const grow = Math.max(0, least - (hi - lo)) / 2;
@@ -145,9 +157,9 @@ export class Chart {
       stroke: c.tx3,
       ticks: { show: false },
       grid: { stroke: c.line, width: 1 },
-      splits: () => ticks(...(this.ranges[i] ?? [0, 1]), two ? 2.6 : 3.6),
+      splits: () => ticks(...(this.ranges[i] ?? [0, 1]), two ? 2.6 : 3.9),
       values: (_, splits) =>
-        splits.map((v) => fixed(v, Number.isInteger(v) ? 0 : 1) + (panel.unit === "%" ? " %" : "")),
+        splits.map((v) => fixed(v, Number.isInteger(v) ? 0 : 1) + (panel.unit === "%" ? "%" : "")),
     });
     return {
       width,

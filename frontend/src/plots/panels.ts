@@ -143,7 +143,7 @@ function pitchPanel(source: Source, time: Float64Array): Panel {
     title: PANELS.pitch,
     unit: "°",
     time,
-    halves: [top, error],
+    halves: run ? [top, error] : [top],
     spans: [8, 2],
     caption: "error",
     ...(cross ? { cross } : {}),

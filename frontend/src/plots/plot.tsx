@@ -29,7 +29,6 @@ export function Plot({ panel, tint }: PlotProps) {
   const layout = layoutOf(panel);
   const shade = theme.value;
 
-  // biome-ignore lint/correctness/useExhaustiveDependencies: data alone go through update() below
   useLayoutEffect(() => {
     const element = holder.current!;
     const { clientWidth: w, clientHeight: h } = element;

@@ -4,7 +4,7 @@ import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Vec2 } from "../api/types";
 import { connected } from "../state/connection";
 import { drawing } from "../state/drawing";
-import { slow } from "../state/planning";
+import { preview, slow } from "../state/planning";
 import { tool } from "../state/view";
 import { DimensionField } from "./dimension-field";
 import { EmptyCanvas } from "./empty";
@@ -76,7 +76,6 @@ function Canvas() {
   const { width, height } = size.value;
   const box = canvasBox.value;
   return (
-    // biome-ignore lint/a11y/noStaticElementInteractions: the corners inside carry roles and keys
     <svg
       ref={svg}
       class="ed"
@@ -175,7 +174,7 @@ export function Editor() {
     <section
       class="edit"
       aria-label="Profile editor"
-      data-faded={slow.value && connected.value ? "" : undefined}
+      data-faded={slow.value && !preview.value && connected.value ? "" : undefined}
     >
       <Toolbar />
       <div class="canvas" ref={holder}>

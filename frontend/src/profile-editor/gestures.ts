@@ -44,7 +44,10 @@ export interface Target {
 
 export function press(event: PointerEvent, at: Vec2, target: Target): void {
   touches.set(event.pointerId, at);
-  if (touches.size === 2) return startPinch();
+  if (touches.size === 2) {
+    startPinch();
+    return;
+  }
   if (event.button === 2) return;
   const panning = event.button === 1 || spaceHeld.peek();
   const drawn = drawing.peek().points;
@@ -75,7 +78,10 @@ function dragKind(target: Target): Drag["kind"] {
 /** Keep only the newest position; it is applied once a frame. */
 export function move(event: PointerEvent, at: Vec2): void {
   if (touches.has(event.pointerId)) touches.set(event.pointerId, at);
-  if (touches.size === 2) return pinch();
+  if (touches.size === 2) {
+    pinch();
+    return;
+  }
   if (!drag || event.pointerId !== drag.id) return;
   const first = pending === null;
   pending = { at, event };

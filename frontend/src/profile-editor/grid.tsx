@@ -58,6 +58,7 @@ export function Rulers() {
   const inView = (v: number | undefined, from: number, to: number) =>
     v !== undefined && v >= from && v <= to;
   return (
+    // biome-ignore lint/a11y/noAriaHiddenOnFocusable: a group in an SVG takes no focus
     <g aria-hidden="true">
       <rect class="rul" x={0} y={0} width={right} height={RULER_X} />
       <rect class="rul" x={0} y={0} width={RULER_Z} height={bottom} />

@@ -2,7 +2,7 @@
 
 import { connected, retryIn, retryNow } from "../state/connection";
 import { drawing, isEmpty, selection } from "../state/drawing";
-import { plan, planB, refusal, slow } from "../state/planning";
+import { plan, planB, preview, refusal, slow } from "../state/planning";
 import { dismissHint, hintSeen, isNarrow, layers } from "../state/view";
 import { Icon } from "../ui/icon";
 import { canvasBox, projection } from "./viewport";
@@ -55,12 +55,18 @@ export function Banner() {
   );
 }
 
+function veilText(): string {
+  if (!plan.value) return "Planning";
+  if (preview.value) return "Quick poses shown; the full path follows";
+  return "Planning the latest edit; the last plan is shown";
+}
+
 export function Veil() {
   if (!slow.value || !connected.value) return null;
   return (
     <div class="plan-veil">
       <span class="spin" />
-      {plan.value ? "Planning the latest edit; the last plan is shown" : "Planning"}
+      {veilText()}
     </div>
   );
 }

@@ -18,7 +18,9 @@ import { layers } from "../state/view";
 import { type Projection, projection } from "./viewport";
 
 /** At most this many ghosts between the key poses. */
-const GHOSTS = 18;
+const GHOSTS = 14;
+/** Key poses nearer to each other than this are drawn as one [m]. */
+const APART = 0.06;
 
 function poseFrame(shown: Plan, i: number): Frame | null {
   const pose = shown.poses[i];
@@ -127,7 +129,6 @@ function Details({
       {shown && (
         <g class="cps">
           {shown.map((p, i) => (
-            // biome-ignore lint/suspicious/noArrayIndexKey: the layout of the points is fixed
             <circle key={i} cx={to.px(p[0])} cy={to.py(p[1])} r={2} />
           ))}
         </g>
@@ -135,6 +136,21 @@ function Details({
     </g>
   );
 }
+
+/** Key poses that stand apart; of a cluster the first is drawn. */
+const keyIndices = computed<number[]>(() => {
+  const shown = plan.value;
+  if (!shown) return [];
+  const out: number[] = [];
+  for (const i of shown.critical) {
+    const last = out[out.length - 1];
+    const here = shown.poses[i];
+    const there = last === undefined ? undefined : shown.poses[last];
+    if (!here) continue;
+    if (!there || Math.hypot(here.x_c - there.x_c, here.z_c - there.z_c) > APART) out.push(i);
+  }
+  return out;
+});
 
 export function Ghosts() {
   const shown = plan.value;
@@ -145,7 +161,6 @@ export function Ghosts() {
     indices.map((i, k) => {
       const f = poseFrame(shown, i);
       // Pooled by place in the list: a new plan moves the figures instead of replacing them.
-      // biome-ignore lint/suspicious/noArrayIndexKey: see above
       return f && <Figure key={k} robot={shape} bones={skeleton(shape, f)} to={to} kind={kind} />;
     });
   return (
@@ -156,7 +171,7 @@ export function Ghosts() {
       {layers.value.has("ghosts") && <g>{figures(ghostIndices.value, "ghost")}</g>}
       {layers.value.has("keys") && (
         <g>
-          {figures(shown.critical, "key")}
+          {figures(keyIndices.value, "key")}
           <KeyNumbers shown={shown} to={to} />
         </g>
       )}
@@ -170,8 +185,9 @@ function KeyNumbers({ shown, to }: { shown: Plan; to: Projection }) {
   let last: Vec2 | null = null;
   return (
     <g class="kb">
-      {shown.critical.map((index, k) => {
+      {keyIndices.value.map((index) => {
         const pose = shown.poses[index];
+        const k = shown.critical.indexOf(index);
         if (!pose) return null;
         const at: Vec2 = [to.px(pose.x_c), to.py(pose.z_c + half) - 14 - Math.abs(pose.pitch) * 20];
         if (last && Math.hypot(at[0] - last[0], at[1] - last[1]) < 20) return null;

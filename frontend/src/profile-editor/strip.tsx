@@ -11,6 +11,7 @@ const LABELS = 147;
 const LEGEND = 90;
 const ROW = 12;
 const PITCH = 16;
+const VISIBLE = 2;
 
 /** Path data of a row, one string a class: bars between the middles of neighbouring poses. */
 function bars(shown: Plan, row: number, top: number, left: number, right: number): string[] {
@@ -22,7 +23,9 @@ function bars(shown: Plan, row: number, top: number, left: number, right: number
   let from = Math.max(left, xs[0] ?? left);
   let open: MarginClass | null = null;
   const close = (x: number) => {
-    const to = Math.min(right, Math.max(left, x));
+    // Short and thin is what matters most: it stays visible at any zoom.
+    const least = open !== null && open < 3 ? from + VISIBLE : from;
+    const to = Math.min(right, Math.max(left, x, least));
     if (open !== null && to > from)
       paths[open] += `M${from.toFixed(1)} ${y}H${to.toFixed(1)}v${ROW}H${from.toFixed(1)}z`;
     from = Math.max(from, to);
@@ -42,7 +45,7 @@ export function MarginStrip() {
   const { width, height } = size.value;
   const narrow = width < 800;
   const top = height - STRIP + 8;
-  const left = narrow ? 112 : LABELS;
+  const left = narrow ? 122 : LABELS;
   const right = width - (narrow ? 62 : LEGEND);
   const shown = plan.value;
   const { px } = projection.value;
@@ -65,7 +68,7 @@ export function MarginStrip() {
   };
 
   return (
-    <g class="strip" role="img" aria-label="Margins along the profile">
+    <g class="strip">
       <rect class="stbg" x={0} y={height - STRIP} width={width} height={STRIP} />
       <path class="edge" d={`M0 ${height - STRIP + 0.5}H${width}`} />
       {MARGINS.map((kind, row) => {
@@ -84,7 +87,6 @@ export function MarginStrip() {
             </text>
             <rect class="s0" x={left} y={y} width={Math.max(0, right - left)} height={ROW} rx={2} />
             {paths.map((d, c) => (
-              // biome-ignore lint/suspicious/noArrayIndexKey: four classes, always the same
               <path key={c} class={`m${c}`} d={d} />
             ))}
             {stop !== null && (

@@ -183,7 +183,6 @@ function Editable({ label, edit, children }: EditableProps) {
     edit();
   };
   return (
-    // biome-ignore lint/a11y/useSemanticElements: SVG has no button element
     <g
       class="editable"
       role="button"

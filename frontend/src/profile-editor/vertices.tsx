@@ -18,7 +18,6 @@ export function Stretches() {
   return (
     <g>
       {points.slice(0, -1).map((a, i) => (
-        // biome-ignore lint/suspicious/noArrayIndexKey: a stretch is its place in the profile
         <polyline
           key={i}
           class="stretch"
@@ -46,9 +45,7 @@ export function Vertices() {
           if (!dragging.peek() && !selection.peek().includes(i)) selection.value = [i];
         };
         return (
-          // biome-ignore lint/a11y/useSemanticElements: SVG has no button element
           <g
-            // biome-ignore lint/suspicious/noArrayIndexKey: a corner is its place in the profile
             key={i}
             class={hidden ? "vertex off" : "vertex"}
             role="button"

@@ -72,9 +72,9 @@ export function fit(points: Points): void {
   const all = points.length > 1 ? extent(points) : { x: [-0.75, 1.8] as Vec2, z: [0, 0] as Vec2 };
   const mid = points.length > 2 ? extent(inner) : all;
   const x0 = Math.max(all.x[0], mid.x[0] - 0.75);
-  const x1 = Math.min(all.x[1], mid.x[1] + 0.85);
+  const x1 = Math.min(all.x[1], mid.x[1] + 0.7);
   const z0 = all.z[0] - 0.13;
-  const z1 = all.z[1] + 0.62;
+  const z1 = all.z[1] + 0.52;
   const scale = Math.min(MOST, Math.max(LEAST, Math.min(width / (x1 - x0), height / (z1 - z0))));
   fitted.value = scale;
   const spare = width / scale - (x1 - x0);

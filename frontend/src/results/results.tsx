@@ -88,7 +88,7 @@ function NotRun() {
   const cancelled = activity.value === "cancelled";
   return (
     <>
-      <h2 class={cancelled ? "" : "bad"}>
+      <h2 class={cancelled ? "mute" : "bad"}>
         <Icon name={cancelled ? "close" : "warning"} />
         {cancelled ? "Cancelled" : "Could not run"}
       </h2>

@@ -70,9 +70,9 @@ export async function renewSession(): Promise<void> {
 
 /** The page's layers in the scene's words. */
 const SCENE_LAYERS: Partial<Record<Layer, string>> = {
-  ghosts: "ghosts",
+  keys: "ghosts",
   collision: "collision_points",
-  com: "com",
+  com: "com_path",
   wheel: "wheel_path",
 };
 

@@ -15,7 +15,6 @@ const CAMERAS: [string, string][] = [
   ["follow", "Follow the robot"],
   ["side", "Side"],
   ["front", "Front"],
-  ["top", "Top"],
   ["iso", "Three-quarter"],
 ];
 

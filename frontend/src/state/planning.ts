@@ -1,6 +1,9 @@
-/** Live planning: each change asks, the newest answer shows, one solve runs at a time. */
+/**
+ * Live planning: each change asks, the newest answer shows, one solve runs at a time. Where the
+ * full path takes longer than a hand waits, the paper's few poses come first and the path follows.
+ */
 
-import { computed, effect, signal } from "@preact/signals";
+import { batch, computed, effect, signal } from "@preact/signals";
 import { postPlan } from "../api/client";
 import { NewestWins } from "../api/newest-wins";
 import type { Method, Plan, PlanRequest } from "../api/types";
@@ -8,24 +11,26 @@ import { connected, report } from "./connection";
 import { drawing, isEmpty, terrainDocument } from "./drawing";
 import { changedWeights, compare, method, robotName, robots, settings } from "./setup";
 
-/** Shorter waits show no spinner: it would only flicker. */
+/** Shorter waits show no spinner: it would only flicker [ms]. */
 const PATIENCE = 150;
+/** A path that takes longer than this is worth a preview [ms]. */
+const LIVE = 120;
 
 export const plan = signal<Plan | null>(null);
 /** B of the comparison: the same terrain without pose optimisation. */
 export const planB = signal<Plan | null>(null);
+/** The shown plan is the quick one; the path is still on its way. */
+export const preview = signal(false);
 /** Why the service refused the question itself (not: why the terrain is infeasible). */
 export const refusal = signal<string | null>(null);
 /** The newest question has waited for longer than anyone would overlook. */
 export const slow = signal(false);
 export const waited = signal(0);
-/** Question to answer as the page saw it [ms]: the newest ones, for the benchmark. */
-export const roundTrips: number[] = [];
 
 const shownKey = signal("");
 
 interface Question {
-  which: "a" | "b";
+  which: "preview" | "a" | "b";
   request: PlanRequest;
   key: string;
 }
@@ -72,11 +77,13 @@ function stopWaiting(): void {
   slow.value = false;
 }
 
-async function solve(question: Question): Promise<Plan> {
+/** How long the last full path took [ms]. */
+let pathTook = 0;
+
+async function solve(question: Question, abort: AbortSignal): Promise<Plan> {
   const started = performance.now();
-  const answer = await postPlan(question.request);
-  roundTrips.push(performance.now() - started);
-  if (roundTrips.length > 1000) roundTrips.shift();
+  const answer = await postPlan(question.request, abort);
+  if (question.which === "a") pathTook = performance.now() - started;
   return answer;
 }
 
@@ -85,22 +92,58 @@ function show(answer: Plan, question: Question, newest: boolean): void {
     if (newest) planB.value = answer;
     return;
   }
-  plan.value = answer;
-  shownKey.value = question.key;
-  refusal.value = null;
+  if (question.which === "preview") {
+    // Where the quick method finds no way, the path may: only good news is worth showing early.
+    if (answer.status === "feasible") {
+      batch(() => {
+        plan.value = answer;
+        preview.value = true;
+      });
+    }
+    if (newest) askForPath(question);
+    return;
+  }
+  batch(() => {
+    plan.value = answer;
+    preview.value = false;
+    shownKey.value = question.key;
+    refusal.value = null;
+  });
+  performance.mark("stairwright:plan");
   if (!newest) return;
   stopWaiting();
   if (compare.peek()) askForB(question);
 }
 
-function askForB(question: Question): void {
-  const { weights: _, ...rest } = question.request;
-  queue.ask({ which: "b", request: { ...rest, method: "nominal" }, key: question.key });
+function askForA(question: PlanRequest, key: string): void {
+  const quick = question.method === "path" && pathTook > LIVE;
+  if (!quick) {
+    queue.ask({ which: "a", request: question, key });
+    return;
+  }
+  const { weights: _, ...rest } = question;
+  queue.ask({ which: "preview", request: { ...rest, method: "critical" }, key });
 }
 
-function fail(error: unknown, newest: boolean): void {
+/** After the preview: the question that was meant. */
+function askForPath(previewed: Question): void {
+  const meant = request.peek();
+  if (meant) queue.ask({ which: "a", request: meant, key: previewed.key }, true);
+}
+
+function askForB(question: Question): void {
+  const { weights: _, ...rest } = question.request;
+  queue.ask({ which: "b", request: { ...rest, method: "nominal" }, key: question.key }, true);
+}
+
+function fail(error: unknown, question: Question, newest: boolean): void {
   report(error);
   if (!newest) return;
+  if (question.which === "preview" && connected.peek()) {
+    askForPath(question);
+    return;
+  }
+  if (question.which === "b") return;
   stopWaiting();
   if (connected.peek()) refusal.value = error instanceof Error ? error.message : String(error);
 }
@@ -115,14 +158,17 @@ export function startPlanning(): () => void {
     if (!question) {
       queue.forget();
       stopWaiting();
-      plan.value = null;
-      planB.value = null;
-      shownKey.value = key;
+      batch(() => {
+        plan.value = null;
+        planB.value = null;
+        refusal.value = null;
+        shownKey.value = key;
+      });
       return;
     }
     if (!connected.value || key === shownKey.peek()) return;
     startWaiting();
-    queue.ask({ which: "a", request: question, key });
+    askForA(question, key);
   });
   const stopB = effect(() => {
     if (!compare.value) planB.value = null;
@@ -134,4 +180,15 @@ export function startPlanning(): () => void {
     stopA();
     stopB();
   };
+}
+
+/** Resolves when the shown plan answers what is on screen; at once where nothing is asked. */
+export function settled(): Promise<void> {
+  return new Promise((resolve) => {
+    const stop = effect(() => {
+      if (stale.value && !refusal.value && connected.value) return;
+      queueMicrotask(() => stop());
+      resolve();
+    });
+  });
 }

@@ -91,7 +91,20 @@ export function startClock(): void {
     last = performance.now();
     requestAnimationFrame(tick);
   });
-  // A new plan may be shorter than the clock stands; an infeasible one shows where it stops.
+  // An infeasible plan shows where it stops; once it is feasible again, the clock goes back.
+  let before: number | null = null;
+  effect(() => {
+    const stopped = plan.value?.status === "infeasible";
+    if (stopped && before === null) {
+      before = time.peek();
+      playing.value = false;
+      time.value = Number.MAX_VALUE;
+    } else if (plan.value && !stopped && before !== null) {
+      time.value = before;
+      before = null;
+    }
+  });
+  // A new plan may be shorter than the clock stands.
   effect(() => {
     if (time.value > duration.value) time.value = duration.value;
   });

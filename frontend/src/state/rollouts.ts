@@ -12,7 +12,7 @@ import {
 } from "../api/client";
 import type { Job, Plan, Rollout } from "../api/types";
 import { report } from "./connection";
-import { plan, planB, request, stale } from "./planning";
+import { plan, planB, request, settled, stale } from "./planning";
 import { compare, controller, seed } from "./setup";
 
 export type Activity = "idle" | "running" | "cancelled" | "failed";
@@ -46,8 +46,10 @@ let current: string | null = null;
 let cancelled = false;
 
 export async function startRollout(): Promise<void> {
+  if (!canRun.peek()) return;
+  await settled();
   const chosen = plan.peek();
-  if (!chosen || !canRun.peek()) return;
+  if (chosen?.status !== "feasible" || stale.peek()) return;
   cancelled = false;
   batch(() => {
     activity.value = "running";

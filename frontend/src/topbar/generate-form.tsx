@@ -61,7 +61,6 @@ export function GenerateForm({ back, close }: { back: () => void; close: () => v
     <form class="generate" onSubmit={submit}>
       <div class="seg" role="radiogroup" aria-label="Kind">
         {(Object.keys(FIELDS) as Kind[]).map((each) => (
-          // biome-ignore lint/a11y/useSemanticElements: a segmented control, not a list of dots
           <button
             key={each}
             type="button"

@@ -76,6 +76,7 @@ export function Menu(props: MenuProps) {
         {button}
       </button>
       {isOpen && (
+        // biome-ignore lint/a11y/useAriaPropsSupportedByRole: the role is a menu or a dialog
         <div
           class={`panel ${align} ${panelClass ?? ""}`}
           role={kind}
@@ -97,6 +98,7 @@ interface ItemProps {
 
 export function MenuItem({ onChoose, checked, disabled, children }: ItemProps) {
   return (
+    // biome-ignore lint/a11y/useAriaPropsSupportedByRole: checked comes with the radio role
     <button
       type="button"
       role={checked === undefined ? "menuitem" : "menuitemradio"}
