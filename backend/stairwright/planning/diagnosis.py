@@ -123,7 +123,7 @@ def _least(
         nonlocal rears
         for i, rear in enumerate(rears):
             bounds = relax(search.bounds(place, float(rear)), amount)
-            if search.solve(place, float(rear), patient=False, bounds=bounds).solution.solved:
+            if search.solve(place, float(rear), bounds=bounds).solution.solved:
                 rears = np.concatenate([rears[i : i + 1], np.delete(rears, i)])
                 return True
         return False

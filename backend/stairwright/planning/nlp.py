@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from stairwright.robot.symbolic import DIMENSIONS, Point, Shape, Skeleton, between, forward
 
 from .separation import CellBlock, box_gap, link_gap, point_gap, segment_gap
-from .terrain_window import CELLS, CORNERS, EDGES, PIECES
+from .terrain_window import CORNERS, EDGES, PIECES
 
 Floats = NDArray[np.float64]
 
@@ -49,23 +49,24 @@ class Problem:
     rows: tuple[str, ...]
 
 
-@lru_cache(maxsize=8)
-def build(layout: Layout, links: bool) -> Problem:
+@lru_cache(maxsize=16)
+def build(layout: Layout, links: bool, cells: int) -> Problem:
     """The problem with the collision points of `layout`, or with exact links.
 
     Args:
         layout: Collision points of eq 21.
         links: Keep whole links (capsules) and the trunk (a box) clear of the terrain, instead of
             the points alone; the points lie on them.
+        cells: Number of convex cells of ground.
     """
     X = ca.SX.sym("X", len(VARIABLES))
     reference = ca.SX.sym("reference", 7)  # x, z, pitch, q
     weights = ca.SX.sym("weights", 7)
     size = ca.SX.sym("size", len(DIMENSIONS))
     curves = [ca.SX.sym(f"curve_{k}", 4, PIECES + 1) for k in range(2)]
-    normals = ca.SX.sym("normals", 2, CELLS * EDGES)
-    offsets = ca.SX.sym("offsets", CELLS * EDGES)
-    corners = ca.SX.sym("corners", 2, CELLS * CORNERS)
+    normals = ca.SX.sym("normals", 2, cells * EDGES)
+    offsets = ca.SX.sym("offsets", cells * EDGES)
+    corners = ca.SX.sym("corners", 2, cells * CORNERS)
     shape = Shape.from_vector(size)
     pose = forward(shape, X[0], X[1], X[2], ca.vertsplit(X[3:7]))
 
@@ -80,7 +81,7 @@ def build(layout: Layout, links: bool) -> Problem:
             [(normals[0, j], normals[1, j], offsets[j]) for j in range(i * EDGES, (i + 1) * EDGES)],
             [(corners[0, j], corners[1, j]) for j in range(i * CORNERS, (i + 1) * CORNERS)],
         )
-        for i in range(CELLS)
+        for i in range(cells)
     ]
     for block in blocks:  # eq 21
         gaps = _link_gaps(pose, shape, block) if links else _point_gaps(pose, shape, layout, block)

@@ -16,9 +16,9 @@ from stairwright.terrain.wheel_path import WheelPath
 
 from .clearance import clearance, legs_apart
 from .nlp import Layout
-from .solver import Bounds, PoseSolver, Solution, pose_solver
+from .solver import Bounds, Solution, pose_solver
 from .supports import support
-from .terrain_window import cell_vector, cells, curve_window
+from .terrain_window import SIZES, cell_vector, cells, curve_window
 from .weights import CriticalWeights
 
 Floats = NDArray[np.float64]
@@ -26,7 +26,9 @@ Floats = NDArray[np.float64]
 CLEARANCE = 0.005  # m between trunk or links and the terrain at a critical pose
 APART = 0.006  # m between front and rear leg
 WANTED = 0.05  # m of CoM margin beyond which other things decide
-GRID = 0.03  # m between the rear wheel places that are tried
+GRID = 0.05  # m between the rear wheel places that are tried
+ENOUGH = 3  # poses with the room wanted; then the search ends
+TRIES = 4  # places that the slower solvers are tried at where the fast one finds nothing
 GRIP = 0.9  # of the friction angle: steeper ground does not hold a resting wheel alone
 TURN = 0.05  # 1/rad^2; what turning the joints weighs against room for the CoM
 _FACE = 2e-3  # m past a corner, where the face ahead alone carries the wheel
@@ -79,7 +81,7 @@ class PoseSearch:
         self.robot, self.path, self.friction = robot, path, friction
         points = robot.collision_points
         layout = Layout(tuple(points.trunk), tuple(points.thigh), tuple(points.calf))
-        self.solver: PoseSolver = pose_solver(layout, weights.exact_links)
+        self._solvers = {n: pose_solver(layout, weights.exact_links, n) for n in SIZES}
         self.standing = kinematics.standing_joints(robot)
         self.size = (robot.thigh.length + robot.calf.length) / 0.4
         self._dimensions = dimensions(robot)
@@ -118,16 +120,16 @@ class PoseSearch:
             gentle: Rest the rear wheel only on ground that holds it alone.
         """
         found: list[Found] = []
-        start: Floats | None = None
-        misses = 0
-        for rear in self.rear_places(place, gentle):
-            one = self.solve(place, rear, start, patient=not found and misses < 2)
+        places = self.rear_places(place, gentle)
+        for rear in places:
+            one = self.solve(place, rear, found[-1].solution.x if found else None)
             if one.solution.solved:
                 found.append(one)
-                start = one.solution.x
-            else:
-                start = None
-                misses += 1
+                if sum(other.margin >= 0.99 * WANTED for other in found) >= ENOUGH:
+                    break
+        if not found:
+            hard = [self.solve(place, rear, patient=True) for rear in places[:TRIES]]
+            found = [one for one in hard if one.solution.solved]
         return found
 
     def solve(
@@ -135,7 +137,7 @@ class PoseSearch:
         place: Place,
         rear: float,
         start: Floats | None = None,
-        patient: bool = True,
+        patient: bool = False,
         bounds: Bounds | None = None,
     ) -> Found:
         """The optimal pose with the rear wheel near `rear`.
@@ -143,7 +145,7 @@ class PoseSearch:
         The trunk is first pulled to the middle between the wheels, then, where that leaves the
         centre of mass less room than `WANTED`, by what is missing.
         """
-        window = self._window(place.front, rear)
+        window, size = self._window(place.front, rear)
         x_ref = float(self.path.centres(np.array([place.front, rear]))[:, 0].mean())
         bounds = bounds or self.bounds(place, rear)
         found: Found | None = None
@@ -156,7 +158,7 @@ class PoseSearch:
             if start is not None:
                 starts.insert(0, start)
             parameters = np.concatenate([reference, self._weights, self._dimensions, window])
-            solution = self.solver.solve(parameters, bounds, starts, patient)
+            solution = self._solvers[size].solve(parameters, bounds, starts, patient)
             shift, margin = self._com_shift(solution, place)
             turn = float(np.sum((solution.x[2:7] - place.posture) ** 2))
             if found is None or (solution.solved and margin > found.margin):
@@ -215,15 +217,17 @@ class PoseSearch:
         ground = float(height_at(self.path.vertices, below).mean())
         return np.array([x, ground + self.robot.nominal_height, 0.0, *self.standing])
 
-    def _window(self, front: float, rear: float) -> Floats:
+    def _window(self, front: float, rear: float) -> tuple[Floats, int]:
+        """Parameters of the terrain, and the number of ground cells among them."""
         curves = [curve_window(self.path, s)[0].ravel() for s in (front, rear)]
         x = self.path.centres(np.array([front, rear]))[:, 0]
         beside = _BESIDE * self.size
         ground = cell_vector(cells(self.path.vertices, x.min() - beside, x.max() + beside))
-        return np.concatenate([*curves, *(part.ravel() for part in ground)])
+        vector = np.concatenate([*curves, *(part.ravel() for part in ground)])
+        return vector, len(ground[0])
 
     def _guess(self, place: Place, rear: float, reference: Floats, same: bool = False) -> Floats:
-        """Trunk along the line of the wheels, or pitched as before if `same`; legs to the wheels."""
+        """Trunk along the line of the wheels, or pitched as before (`same`); legs to the wheels."""
         wheels = self.path.centres(np.array([place.front, rear]))
         rise, run = wheels[0] - wheels[1], max(wheels[0, 0] - wheels[1, 0], 0.1)
         pitch = float(place.posture[0]) if same else -0.8 * math.atan2(rise[1], run)

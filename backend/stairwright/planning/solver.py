@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 TOLERANCE = 1e-6  # m and rad; a solution violates no constraint by more
 _SQP = {
-    "max_iter": 40,
+    "max_iter": 30,
     "tol_pr": 1e-8,
     "tol_du": 1e-4,
     "convexify_strategy": "eigen-clip",
@@ -31,18 +31,9 @@ _SQP = {
 _OPTIONS: dict[str, tuple[str, dict[str, Any]]] = {
     "daqp": ("sqpmethod", {**_SQP, "qpsol": "daqp", "qpsol_options": {"error_on_fail": False}}),
     # qpOASES would do as well, but prints its licence to the standard output, where plans go.
-    "qrqp": (
+    "proxqp": (
         "sqpmethod",
-        {
-            **_SQP,
-            "qpsol": "qrqp",
-            "qpsol_options": {
-                "error_on_fail": False,
-                "print_header": False,
-                "print_iter": False,
-                "print_info": False,
-            },
-        },
+        {**_SQP, "qpsol": "proxqp", "qpsol_options": {"error_on_fail": False}},
     ),
     "ipopt": (
         "ipopt",
@@ -96,8 +87,8 @@ class Solution:
 class PoseSolver:
     """The problem of one collision layout with its solvers, which are made when first needed."""
 
-    def __init__(self, layout: Layout, links: bool) -> None:
-        self.problem: Problem = build(layout, links)
+    def __init__(self, layout: Layout, links: bool, cells: int) -> None:
+        self.problem: Problem = build(layout, links, cells)
         self._kinds = np.array(self.problem.rows)
         self._solvers: dict[str, Any] = {}
         self._patient = np.isin(self._kinds, [HIP, GROUND, SELF])
@@ -111,7 +102,7 @@ class PoseSolver:
             parameters: (p,) made by `poses.parameters`.
             bounds: Of variables and constraints.
             starts: First guesses (9,), best first.
-            patient: Whether to go on to perturbed starts and IPOPT where the fast solvers fail.
+            patient: Whether to go on to other solvers and perturbed starts where the first fails.
         """
         lower, upper = self._constraint_bounds(bounds)
         best: Solution | None = None
@@ -144,10 +135,10 @@ class PoseSolver:
     def _ladder(self, starts: list[Floats], patient: bool) -> Iterator[tuple[str, Floats]]:
         for start in starts:
             yield "daqp", start
-        for start in starts:
-            yield "qrqp", start
         if not patient:
             return
+        for start in starts:
+            yield "proxqp", start
         random = np.random.default_rng(0)
         spread = np.array([0.08, 0.08, 0.35, 0.4, 0.3, 0.4, 0.3, 0.03, 0.03])
         for _ in range(3):
@@ -167,10 +158,10 @@ class PoseSolver:
         return lower, upper
 
 
-@lru_cache(maxsize=8)
-def pose_solver(layout: Layout, links: bool) -> PoseSolver:
-    """The process's solver for a collision layout: built once."""
-    return PoseSolver(layout, links)
+@lru_cache(maxsize=16)
+def pose_solver(layout: Layout, links: bool, cells: int) -> PoseSolver:
+    """The process's solver for a collision layout and a number of ground cells: built once."""
+    return PoseSolver(layout, links, cells)
 
 
 def now() -> float:

@@ -19,7 +19,8 @@ from stairwright.terrain.wheel_path import ARC, WheelPath
 Floats = NDArray[np.float64]
 
 PIECES = 12  # of the curve, for each wheel
-CELLS = 6
+SIZES = (2, 3, 4, 6)  # numbers of cells that problems are built for
+CELLS = SIZES[-1]
 EDGES = 6  # of a cell: two sides and up to four of the profile
 CORNERS = 7  # of a cell: up to five of the profile and two deep ones
 DEPTH = 1.0  # m that cells reach below the profile
@@ -132,15 +133,16 @@ def _drop_edge(hull: list[Floats]) -> list[Floats]:
 
 
 def cell_vector(chains: list[Floats]) -> tuple[Floats, Floats, Floats]:
-    """Normals (CELLS, EDGES, 2), offsets (CELLS, EDGES) and corners (CELLS, CORNERS, 2) of cells.
+    """Normals (n, EDGES, 2), offsets (n, EDGES) and corners (n, CORNERS, 2) of n cells in `SIZES`.
 
     A point p lies in a cell where ``normals @ p <= offsets``. Unused edges repeat the first one,
     unused corners the last one; unused cells lie FAR below.
     """
-    normals = np.zeros((CELLS, EDGES, 2))
-    offsets = np.zeros((CELLS, EDGES))
-    corners = np.zeros((CELLS, CORNERS, 2))
-    for i in range(CELLS):
+    size = next(n for n in SIZES if n >= len(chains))
+    normals = np.zeros((size, EDGES, 2))
+    offsets = np.zeros((size, EDGES))
+    corners = np.zeros((size, CORNERS, 2))
+    for i in range(size):
         chain = chains[i] if i < len(chains) else np.array([[-1.0, -FAR], [1.0, -FAR]])
         left, right = chain[0, 0], chain[-1, 0]
         floor = float(chain[:, 1].min()) - DEPTH

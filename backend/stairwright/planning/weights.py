@@ -43,9 +43,9 @@ class CriticalWeights(Model):
     com_z: float = _weight(
         5.0, 0.01, 1e4, "m⁻²", "Trunk z", "Pull to the nominal height; far below x (eq 18)"
     )
-    pitch: float = _weight(0.01, 1e-4, 100.0, "rad⁻²", "Pitch", "Pull to a level trunk")
+    pitch: float = _weight(0.2, 1e-4, 100.0, "rad⁻²", "Pitch", "Pull to a level trunk")
     posture: float = _weight(
-        0.001, 1e-5, 10.0, "rad⁻²", "Posture", "Pull of the joints to the standing pose"
+        0.01, 1e-5, 10.0, "rad⁻²", "Posture", "Pull of the joints to the standing pose"
     )
     speed: float = _SPEED
     exact_links: bool = Field(
