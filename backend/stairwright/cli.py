@@ -1,29 +1,113 @@
-"""The command `stairwright`. Heavy imports wait until a command needs them."""
+"""The command `stairwright`: arguments, and exit statuses. Heavy imports wait for `commands`."""
 
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
+from typing import NoReturn
 
+from . import __version__
 from .errors import InputError
+
+DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+METHODS = ("path", "critical", "nominal")
+
+
+class Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        """End with status 2."""
+        self.exit(BAD_INPUT, f"{self.prog}: {message} (see {self.prog} --help)\n")
+
+
+def parser() -> argparse.ArgumentParser:
+    """All commands and their arguments."""
+    top = Parser(
+        prog="stairwright",
+        description="Can a wheel-legged robot roll over these stairs, and how?",
+        epilog="Exit status: 0 done, 1 the terrain is infeasible or the rollout failed, 2 bad "
+        "input. STAIRWRIGHT_DATA names the data folder, STAIRWRIGHT_TOKEN a bearer token.",
+    )
+    top.add_argument("--version", action="version", version=f"stairwright {__version__}")
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    serve = commands.add_parser("serve", help="serve the page, REST and the 3D scene")
+    serve.add_argument("--host", help="address to serve on (127.0.0.1)")
+    serve.add_argument("--port", type=int, help="port to serve on (8000)")
+
+    plan = commands.add_parser("plan", help="plan the poses over a terrain")
+    plan.add_argument("terrain", metavar="TERRAIN", help="a preset's name, or a file")
+    _add_planning(plan)
+    plan.add_argument("-o", "--output", metavar="FILE", help="json, csv, npz, mcap or mjcf")
+
+    rollout = commands.add_parser("rollout", help="carry a plan out in simulation")
+    rollout.add_argument("source", metavar="PLAN-or-TERRAIN", help="a plan's file, or a terrain")
+    _add_planning(rollout)
+    rollout.add_argument("--seed", type=int, default=0, help="of the sensor noise (%(default)s)")
+    rollout.add_argument(
+        "--controller", action="append", default=[], metavar="NAME=VALUE", help="a setting"
+    )
+    rollout.add_argument("--noise", type=float, metavar="X", help="sensor noise (0; 1 in trials)")
+    rollout.add_argument("--trials", type=int, default=1, metavar="N", help="with N seeds")
+    rollout.add_argument("-o", "--output", metavar="FILE", help="json, csv, npz, mcap or html")
+
+    export = commands.add_parser("export", help="write a plan or rollout in another format")
+    export.add_argument("file", metavar="FILE", help="a plan or rollout, json or npz")
+    export.add_argument("--format", metavar="F", help="json, csv, npz, mcap, mjcf or html")
+    export.add_argument("-o", "--output", metavar="FILE", required=True)
+
+    certify = commands.add_parser("certify", help="check a plan independently and exactly")
+    certify.add_argument("plan", metavar="PLAN", help="a plan's file")
+
+    bench = commands.add_parser("bench", help="measure solve times and outcomes on this machine")
+    bench.add_argument("terrains", metavar="TERRAIN", nargs="*", help="all presets by default")
+    bench.add_argument("--robot", action="append", metavar="R", help="all robots by default")
+    bench.add_argument("--method", choices=METHODS, default="path")
+    bench.add_argument("--repeat", type=int, default=5, metavar="N", help="solves each")
+
+    commands.add_parser("terrains", help="list the terrain presets")
+    commands.add_parser("robots", help="list the robots")
+    return top
+
+
+def _add_planning(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--robot", metavar="R", help="a robot's name or file (a1_wheeled)")
+    command.add_argument("--friction", type=float, metavar="F", help="the terrain's by default")
+    command.add_argument("--method", choices=METHODS, help="(path)")
+    command.add_argument(
+        "--weight", action="append", default=[], metavar="NAME=VALUE", help="of the planner"
+    )
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command; the exit status is 0 (done), 1 (it cannot be done) or 2 (bad input)."""
-    parser = argparse.ArgumentParser(prog="stairwright")
-    commands = parser.add_subparsers(dest="command", required=True)
-    serve = commands.add_parser("serve", help="serve the page, REST and the 3D scene")
-    serve.add_argument("--host")
-    serve.add_argument("--port", type=int)
-    chosen = parser.parse_args(arguments)
+    """Run one command; returns the exit status."""
+    chosen = parser().parse_args(arguments)
     try:
-        from .api.server import serve as run
+        if chosen.command == "serve":
+            from .api.server import serve
 
-        return run(host=chosen.host, port=chosen.port)
+            return serve(host=chosen.host, port=chosen.port)
+        from . import commands
+
+        reason = commands.COMMANDS[chosen.command](chosen)
+        sys.stdout.flush()
     except InputError as error:
-        print(f"stairwright: {error}", file=sys.stderr)
-        return 2
+        return _end(BAD_INPUT, str(error))
+    except BrokenPipeError:
+        # Whoever read our output has gone; a second error at exit would be noise.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+    except KeyboardInterrupt:
+        return _end(INTERRUPTED, "interrupted")
+    return DONE if reason is None else _end(FAILED, reason)
+
+
+def _end(status: int, reason: str) -> int:
+    print("stairwright:", " ".join(reason.split()), file=sys.stderr)
+    return status
 
 
 if __name__ == "__main__":

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import gzip
-import importlib.util
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -110,8 +109,8 @@ def _plan_of(question: Question, artefacts: str) -> Plan:
     else:
         content = Artefacts(Path(artefacts)).content(question["plan_digest"])
         plan = Plan.model_validate_json(content)
-    if not plan.feasible:
-        why = plan.problem.message if plan.problem else "the plan is infeasible"
+    if len(plan.poses) < 2:
+        why = plan.problem.message if plan.problem else "the plan has no poses"
         raise InputError(f"nothing can be rolled out: {why}", ("plan",))
     return plan
 
@@ -137,14 +136,13 @@ def export(packed: bytes, kind: str, format_name: str) -> bytes:
 
 
 def warm() -> None:
-    """Import and compile what the first question would otherwise wait for."""
-    if importlib.util.find_spec("stairwright.warmup") is None:
-        return
-    from stairwright import warmup
+    """Import and compile what the first question would otherwise wait for.
 
-    steps: list[Callable[[], object]] = [warmup.warm]
-    for step in steps:
-        try:
-            step()
-        except Exception:
-            logging.getLogger(__name__).exception("warming up failed")
+    What fails here is logged only: it will fail again, and be answered, where it is needed.
+    """
+    try:
+        from stairwright.warmup import warm as warm_up
+
+        warm_up()
+    except Exception:
+        logging.getLogger(__name__).exception("warming up failed")

@@ -1,0 +1,202 @@
+"""What the commands of the command line do. Each returns None, or why it could not be done."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import summary
+from .errors import InputError
+from .library import load_robot, load_terrain, robots, terrains
+
+if TYPE_CHECKING:
+    from .planning.plan import Method, Plan
+    from .terrain.profile import Terrain
+
+Arguments = argparse.Namespace
+Command = Callable[[Arguments], str | None]
+
+
+def plan_command(given: Arguments) -> str | None:
+    """`stairwright plan`."""
+    plan = _plan(given.terrain, given)
+    if given.output:
+        plan.save(given.output)
+    else:
+        print(summary.of_plan(plan))
+    return _obstacle(plan)
+
+
+def rollout_command(given: Arguments) -> str | None:
+    """`stairwright rollout`."""
+    if given.trials < 1:
+        raise InputError("must be at least 1", ("trials",))
+    if given.trials > 1 and given.output:
+        raise InputError("one file holds one rollout: leave out --trials or -o", ("output",))
+    plan = _plan_or_file(given)
+    if len(plan.poses) < 2:
+        return _obstacle(plan) or "the plan has no poses to carry out"
+    from .simulation.rollout import rollout
+
+    noise = given.noise if given.noise is not None else float(given.trials > 1)
+    runs = [
+        rollout(
+            plan,
+            friction=given.friction,
+            controller=_settings(given.controller, "controller"),
+            seed=given.seed + k,
+            disturbance={"noise": noise},
+        )
+        for k in range(given.trials)
+    ]
+    if given.output:
+        runs[0].save(given.output)
+    else:
+        print(summary.of_rollouts(runs))
+    failed = [run for run in runs if not run.success]
+    if not failed:
+        return None
+    head = "" if len(runs) == 1 else f"{len(failed)} of {len(runs)} trials failed; the first: "
+    return f"{head}{failed[0].outcome}: {failed[0].reason}"
+
+
+def export_command(given: Arguments) -> str | None:
+    """`stairwright export`."""
+    from .export.formats import convert
+
+    convert(given.file, given.format, given.output)
+    return None
+
+
+def certify_command(given: Arguments) -> str | None:
+    """`stairwright certify`."""
+    from .export.formats import load_plan
+    from .planning.certificate import certify
+
+    plan = load_plan(given.plan)
+    certificate = certify(plan)
+    print(summary.of_certificate(certificate))
+    failed = [check.name for check in certificate.checks if not check.passed]
+    if failed:
+        return f"not passed: {', '.join(failed)}"
+    return None if certificate.passed else "not passed"
+
+
+def bench_command(given: Arguments) -> str | None:
+    """`stairwright bench`."""
+    from .benchmark import measure
+
+    if given.repeat < 1:
+        raise InputError("must be at least 1", ("repeat",))
+    print(summary.bench_head())
+    for terrain in given.terrains or terrains():
+        for robot in given.robot or robots():
+            figures = measure(_terrain(terrain), load_robot(robot), given.method, given.repeat)
+            print(summary.bench_line(figures), flush=True)
+    return None
+
+
+def terrains_command(_: Arguments) -> str | None:
+    """`stairwright terrains`."""
+    print(summary.columns((name, load_terrain(name).description) for name in terrains()))
+    return None
+
+
+def robots_command(_: Arguments) -> str | None:
+    """`stairwright robots`."""
+    print(summary.columns((name, load_robot(name).description) for name in robots()))
+    return None
+
+
+COMMANDS: Mapping[str, Command] = {
+    "plan": plan_command,
+    "rollout": rollout_command,
+    "export": export_command,
+    "certify": certify_command,
+    "bench": bench_command,
+    "terrains": terrains_command,
+    "robots": robots_command,
+}
+
+
+def _plan(source: str, given: Arguments) -> Plan:
+    from .planning.planner import plan
+
+    method: Method = given.method or "path"
+    return plan(
+        _terrain(source),
+        given.robot or "a1_wheeled",
+        friction=given.friction,
+        method=method,
+        weights=_settings(given.weight, "weights"),
+    )
+
+
+def _plan_or_file(given: Arguments) -> Plan:
+    """The plan in a file if it is one, else a plan over the terrain."""
+    path = Path(given.source)
+    if path.suffix.lower() in (".json", ".npz") and path.exists():
+        from .export.formats import load
+        from .planning.plan import Plan
+
+        if path.suffix.lower() == ".npz" or _schema(path) != "terrain":
+            document = load(path)
+            if isinstance(document, Plan):
+                for name in ("robot", "method"):
+                    if getattr(given, name):
+                        raise InputError("the plan says it already", (name,))
+                return document
+            if document.plan is not None:
+                return document.plan
+            raise InputError(f"{path} is a rollout without its plan")
+    return _plan(given.source, given)
+
+
+def _schema(path: Path) -> str:
+    from .documents import load_mapping
+
+    data = load_mapping(path)
+    schema = str(data.get("schema", ""))
+    is_terrain = schema == "stairwright/terrain/1" or (not schema and "points" in data)
+    return "terrain" if is_terrain else schema
+
+
+def _terrain(source: str) -> Terrain:
+    """A preset, or a file of any kind that can be imported."""
+    path = Path(source)
+    suffix = path.suffix.lower().removeprefix(".")
+    if source in terrains() or suffix in ("", "yaml", "yml", "json"):
+        return load_terrain(source)
+    from .jobs.uploads import READERS, import_terrain
+    from .terrain.profile import Terrain
+
+    if suffix not in READERS:
+        return load_terrain(source)  # says what there is
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror}") from None
+    return Terrain.model_validate(import_terrain(content, path.name, {}))
+
+
+def _settings(pairs: Sequence[str], field: str) -> dict[str, Any]:
+    """``name=value`` pairs; values are numbers, truth values or words."""
+    settings: dict[str, Any] = {}
+    for pair in pairs:
+        name, equals, text = pair.partition("=")
+        if not equals or not name:
+            raise InputError(f"expected NAME=VALUE, got {pair!r}", (field,))
+        words = {"true": True, "false": False}
+        try:
+            settings[name] = words[text] if text in words else float(text)
+        except ValueError:
+            settings[name] = text
+    return settings
+
+
+def _obstacle(plan: Plan) -> str | None:
+    if plan.feasible:
+        return None
+    return plan.problem.message if plan.problem else "the terrain is infeasible"
