@@ -14,13 +14,13 @@ import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
-from tests.scene.example import example_plan
 
 from stairwright.errors import InputError
 from stairwright.export.formats import PLAN_FORMATS, convert, load_plan, save_plan
 from stairwright.planning.plan import Plan
 from stairwright.robot import kinematics
 from stairwright.robot.description import JOINTS
+from tests.scene.example import example_plan
 
 
 @pytest.fixture(scope="module")
