@@ -17,10 +17,10 @@ from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
 
-from .certificate import certify
+from .assembly import assemble
 from .diagnosis import diagnose, no_stand, statics_problem
 from .path.course import NoStand, Stand, find_stands
-from .plan import Plan, Pose, Problem, Timing, plan_id
+from .plan import Plan, Pose, Problem
 from .pose_locations import Obstacle, find_obstacles, front_places
 from .pose_search import Found, Place, PoseSearch
 from .poses import complete_pose
@@ -54,7 +54,9 @@ def plan_critical(
         begin, end = find_stands(terrain, robot, path)
     except NoStand as error:
         stop = no_stand(terrain, robot, error)
-        return _document(terrain, robot, friction, weights, [], stop, now() - started)
+        return assemble(
+            "critical", terrain, robot, friction, weights, [], stop, seconds=now() - started
+        )
     search = PoseSearch(robot, path, friction, weights)
     obstacles = find_obstacles(path, begin.wheels[1], end.wheels[0])
     found, problem = _solve(search, obstacles, begin, end)
@@ -64,7 +66,18 @@ def plan_critical(
     poses = _poses(search, knots, weights.speed)
     if problem is None:
         problem = _unbalanced(search, poses)
-    return _document(terrain, robot, friction, weights, poses, problem, now() - started)
+    inner = range(1, len(poses) - (problem is None))
+    return assemble(
+        "critical",
+        terrain,
+        robot,
+        friction,
+        weights,
+        poses,
+        problem,
+        critical=list(inner),
+        seconds=now() - started,
+    )
 
 
 @dataclass(frozen=True)
@@ -157,33 +170,3 @@ def _poses(search: PoseSearch, knots: list[_Knot], speed: float) -> list[Pose]:
 def _unbalanced(search: PoseSearch, poses: list[Pose]) -> Problem | None:
     worst = min(poses, key=lambda pose: pose.margins.com)
     return None if worst.margins.com >= 0.0 else statics_problem(search, worst)
-
-
-def _document(
-    terrain: Terrain,
-    robot: Robot,
-    friction: float,
-    weights: CriticalWeights,
-    poses: list[Pose],
-    problem: Problem | None,
-    seconds: float,
-) -> Plan:
-    numbers = weights.model_dump()
-    plan = Plan(
-        id=plan_id(terrain, robot, friction, "critical", numbers),
-        method="critical",
-        terrain=terrain,
-        terrain_hash=terrain.hash,
-        robot=robot.name,
-        robot_hash=robot.hash,
-        robot_description=robot,
-        friction=friction,
-        weights=numbers,
-        status="feasible" if problem is None else "infeasible",
-        problem=problem,
-        poses=poses,
-        critical=list(range(1, len(poses) - 1 if problem is None else len(poses))),
-        timing=Timing(total=poses[-1].time if poses else 0.0, rule="paper"),
-        solve_time=seconds,
-    )
-    return plan if not poses else plan.model_copy(update={"certificate": certify(plan)})

@@ -1,0 +1,56 @@
+"""Putting a plan document together: hashes, times, certificate."""
+
+from __future__ import annotations
+
+from stairwright.documents import Model
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
+
+from .certificate import certify
+from .plan import Method, Plan, Pose, Problem, Timing, plan_id
+
+
+def assemble(
+    method: Method,
+    terrain: Terrain,
+    robot: Robot,
+    friction: float,
+    weights: Model,
+    poses: list[Pose],
+    problem: Problem | None,
+    *,
+    seconds: float,
+    critical: list[int] | None = None,
+) -> Plan:
+    """The document of a plan whose poses are timed by eqs 25-26, with a certificate of its poses.
+
+    Args:
+        method: That made it.
+        terrain: The profile.
+        robot: The robot.
+        friction: Between wheels and terrain.
+        weights: The method's weights.
+        poses: In order of progress.
+        problem: What stops the robot, if anything.
+        seconds: Time that planning took [s].
+        critical: Indices of key poses.
+    """
+    numbers = weights.model_dump()
+    plan = Plan(
+        id=plan_id(terrain, robot, friction, method, numbers),
+        method=method,
+        terrain=terrain,
+        terrain_hash=terrain.hash,
+        robot=robot.name,
+        robot_hash=robot.hash,
+        robot_description=robot,
+        friction=friction,
+        weights=numbers,
+        status="feasible" if problem is None else "infeasible",
+        problem=problem,
+        poses=poses,
+        critical=critical or [],
+        timing=Timing(total=poses[-1].time if poses else 0.0, rule="paper"),
+        solve_time=seconds,
+    )
+    return plan if not poses else plan.model_copy(update={"certificate": certify(plan, "poses")})
