@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...robot import kinematics as kin
-from ...robot.description import Robot
-from ...terrain.wheel_path import WheelPath
-from ..plan import Margins, Pose
-from ..weights import PathWeights
+from stairwright.planning.plan import Margins, Pose
+from stairwright.planning.weights import PathWeights
+from stairwright.robot import kinematics as kin
+from stairwright.robot.description import Robot
+from stairwright.terrain.wheel_path import WheelPath
+
 from .course import CORNER, kink
 from .legs import COM_X, COM_Z
 from .refine import Refined

@@ -1,4 +1,8 @@
-"""Cells of the search: pairs of wheel samples, each with a window of body poses and CoM intervals."""
+"""Cells of the search: pairs of wheel samples, each with a window of body poses.
+
+A window's volume is stored flat with a rim of two lattice steps on every side, rows `ROW` long:
+shifting by any few steps, dilating and comparing whole volumes are then single loops over bytes.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +13,12 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from ...robot.description import Planar
+from stairwright.robot.description import Planar
+
 from .contacts import lagged_interval, pair_interval
 from .ground import Ground
-from .legs import Leg, knee_point, leg_gap
-from .tables import INF, ROW, Bounds, Floats32, Lattice, LegTable
+from .legs import Leg
+from .tables import INF, ROW, Floats32, Lattice, LegTable
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -129,27 +134,41 @@ class World(NamedTuple):
 
 
 @nb.njit(cache=True)
-def columns(w: World, cells: Cells, c: int, t: int, z: int) -> tuple[int, int, int, int, int, int]:
-    """Rows of the two leg tables and of the trunk's for row (t, z) of cell `c`, and the shift of
-    their columns against the window's; the front row is -1 where the window leaves a table."""
+def volume_size(lat: Lattice) -> int:
+    """Length of a flat volume."""
+    return (lat.nt + 4) * (lat.nz + 4) * ROW
+
+
+@nb.njit(cache=True)
+def row_start(lat: Lattice, t: int, z: int) -> int:
+    """Position of column 0 of row (t, z) of a window in its flat volume."""
+    return ((t + 2) * (lat.nz + 4) + z + 2) * ROW + 2
+
+
+@nb.njit(cache=True)
+def columns(
+    w: World, cells: Cells, c: int, t: int, z: int
+) -> tuple[int, int, int, int, int, int, int, int]:
+    """Where row (t, z) of cell `c` finds its values: rows of front, rear and trunk table, shifts of
+    their columns against the window's, and the range of columns that both legs allow (else empty).
+    """
     i, j = cells.front[c], cells.rear[c]
     tt, zz = cells.t0[c] + t, cells.z0[c] + z
     fz, rz = zz - w.front_table.z0[i, tt], zz - w.rear_table.z0[j, tt]
     tz = zz - w.trunk_z0
     rows = w.front_table.cost.shape[2]
     if fz < 0 or fz >= rows or rz < 0 or rz >= rows or tz < 0 or tz >= w.trunk.shape[1]:
-        return -1, 0, 0, 0, 0, 0
-    return (
-        fz, rz, tz,
-        cells.x0[c] - w.front_table.x0[i, tt],
-        cells.x0[c] - w.rear_table.x0[j, tt],
-        cells.x0[c] - w.trunk_x0,
-    )  # fmt: skip
+        return 0, 0, 0, 0, 0, 0, 0, 0
+    sf = cells.x0[c] - w.front_table.x0[i, tt]
+    sr = cells.x0[c] - w.rear_table.x0[j, tt]
+    a = max(0, w.front_table.first[i, tt, fz] - sf, w.rear_table.first[j, tt, rz] - sr)
+    b = min(w.lat.nx, w.front_table.last[i, tt, fz] - sf, w.rear_table.last[j, tt, rz] - sr)
+    return fz, rz, tz, sf, sr, cells.x0[c] - w.trunk_x0, a, b
 
 
-@nb.njit(cache=True, error_model="numpy")
+@nb.njit(cache=True, error_model="numpy", fastmath=True)
 def quality(w: World, cells: Cells, c: int, out: Bytes) -> bool:
-    """Quality (nt, nz, ROW) of the poses of cell `c`: 0 impossible, more is safer.
+    """Quality of the poses of cell `c` into the zeroed flat volume `out`: more is safer.
 
     Returns whether any pose is possible. Collisions between the legs are not looked at yet.
     """
@@ -167,28 +186,25 @@ def quality(w: World, cells: Cells, c: int, out: Bytes) -> bool:
     step = np.float32(lat.step)
     one = np.float32(1.0)
     found = False
-    out[:] = 0
+    x_first = np.float32(cells.x0[c] * lat.step)
     for t in range(lat.nt):
         tt = cells.t0[c] + t
         for z in range(lat.nz):
-            fz, rz, tz, sf, sr, st = columns(w, cells, c, t, z)
-            if fz < 0:
-                continue
-            a = max(0, max(-sf, -sr))
-            b = min(lat.nx, min(ROW - sf, ROW - sr))
+            fz, rz, tz, sf, sr, st, a, b = columns(w, cells, c, t, z)
             if b <= a:
                 continue
-            fc = w.front_table.cost[i, tt, fz]
-            fm = w.front_table.moment[i, tt, fz]
-            rc = w.rear_table.cost[j, tt, rz]
-            rm = w.rear_table.moment[j, tt, rz]
-            tc = w.trunk[tt, tz]
-            row = out[t, z]
-            x_first = np.float32(cells.x0[c] * lat.step)
+            fc = w.front_table.cost[i, tt, fz, a + sf : b + sf]
+            fm = w.front_table.moment[i, tt, fz, a + sf : b + sf]
+            rc = w.rear_table.cost[j, tt, rz, a + sr : b + sr]
+            rm = w.rear_table.moment[j, tt, rz, a + sr : b + sr]
+            tc = w.trunk[tt, tz, a + st : b + st]
+            begin = row_start(lat, t, z)
+            row = out[begin + a : begin + b]
             some = np.uint8(0)
-            for x in range(a, b):
-                e = fc[x + sf] + rc[x + sr] + tc[x + st]
-                com = share * (x_first + np.float32(x) * step) + mass * (fm[x + sf] + rm[x + sr])
+            first = x_first + np.float32(a) * step
+            for x in range(b - a):
+                e = fc[x] + rc[x] + tc[x]
+                com = share * (first + np.float32(x) * step) + mass * (fm[x] + rm[x])
                 m = min(com - lo, hi - com)
                 mr = min(com - rlo, rhi - com)
                 base = np.float32(99.0) * min(one, m * scale) + one
@@ -202,28 +218,3 @@ def quality(w: World, cells: Cells, c: int, out: Bytes) -> bool:
             if some > 0:
                 found = True
     return found
-
-
-@nb.njit(cache=True)
-def legs_clear(w: World, cells: Cells, c: int, t: int, z: int, x: int, points: Floats) -> bool:
-    """Whether front and rear leg keep their gap in one lattice pose; `points` (2, 3, 2) is scratch."""
-    p, lat = w.robot, w.lat
-    pitch = (cells.t0[c] + t - lat.pitches // 2) * lat.turn
-    cos, sin = math.cos(pitch), math.sin(pitch)
-    bx, bz = (cells.x0[c] + x) * lat.step, (cells.z0[c] + z) * lat.step
-    for k in range(2):
-        leg = w.front if k == 0 else w.rear
-        s = cells.front[c] if k == 0 else cells.rear[c]
-        hx, hz = bx + cos * leg.hip_x + sin * leg.hip_z, bz - sin * leg.hip_x + cos * leg.hip_z
-        wx, wz = w.centres[s, 0], w.centres[s, 1]
-        kx, kz = knee_point(wx - hx, wz - hz, p.thigh, p.calf, leg.knee)
-        points[k, 0, 0], points[k, 0, 1] = hx, hz
-        points[k, 1, 0], points[k, 1, 1] = hx + kx, hz + kz
-        points[k, 2, 0], points[k, 2, 1] = wx, wz
-    thick = max(p.wheel_radius, max(p.thigh_radius, p.calf_radius))
-    ahead = min(points[0, 0, 0], min(points[0, 1, 0], points[0, 2, 0]))
-    behind = max(points[1, 0, 0], max(points[1, 1, 0], points[1, 2, 0]))
-    if ahead - behind > 2 * thick + w.legs_gap:
-        return True
-    gap = leg_gap(points[0], points[1], p.thigh_radius, p.calf_radius, p.wheel_radius)
-    return gap >= w.legs_gap

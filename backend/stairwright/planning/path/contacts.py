@@ -6,8 +6,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from ...statics.contact import com_interval
-from ...terrain.wheel_path import curve_at
+from stairwright.statics.contact import com_interval
+from stairwright.terrain.wheel_path import curve_at
 
 Floats = NDArray[np.float64]
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...robot.description import Robot
-from ...terrain.profile import Terrain
-from ...terrain.wheel_path import WheelPath
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
+from stairwright.terrain.wheel_path import WheelPath
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -8,8 +8,9 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from ...robot.description import Planar
-from ...terrain.wheel_path import curve_at
+from stairwright.robot.description import Planar
+from stairwright.terrain.wheel_path import curve_at
+
 from .contacts import TOUCH
 from .legs import Leg, calf_joint, knee_point, thigh_joint
 

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...robot.description import Robot
-from ...terrain.wheel_path import WheelPath
-from ..weights import PathWeights
-from .cells import Cells, World, build_cells
+from stairwright.planning.weights import PathWeights
+from stairwright.robot.description import Robot
+from stairwright.terrain.wheel_path import WheelPath
+
+from .cells import Cells, World, build_cells, volume_size
 from .course import Stand, sample_course, scale
 from .ground import Ground
-from .legs import make_legs
+from .legs import Leg, make_legs
 from .search import FORWARD, MOVES, cheapest, flood, trace
-from .tables import INF, ROW, Bounds, Lattice, LegTable, Pulls, hip_grid, on_lattice, trunk_grid
+from .tables import INF, ROW, Bounds, Floats32, Lattice, Pulls, hip_grid, on_lattice, trunk_grid
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -89,8 +91,11 @@ class Search:
             weights.com_margin, weights.clearance, weights.torque, weights.smoothness, weights.pitch
         )
         front, rear = self.legs
-        self.rear_table = self._leg_table(ground, rear)
-        self.front_table = self._leg_table(ground, front)
+        grid = self._hip_grid(ground, rear)
+        self.rear_table = on_lattice(grid, rear, self.centres, lattice, 0.02 + bounds.thigh)
+        alike = front._replace(hip_x=0.0, hip_z=0.0) == rear._replace(hip_x=0.0, hip_z=0.0)
+        grid = grid if alike else self._hip_grid(ground, front)
+        self.front_table = on_lattice(grid, front, self.centres, lattice, 0.02 + bounds.thigh)
         self.ground = ground
         self.far = 2 * max(leg.reach_max for leg in self.legs) + math.hypot(
             front.hip_x - rear.hip_x, front.hip_z - rear.hip_z
@@ -98,11 +103,11 @@ class Search:
         self.near = 2 * p.wheel_radius + bounds.legs
         self.trunk, self.trunk_x0, self.trunk_z0 = self._trunk_table()
 
-    def _leg_table(self, ground: Ground, leg: object) -> LegTable:
-        grid = hip_grid(
+    def _hip_grid(self, ground: Ground, leg: Leg) -> tuple[Floats32, Floats32, Floats32]:
+        grid: tuple[Floats32, Floats32, Floats32] = hip_grid(
             ground, self.planar, leg, self.centres, self.lattice, self.pulls, self.bounds
         )
-        return on_lattice(grid, leg, self.centres, self.lattice, 0.02 + self.bounds.thigh)
+        return grid
 
     def _trunk_table(self) -> tuple[NDArray[np.float32], int, int]:
         lat, c = self.lattice, self.centres
@@ -147,18 +152,18 @@ class Search:
         w = self._world(com)
         seed, target = self._seed(cells, source, self.begin), self._seed(cells, goal, self.end)
         n = len(cells.front)
-        shape = (n, lat.nt, lat.nz, ROW)
-        qual, width = np.empty(shape, np.uint8), np.zeros(shape, np.uint8)
+        shape = (n, volume_size(lat))
+        qual, width = np.zeros(shape, np.uint8), np.zeros(shape, np.uint8)
         state, alive = np.zeros(n, np.uint8), np.zeros(n, np.bool_)
         moves = FORWARD
         flood(w, cells, source, seed, moves, False, qual, state, width, alive)
-        best, pose = self._best(width[goal], target)
+        best, pose = self._best(self._window(width[goal]), target)
         if best == 0:
             moves = len(MOVES)
             for k in range(_SWEEPS):
                 if not flood(w, cells, source, seed, moves, False, qual, state, width, alive):
                     break
-                best, pose = self._best(width[goal], target)
+                best, pose = self._best(self._window(width[goal]), target)
                 if best > 0 and k > 1:
                     break
         if best == 0:
@@ -185,11 +190,10 @@ class Search:
         for _ in range(1 if moves == FORWARD else 2 * _SWEEPS):
             if not cheapest(
                 w, cells, source, seed, moves, smooth, pulls, level, width, rest, value, reached,
-                False,
             ):  # fmt: skip
                 break
         rows = np.empty((4 * len(self.s) + 400, 5), np.int32)
-        last = self._cheapest_pose(value[goal], pose)
+        last = self._cheapest_pose(self._window(value[goal]), pose)
         count = trace(w, cells, source, goal, last, moves, smooth, value, rows)
         if count < 0:
             return Finding(None, None, 0, self._farthest(cells, alive))
@@ -224,6 +228,12 @@ class Search:
         return np.array(
             [min(max(int(v), 0), n - 1) for v, n in zip(seed, sizes, strict=True)], np.int32
         )
+
+    def _window(self, volume: NDArray[Any]) -> NDArray[Any]:
+        """(nt, nz, nx) view of a flat volume without its rim."""
+        lat = self.lattice
+        full = volume.reshape(lat.nt + 4, lat.nz + 4, ROW)
+        return full[2:-2, 2:-2, 2 : 2 + lat.nx]
 
     @staticmethod
     def _near(volume: NDArray[np.generic], pose: Ints) -> tuple[slice, ...]:

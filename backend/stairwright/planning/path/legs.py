@@ -9,7 +9,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from ...robot.description import Planar
+from stairwright.robot.description import Planar
+
 from .ground import Ground, box_clearance, link_clearance, point_segment, segment_gap
 
 Floats = NDArray[np.float64]

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import time as clock
 
-from ...errors import InputError
-from ...robot.description import Robot
-from ...terrain.profile import Terrain
-from ...terrain.wheel_path import WheelPath, wheel_path
-from ..certificate import certify
-from ..plan import Limit, Plan, Pose, Problem, Timing, plan_id
-from ..weights import PathWeights
+from stairwright.errors import InputError
+from stairwright.planning.certificate import certify
+from stairwright.planning.plan import Limit, Plan, Pose, Problem, Timing, plan_id
+from stairwright.planning.weights import PathWeights
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
+from stairwright.terrain.wheel_path import WheelPath, wheel_path
+
 from .assemble import make_poses
 from .course import NoStand, Stand, find_stands
 from .ground import Ground, make_ground

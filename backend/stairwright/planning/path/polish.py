@@ -8,7 +8,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from ...robot.description import Planar
+from stairwright.robot.description import Planar
+
 from .ground import Ground
 from .legs import COM_X, LEGS, LINKS, REACH, RECORD, SLACK, TRUNK, Leg, evaluate
 

@@ -8,10 +8,11 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from ...robot.description import Planar, Robot
-from ...statics.contact import GRAVITY, least_friction
-from ...statics.margin import com_margin, friction_needed, leg_torques
-from ...terrain.wheel_path import WheelPath, curve_at
+from stairwright.robot.description import Planar, Robot
+from stairwright.statics.contact import GRAVITY, least_friction
+from stairwright.statics.margin import com_margin, friction_needed, leg_torques
+from stairwright.terrain.wheel_path import WheelPath, curve_at
+
 from .contacts import wheel_contacts
 from .ground import Ground
 from .legs import COM_X, LEGS, LINKS, RECORD, SLACK, TRUNK, Leg, evaluate

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...robot.description import Robot
-from ...terrain.wheel_path import WheelPath
-from ..weights import PathWeights
+from stairwright.planning.weights import PathWeights
+from stairwright.robot.description import Robot
+from stairwright.terrain.wheel_path import WheelPath
+
 from . import polish as po
 from .contacts import path_intervals
 from .course import Stand, scale

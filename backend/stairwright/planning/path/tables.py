@@ -14,13 +14,15 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from ...robot.description import Planar
+from stairwright.robot.description import Planar
+
 from .ground import Ground, box_clearance, link_clearance
 from .legs import Leg, knee_point
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Ints = NDArray[np.int32]
+Bytes = NDArray[np.uint8]
 
 INF = np.float32(1e9)
 ROW = 32  # lattice columns stored per row: whole vector registers
@@ -61,13 +63,21 @@ class Bounds(NamedTuple):
 
 
 class LegTable(NamedTuple):
-    """Per wheel sample, pitch, row, column: cost (INF: impossible), CoM moment [kg m]; the lattice
-    index of the first column and row."""
+    """One leg on the body lattice, per wheel sample, pitch, row and column.
+
+    Attributes:
+        cost: Cost, INF where impossible.
+        moment: CoM moment of the leg pair about the world's origin [kg m].
+        x0, z0: Lattice index of the first column and row, per sample and pitch.
+        first, last: First possible column of a row and the one after the last (0, 0 if none).
+    """
 
     cost: Floats32
     moment: Floats32
     x0: Ints
     z0: Ints
+    first: Bytes
+    last: Bytes
 
 
 @nb.njit(cache=True)
@@ -122,7 +132,7 @@ def hip_grid(
     return cost, moment, angle
 
 
-@nb.njit(cache=True, error_model="numpy")
+@nb.njit(cache=True, error_model="numpy", fastmath=True)
 def on_lattice(
     grid: tuple[Floats32, Floats32, Floats32],
     leg: Leg,
@@ -137,11 +147,13 @@ def on_lattice(
     out = np.full((n, lat.pitches, m, ROW), INF, np.float32)
     mom = np.zeros((n, lat.pitches, m, ROW), np.float32)
     x0, z0 = np.empty((n, lat.pitches), np.int32), np.empty((n, lat.pitches), np.int32)
+    first = np.zeros((n, lat.pitches, m), np.uint8)
+    last = np.zeros((n, lat.pitches, m), np.uint8)
     middle = np.float32(0.5 * (leg.thigh_min + leg.thigh_max))
     half_range = np.float32(0.5 * (leg.thigh_max - leg.thigh_min) - slack)
     turn_over, full = np.float32(math.pi), np.float32(2 * math.pi)
     soft = np.float32(0.15)
-    zero, one, weight = np.float32(0.0), np.float32(1.0), np.float32(0.2)
+    zero, weight = np.float32(0.0), np.float32(0.2)
     for i in range(n):
         for t in range(lat.pitches):
             pitch = (t - lat.pitches // 2) * lat.turn
@@ -158,15 +170,25 @@ def on_lattice(
                 src = cost[i, v % 2, u % 2, v // 2 + j]
                 ang = angle[i, v % 2, u % 2, v // 2 + j]
                 mos = moment[i, v % 2, u % 2, v // 2 + j]
-                for k in range(min(ROW, m - u // 2)):
-                    w = ang[k + u // 2] - shift
+                width = min(ROW, m - u // 2)
+                src, ang, mos = src[u // 2 :], ang[u // 2 :], mos[u // 2 :]
+                value, drag = out[i, t, j], mom[i, t, j]
+                for k in range(width):
+                    w = ang[k] - shift
                     w = w - full * np.floor((w + turn_over) / full)
                     room = half_range - abs(w)
                     e = max(zero, soft - room) / soft
-                    value = src[k + u // 2] + weight * e * e
-                    out[i, t, j, k] = value if room >= zero else INF
-                    mom[i, t, j, k] = mos[k + u // 2]
-    return LegTable(out, mom, x0, z0)
+                    fits = src[k] + weight * e * e
+                    value[k] = fits if room >= zero else INF
+                    drag[k] = mos[k]
+                a, b = 0, width
+                while a < width and value[a] >= INF:
+                    a += 1
+                while b > a and value[b - 1] >= INF:
+                    b -= 1
+                if b > a:
+                    first[i, t, j], last[i, t, j] = a, b
+    return LegTable(out, mom, x0, z0, first, last)
 
 
 @nb.njit(cache=True)

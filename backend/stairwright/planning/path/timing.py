@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...robot.description import Robot
+from stairwright.robot.description import Robot
 
 Floats = NDArray[np.float64]
 
