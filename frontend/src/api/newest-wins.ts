@@ -6,8 +6,6 @@
 interface Asked<Question> {
   question: Question;
   sequence: number;
-  /** A newer question need not wait for this one: it is given up. */
-  interruptible: boolean;
 }
 
 export class NewestWins<Question, Answer> {
@@ -22,9 +20,8 @@ export class NewestWins<Question, Answer> {
     private readonly fail: (error: unknown, question: Question, newest: boolean) => void,
   ) {}
 
-  ask(question: Question, interruptible = false): void {
-    this.waiting = { question, sequence: ++this.asked, interruptible };
-    if (this.current?.interruptible) this.current.abort.abort();
+  ask(question: Question): void {
+    this.waiting = { question, sequence: ++this.asked };
     if (!this.current) void this.pump();
   }
 

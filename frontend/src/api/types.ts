@@ -49,7 +49,7 @@ export interface Problem {
   at: Vec2;
   progress: number;
   message: string;
-  limit?: { needed: number; available: number } | null;
+  limit?: { needed: number; available: number; quantity?: string; unit?: string } | null;
 }
 
 export interface Plan {
@@ -104,7 +104,7 @@ export interface Rollout {
   plan_id?: string;
   outcome: Outcome;
   seed?: number;
-  message?: string | null;
+  reason?: string | null;
   metrics: Metrics;
   series: Series;
 }
@@ -131,8 +131,9 @@ export interface ProblemDetail {
 export interface SettingSchema {
   title?: string;
   description?: string;
-  type?: string;
-  default?: number | boolean | string;
+  type?: string | string[];
+  /** Null where the robot or the plan decides. */
+  default?: number | boolean | string | null;
   minimum?: number;
   maximum?: number;
   exclusiveMinimum?: number;
@@ -153,6 +154,8 @@ export interface Settings {
 }
 
 export type SettingValue = number | boolean | string;
+/** Null goes back to the default. */
+export type SettingChange = SettingValue | null;
 export type SettingValues = Record<string, SettingValue>;
 
 export interface PlanRequest {

@@ -1,7 +1,7 @@
 /** One setting: slider with a tick at the default, field, unit, and a reset when changed. */
 
 import { useRef } from "preact/hooks";
-import type { SettingSchema, SettingValue } from "../api/types";
+import type { SettingChange, SettingSchema, SettingValue } from "../api/types";
 import { setting } from "../geometry/format";
 import { Icon } from "../ui/icon";
 import { NumberField } from "../ui/number-field";
@@ -10,7 +10,7 @@ interface SettingProps {
   name: string;
   schema: SettingSchema;
   value: SettingValue | undefined;
-  onChange: (value: SettingValue) => void;
+  onChange: (value: SettingChange) => void;
 }
 
 export function SettingRow(props: SettingProps) {
@@ -25,11 +25,18 @@ interface Scale {
   from: (share: number) => number;
 }
 
+/** A log scale that reaches 0 keeps its lowest end for it. */
+const DECADES_TO_ZERO = 1e-4;
+
 /** Share of the track [0, 1] from a value and back. */
 function scaleOf(schema: SettingSchema, min: number, max: number): Scale {
-  if (schema.scale === "log" && min > 0) {
-    const span = Math.log(max / min);
-    return { to: (v) => Math.log(v / min) / span, from: (s) => min * Math.exp(s * span) };
+  if (schema.scale === "log" && max > 0) {
+    const low = min > 0 ? min : max * DECADES_TO_ZERO;
+    const span = Math.log(max / low);
+    return {
+      to: (v) => (v <= low ? 0 : Math.log(v / low) / span),
+      from: (s) => (s <= 0 ? min : low * Math.exp(s * span)),
+    };
   }
   return { to: (v) => (v - min) / (max - min), from: (s) => min + s * (max - min) };
 }
@@ -42,16 +49,21 @@ const LEAP = 0.1;
 
 function SliderRow({ name, schema, value, onChange }: SettingProps) {
   const track = useRef<HTMLDivElement>(null);
-  const initial = typeof schema.default === "number" ? schema.default : 0;
-  const min = schema.minimum ?? schema.exclusiveMinimum ?? Math.min(0, initial);
-  const max = schema.maximum ?? schema.exclusiveMaximum ?? Math.max(1, 2 * initial);
+  /** Without a default of its own, the robot or the plan decides: "auto". */
+  const auto = typeof schema.default !== "number";
+  const initial = typeof schema.default === "number" ? schema.default : Number.NaN;
+  const min = schema.minimum ?? schema.exclusiveMinimum ?? 0;
+  const max = schema.maximum ?? schema.exclusiveMaximum ?? 1;
   const now = typeof value === "number" ? value : initial;
   const changed = value !== undefined && value !== schema.default;
   const scale = scaleOf(schema, min, max);
   const whole = schema.type === "integer";
   const clamp = (v: number) => Math.min(max, Math.max(min, whole ? Math.round(v) : rounded(v)));
-  const share = Math.min(1, Math.max(0, scale.to(now)));
-  const base = Math.min(1, Math.max(0, scale.to(initial)));
+  const unset = Number.isNaN(now);
+  const shareOf = (v: number) => (Number.isNaN(v) ? 0.5 : Math.min(1, Math.max(0, scale.to(v))));
+  const share = shareOf(now);
+  const base = shareOf(initial);
+  const words = unset ? "auto" : `${setting(now)} ${schema.unit ?? ""}`;
   const label = schema.title ?? name;
   const percent = (s: number) => `${(s * 100).toFixed(2)}%`;
 
@@ -59,9 +71,8 @@ function SliderRow({ name, schema, value, onChange }: SettingProps) {
     const rect = track.current!.getBoundingClientRect();
     const at = (event.clientX - rect.left) / rect.width;
     // Within 2 % of the default's tick the slider rests on it.
-    onChange(
-      Math.abs(at - base) < 0.02 ? initial : clamp(scale.from(Math.min(1, Math.max(0, at)))),
-    );
+    const onTick = !auto && Math.abs(at - base) < 0.02;
+    onChange(onTick ? initial : clamp(scale.from(Math.min(1, Math.max(0, at)))));
   };
   const onKeyDown = (event: KeyboardEvent) => {
     const by: Record<string, number> = {
@@ -97,30 +108,30 @@ function SliderRow({ name, schema, value, onChange }: SettingProps) {
         aria-description={schema.description}
         aria-valuemin={min}
         aria-valuemax={max}
-        aria-valuenow={now}
-        aria-valuetext={`${setting(now)} ${schema.unit ?? ""}`}
+        aria-valuenow={unset ? min : now}
+        aria-valuetext={words}
         onPointerDown={(event) => {
           event.currentTarget.setPointerCapture(event.pointerId);
           slideTo(event);
         }}
         onPointerMove={(event) => event.buttons === 1 && slideTo(event)}
-        onDblClick={() => onChange(initial)}
+        onDblClick={() => onChange(null)}
         onKeyDown={onKeyDown}
       >
-        <u style={{ left: percent(base) }} />
-        <s style={{ width: percent(share) }} />
-        <em style={{ left: percent(share) }} />
+        {!auto && <u style={{ left: percent(base) }} />}
+        {!unset && <s style={{ width: percent(share) }} />}
+        <em class={unset ? "auto" : ""} style={{ left: percent(share) }} />
       </div>
       <NumberField
         label={`${label}, value`}
         value={now}
         min={min}
         max={max}
-        format={setting}
+        format={(v) => (Number.isNaN(v) ? "auto" : setting(v))}
         onChange={(v) => onChange(whole ? Math.round(v) : v)}
       />
       <span class="un">{schema.unit === "1" ? "" : schema.unit}</span>
-      <Reset label={label} shown={changed} onReset={() => onChange(initial)} />
+      <Reset label={label} shown={changed} onReset={() => onChange(null)} />
     </div>
   );
 }
@@ -157,11 +168,7 @@ function ChoiceRow({ name, schema, value, onChange }: SettingProps) {
           </option>
         ))}
       </select>
-      <Reset
-        label={label}
-        shown={value !== undefined}
-        onReset={() => onChange(schema.default ?? "")}
-      />
+      <Reset label={label} shown={value !== undefined} onReset={() => onChange(null)} />
     </div>
   );
 }
@@ -175,11 +182,7 @@ function SwitchRow({ name, schema, value, onChange }: SettingProps) {
       <span class="push">
         <Switch label={label} on={now} onChange={onChange} />
       </span>
-      <Reset
-        label={label}
-        shown={value !== undefined}
-        onReset={() => onChange(schema.default ?? false)}
-      />
+      <Reset label={label} shown={value !== undefined} onReset={() => onChange(null)} />
     </div>
   );
 }

@@ -8,12 +8,15 @@ import { isNarrow } from "../state/view";
 import { Icon } from "../ui/icon";
 import { canvasBox, centreOn, projection, size } from "./viewport";
 
+/** Needed amounts above this mean: no amount is enough. */
+const HOPELESS = 100;
 const LENGTHS = new Set(["clearance", "reach"]);
 
 /** A limit in the problem's own unit; lengths below 1 m in mm. */
 function quantity(shown: Plan, value: number): string {
   const problem = shown.problem!;
-  const unit = (problem.limit as { unit?: string } | null)?.unit;
+  const unit = problem.limit?.unit;
+  if (Math.abs(value) >= HOPELESS) return "more than any";
   if (unit === "m" || (!unit && LENGTHS.has(problem.kind))) {
     return Math.abs(value) < 0.1 ? `${fixed(value * 1000, 0)} mm` : `${fixed(value, 3)} m`;
   }

@@ -7,6 +7,7 @@ import {
   activity,
   eta,
   failure,
+  failureB,
   progress,
   run,
   runB,
@@ -197,7 +198,8 @@ function Card({ result }: { result: Rollout }) {
           ))}
         </tbody>
       </table>
-      {result.message && result.outcome !== "success" && <p>{result.message}</p>}
+      {result.reason && result.outcome !== "success" && <p>{result.reason}</p>}
+      {compare.value && failureB.value && !other && <p>B has no rollout: {failureB.value}</p>}
     </div>
   );
 }

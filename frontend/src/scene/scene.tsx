@@ -77,7 +77,7 @@ export function Scene() {
         {address && (
           <iframe
             key={session.value!.id}
-            src={`${address}?hideViserLogo`}
+            src={`${address}?embedded=1&hideViserLogo`}
             title="3-D scene"
             allow="fullscreen"
           />

@@ -77,13 +77,16 @@ function stopWaiting(): void {
   slow.value = false;
 }
 
-/** How long the last full path took [ms]. */
-let pathTook = 0;
+/** How long the last answers took [ms]; 0 before the first. */
+const took = { a: 0, preview: 0, b: 0 };
+/** The path follows a preview once the hand rests for this long [ms]. */
+const REST = 200;
+let resting: ReturnType<typeof setTimeout> | undefined;
 
 async function solve(question: Question, abort: AbortSignal): Promise<Plan> {
   const started = performance.now();
   const answer = await postPlan(question.request, abort);
-  if (question.which === "a") pathTook = performance.now() - started;
+  took[question.which] = performance.now() - started;
   return answer;
 }
 
@@ -116,8 +119,10 @@ function show(answer: Plan, question: Question, newest: boolean): void {
 }
 
 function askForA(question: PlanRequest, key: string): void {
-  const quick = question.method === "path" && pathTook > LIVE;
-  if (!quick) {
+  clearTimeout(resting);
+  // Only where the quick method is quick: on some terrains it is not.
+  const worth = took.a > LIVE && took.preview < took.a / 2;
+  if (question.method !== "path" || !worth) {
     queue.ask({ which: "a", request: question, key });
     return;
   }
@@ -127,13 +132,18 @@ function askForA(question: PlanRequest, key: string): void {
 
 /** After the preview: the question that was meant. */
 function askForPath(previewed: Question): void {
-  const meant = request.peek();
-  if (meant) queue.ask({ which: "a", request: meant, key: previewed.key }, true);
+  clearTimeout(resting);
+  resting = setTimeout(() => {
+    const meant = request.peek();
+    if (meant && requestKey.peek() === previewed.key) {
+      queue.ask({ which: "a", request: meant, key: previewed.key });
+    }
+  }, REST);
 }
 
 function askForB(question: Question): void {
   const { weights: _, ...rest } = question.request;
-  queue.ask({ which: "b", request: { ...rest, method: "nominal" }, key: question.key }, true);
+  queue.ask({ which: "b", request: { ...rest, method: "nominal" }, key: question.key });
 }
 
 function fail(error: unknown, question: Question, newest: boolean): void {

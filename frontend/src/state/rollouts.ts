@@ -24,6 +24,8 @@ export const runPlan = signal<Plan | null>(null);
 export const activity = signal<Activity>("idle");
 /** Why a rollout could not be run (not: how it ended). */
 export const failure = signal<string | null>(null);
+/** Why B could not be run. */
+export const failureB = signal<string | null>(null);
 export const progress = signal(0);
 export const eta = signal<number | null>(null);
 /** Progress shows only for runs that take longer than a blink. */
@@ -70,10 +72,7 @@ export async function startRollout(): Promise<void> {
       runPlan.value = chosen;
       activity.value = "idle";
     });
-    const other = planB.peek();
-    if (compare.peek() && other) {
-      runB.value = await runOne(other, () => undefined);
-    }
+    await runOther();
   } catch (error) {
     report(error);
     activity.value = cancelled ? "cancelled" : "failed";
@@ -82,6 +81,23 @@ export async function startRollout(): Promise<void> {
     clearTimeout(blink);
     showProgress.value = false;
     current = null;
+  }
+}
+
+/** B after A; that it cannot be run is a result too, and no failure of A. */
+async function runOther(): Promise<void> {
+  const other = planB.peek();
+  failureB.value = null;
+  if (!compare.peek() || !other) return;
+  if (other.problem) {
+    failureB.value = other.problem.message;
+    return;
+  }
+  try {
+    runB.value = await runOne(other, () => undefined);
+  } catch (error) {
+    report(error);
+    failureB.value = error instanceof Error ? error.message : String(error);
   }
 }
 

@@ -4,9 +4,9 @@ import { computed, signal } from "@preact/signals";
 import type {
   Method,
   RobotDocument,
+  SettingChange,
   SettingSchema,
   Settings,
-  SettingValue,
   SettingValues,
   TerrainDocument,
 } from "../api/types";
@@ -44,18 +44,18 @@ function withValue(
   values: SettingValues,
   schema: SettingSchema | undefined,
   name: string,
-  value: SettingValue,
+  value: SettingChange,
 ): SettingValues {
   const { [name]: _, ...rest } = values;
-  return value === schema?.default ? rest : { ...rest, [name]: value };
+  return value === null || value === schema?.default ? rest : { ...rest, [name]: value };
 }
 
-export function setWeight(name: string, value: SettingValue): void {
+export function setWeight(name: string, value: SettingChange): void {
   const next = withValue(changedWeights.peek(), weightSchema.peek()[name], name, value);
   weights.value = { ...weights.peek(), [method.peek()]: next };
 }
 
-export function setController(name: string, value: SettingValue): void {
+export function setController(name: string, value: SettingChange): void {
   controller.value = withValue(controller.peek(), controllerSchema.peek()[name], name, value);
 }
 

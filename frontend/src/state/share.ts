@@ -84,12 +84,18 @@ export function restoreFromAddress(): Restored | null {
   return { rollout: state.ro ?? null, rolloutB: state.rb ?? null };
 }
 
+/** Browsers refuse an address that changes at every move of a slider [ms]. */
+const REST = 250;
+
 /** Keep the address up to date: after each finished edit, never during a drag. */
 export function startSharing(): void {
+  let timer: ReturnType<typeof setTimeout> | undefined;
   effect(() => {
     const empty = isEmpty.value && origin.value === null;
     const hash = empty ? "" : `#s=${encode(currentState())}`;
-    if (hash === location.hash) return;
-    history.replaceState(null, "", hash || location.pathname);
+    clearTimeout(timer);
+    timer = setTimeout(() => {
+      if (hash !== location.hash) history.replaceState(null, "", hash || location.pathname);
+    }, REST);
   });
 }

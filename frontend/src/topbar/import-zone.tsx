@@ -2,7 +2,7 @@
 
 import { signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
-import { fixed } from "../geometry/format";
+import { fixed, setting } from "../geometry/format";
 import { Icon } from "../ui/icon";
 import { NumberField } from "../ui/number-field";
 import { importFile, meshToCut, takeFile, takeText, terrainError } from "./terrain-actions";
@@ -83,7 +83,8 @@ function ImportError() {
 /** Where to cut the mesh: an upright plane along x at some y, turned about z. */
 function CutDialog({ file }: { file: File }) {
   const dialog = useRef<HTMLDialogElement>(null);
-  const [y, setY] = useState(0);
+  const [y, setY] = useState<number | null>(null);
+  const [scale, setScale] = useState(1);
   const [heading, setHeading] = useState(0);
   useEffect(() => dialog.current?.showModal(), []);
   const close = () => {
@@ -92,7 +93,11 @@ function CutDialog({ file }: { file: File }) {
   };
   const submit = async (event: Event) => {
     event.preventDefault();
-    const fields = { y: String(y), heading: String((heading * Math.PI) / 180) };
+    const fields = {
+      heading: String((heading * Math.PI) / 180),
+      scale: String(scale),
+      ...(y === null ? {} : { y: String(y) }),
+    };
     if (await importFile(file, fields)) close();
   };
   return (
@@ -106,7 +111,7 @@ function CutDialog({ file }: { file: File }) {
           <span>Plane at y, m</span>
           <NumberField
             label="Plane at y in metres"
-            value={y}
+            value={y ?? 0}
             min={-1000}
             max={1000}
             step={0.05}
@@ -124,6 +129,17 @@ function CutDialog({ file }: { file: File }) {
             step={5}
             format={(v) => fixed(v, 1)}
             onChange={setHeading}
+          />
+        </div>
+        <div class="frow">
+          <span>Metres per unit</span>
+          <NumberField
+            label="Metres per unit of the file"
+            value={scale}
+            min={0.0001}
+            max={1000}
+            format={setting}
+            onChange={setScale}
           />
         </div>
         {terrainError.value && (

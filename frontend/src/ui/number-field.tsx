@@ -31,7 +31,7 @@ export function NumberField(props: NumberFieldProps) {
   const input = useRef<HTMLInputElement>(null);
   const shown = text ?? format(value);
   const parsed = text === null ? value : parseNumber(text);
-  const valid = Number.isFinite(parsed) && parsed >= min && parsed <= max;
+  const valid = text === null || (Number.isFinite(parsed) && parsed >= min && parsed <= max);
 
   useEffect(() => {
     if (!props.focus) return;
@@ -58,7 +58,8 @@ export function NumberField(props: NumberFieldProps) {
     } else if (step && (event.key === "ArrowUp" || event.key === "ArrowDown")) {
       event.preventDefault();
       const by = (event.key === "ArrowUp" ? 1 : -1) * step * (event.shiftKey ? 10 : 1);
-      const next = Math.min(max, Math.max(min, (valid ? parsed : value) + by));
+      const from = Number.isFinite(parsed) ? parsed : Number.isFinite(value) ? value : min;
+      const next = Math.min(max, Math.max(min, from + by));
       setText(null);
       props.onChange(Number(next.toPrecision(12)));
     }

@@ -1,0 +1,97 @@
+"""The page as a user meets it: a tab on the real server, and the words to talk about it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, BrowserContext, Locator, Page
+
+PLANNED = ".app[data-plan=feasible], .app[data-plan=infeasible]"
+PATIENCE = 60_000  # ms; for a rollout on a busy machine
+
+
+class Product:
+    """The open page."""
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+        self.errors: list[str] = []
+        page.on("pageerror", lambda error: self.errors.append(str(error)))
+
+    def open(self, address: str = "/") -> Product:
+        """Open the page and wait for its first plan."""
+        self.page.goto(address)
+        return self.planned()
+
+    def planned(self) -> Product:
+        """Wait until the shown plan answers what is drawn."""
+        # Let a change that was just made reach the page's state first.
+        self.page.evaluate("() => new Promise(done => requestAnimationFrame(() => done(0)))")
+        self.page.locator(PLANNED).wait_for(timeout=PATIENCE)
+        return self
+
+    def choose_terrain(self, name: str) -> Product:
+        """Open a preset or a saved terrain by its name."""
+        self.page.get_by_role("button", name="Terrain:").click()
+        panel = self.page.get_by_role("dialog")
+        panel.locator(".item", has_text=name).first.click()
+        return self.planned()
+
+    @property
+    def status(self) -> str:
+        """`feasible`, `infeasible`, `planning`, `refused` or `none`."""
+        return self.page.locator(".app").get_attribute("data-plan") or ""
+
+    def vertex(self, index: int) -> Locator:
+        """The control of one corner."""
+        return self.page.locator(f'[data-vertex="{index}"]')
+
+    def corner(self, index: int) -> tuple[float, float]:
+        """Where a corner is, as its label tells it [m]."""
+        words = (self.vertex(index).get_attribute("aria-label") or "").replace("−", "-")
+        x, z = words.split(", x ")[1].removesuffix(" m").split(", z ")
+        return float(x), float(z)
+
+    def corners(self) -> int:
+        """How many corners are drawn."""
+        return self.page.locator("[data-vertex]").count()
+
+    def drag(self, index: int, dx: float, dy: float, steps: int = 8) -> Product:
+        """Drag a corner by pixels with the mouse."""
+        box = self.vertex(index).locator("rect").bounding_box()
+        assert box is not None
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        self.page.mouse.move(x, y)
+        self.page.mouse.down()
+        self.page.mouse.move(x + dx, y + dy, steps=steps)
+        self.page.mouse.up()
+        return self
+
+    def run(self) -> str:
+        """Press Run, wait for the end, and return the outcome."""
+        self.page.get_by_role("button", name="Run rollout").click()
+        done = ".app:not([data-run=none]):not([data-run=running])"
+        self.page.locator(done).wait_for(timeout=PATIENCE)
+        return self.page.locator(".app").get_attribute("data-run") or ""
+
+
+@pytest.fixture
+def product(page: Page) -> Iterator[Product]:
+    """The page in a tab of its own; an error that nobody caught fails the test."""
+    opened = Product(page)
+    yield opened
+    assert opened.errors == []
+
+
+@pytest.fixture
+def second(browser: Browser, server: Any) -> Iterator[Product]:
+    """Another user on another machine."""
+    context: BrowserContext
+    with browser.new_context(
+        base_url=server.url, viewport={"width": 1440, "height": 900}
+    ) as context:
+        yield Product(context.new_page())

@@ -1,0 +1,174 @@
+"""The profile editor: pointer, keyboard, numbers, tools, files, history."""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from .conftest import Product
+
+pytestmark = [pytest.mark.browser]
+
+DROP = """([name, text]) => {
+  const transfer = new DataTransfer();
+  transfer.items.add(new File([text], name));
+  for (const type of ["dragover", "drop"]) {
+    document.querySelector(".canvas").dispatchEvent(
+      new DragEvent(type, { dataTransfer: transfer, bubbles: true, cancelable: true }));
+  }
+}"""
+
+PASTE = """text => {
+  const data = new DataTransfer();
+  data.setData("text/plain", text);
+  document.dispatchEvent(
+    new ClipboardEvent("paste", { clipboardData: data, bubbles: true }));
+}"""
+
+
+def test_a_drag_is_one_undo_step_and_snaps_to_the_grid(product: Product) -> None:
+    product.open()
+    before = product.corner(6)
+    product.drag(6, 31, -17, steps=12).planned()
+    moved = product.corner(6)
+    assert moved != before
+    assert all(abs(v / 0.005 - round(v / 0.005)) < 1e-6 for v in moved)
+    product.page.keyboard.press("Control+z")
+    assert product.corner(6) == before
+    product.page.keyboard.press("Control+Shift+z")
+    assert product.corner(6) == moved
+
+
+def test_x_cannot_pass_a_neighbour(product: Product) -> None:
+    product.open()
+    product.drag(3, -400, 0).planned()
+    assert product.corner(3)[0] >= product.corner(2)[0]
+
+
+def test_keyboard_alone_moves_adds_and_deletes(product: Product) -> None:
+    product.open()
+    x, z = product.corner(6)
+    product.vertex(6).focus()
+    product.page.keyboard.press("ArrowRight")
+    product.page.keyboard.press("Shift+ArrowUp")
+    assert product.corner(6) == (pytest.approx(x + 0.01), pytest.approx(z + 0.1))
+    count = product.corners()
+    product.page.keyboard.press("Insert")
+    assert product.corners() == count + 1
+    product.page.keyboard.press("Delete")
+    assert product.corners() == count
+    product.page.keyboard.press("Tab")
+    assert product.page.evaluate("document.activeElement.dataset.vertex !== undefined")
+
+
+def test_numbers_can_be_typed(product: Product) -> None:
+    product.open()
+    product.vertex(6).focus()
+    field = product.page.get_by_label("z of the corner in metres")
+    field.fill("0,4")
+    field.press("Enter")
+    assert product.corner(6)[1] == pytest.approx(0.4)
+    # A dimension moves everything after it.
+    end = product.corner(7)
+    run = product.page.get_by_role("button", name="Run 0.300 m").first
+    run.focus()
+    run.press("Enter")
+    product.page.get_by_label("Run in metres").fill("0.35")
+    product.page.keyboard.press("Enter")
+    assert product.corner(7)[0] == pytest.approx(end[0] + 0.05)
+
+
+def test_several_corners_move_together(product: Product) -> None:
+    product.open()
+    before = [product.corner(i) for i in range(product.corners())]
+    product.vertex(0).focus()
+    product.page.keyboard.press("Control+a")
+    product.page.keyboard.press("ArrowUp")
+    after = [product.corner(i) for i in range(product.corners())]
+    assert [z for _, z in after] == pytest.approx([z + 0.01 for _, z in before])
+
+
+@pytest.mark.parametrize(("key", "corners"), [("s", 2), ("r", 2), ("p", 1)])
+def test_tools_draw_on_an_empty_canvas(product: Product, key: str, corners: int) -> None:
+    product.open()
+    product.page.get_by_role("button", name="Terrain:").click()
+    product.page.get_by_role("button", name="New", exact=True).click()
+    assert product.status == "none"
+    product.page.get_by_text("Draw a profile or start from a preset").wait_for()
+    product.page.keyboard.press(key)
+    box = product.page.locator(".ed").bounding_box()
+    assert box is not None
+    x, y = box["x"] + 400, box["y"] + 380
+    product.page.mouse.move(x, y)
+    product.page.mouse.down()
+    product.page.mouse.move(x + 120, y - 40, steps=10)
+    product.page.mouse.up()
+    product.planned()
+    assert product.corners() >= 2 + corners
+
+
+def test_stairs_by_the_code(product: Product) -> None:
+    product.open().choose_terrain("flat")
+    product.page.get_by_role("button", name="Snapping").click()
+    product.page.get_by_role("menuitemradio", name="Industrial").click()
+    box = product.page.locator(".ed").bounding_box()
+    assert box is not None
+    product.page.mouse.click(box["x"] + 500, box["y"] + 300)
+    product.planned()
+    faces = [product.corner(i) for i in range(product.corners())]
+    assert any(b[1] - a[1] == pytest.approx(0.2) for a, b in itertools.pairwise(faces))
+
+
+def test_files_are_dropped_and_text_is_pasted(product: Product) -> None:
+    product.open()
+    text = "x,z\n-1.5,0\n0,0\n0,0.1\n2,0.1\n"
+    product.page.evaluate(DROP, ["kerb.csv", text])
+    product.page.wait_for_function("() => document.querySelectorAll('[data-vertex]').length === 4")
+    assert product.planned().corner(2) == (0.0, pytest.approx(0.1))
+    product.page.evaluate(PASTE, text.replace("0.1", "0.12"))
+    product.page.wait_for_function(
+        "() => document.querySelector('[data-vertex=\"2\"]').ariaLabel.includes('0.120')"
+    )
+    product.page.evaluate(DROP, ["broken.csv", "a,b\nnot,numbers\n"])
+    product.page.locator(".import-error").wait_for()
+    assert product.corners() == 4
+
+
+def test_a_terrain_is_saved_and_deleted(product: Product) -> None:
+    product.open()
+    product.drag(6, 0, -20).planned()
+    product.page.get_by_role("button", name="Terrain:").click()
+    product.page.get_by_label("Save as").fill("my stairs")
+    product.page.get_by_role("button", name="Save", exact=True).click()
+    product.page.get_by_role("button", name="Terrain: my stairs").click()
+    product.page.get_by_role("button", name="Delete my stairs").click()
+    product.page.get_by_role("button", name="Delete my stairs").wait_for(state="detached")
+
+
+def test_wheel_zooms_and_fit_returns(product: Product) -> None:
+    product.open()
+    zoom = product.page.locator(".zoom")
+    assert zoom.inner_text() == "100 %"
+    product.page.locator(".ed").hover(position={"x": 500, "y": 250})
+    product.page.mouse.wheel(0, -400)
+    product.page.wait_for_function("() => document.querySelector('.zoom').innerText !== '100 %'")
+    product.page.get_by_role("button", name="Fit to view").click()
+    assert zoom.inner_text() == "100 %"
+
+
+def test_weights_replan_and_reset(product: Product) -> None:
+    product.open()
+    slider = product.page.get_by_role("slider", name="Speed")
+    slider.press("PageUp")
+    reset = product.page.get_by_role("button", name="Reset Speed")
+    reset.wait_for()
+    product.planned()
+    reset.click()
+    reset.wait_for(state="detached")
+    product.planned()
+    product.page.get_by_role("radio", name="Paper: critical poses").click()
+    product.planned()
+    product.page.get_by_role("slider", name="Posture").wait_for()

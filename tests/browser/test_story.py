@@ -1,0 +1,123 @@
+"""The main job from end to end: open, drag, plan, run, see the outcome, download, compare."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import httpx
+import pytest
+
+if TYPE_CHECKING:
+    from .conftest import Product
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+OUTCOMES = {"success", "fell", "stuck", "collided", "diverged", "timeout"}
+
+
+def _rows(text: str) -> list[dict[str, str]]:
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    return list(csv.DictReader(io.StringIO("\n".join(lines))))
+
+
+def _download(product: Product, section: str, name: str, folder: Path) -> Path:
+    product.page.get_by_role("button", name="Download").click()
+    item = product.page.locator(f'.downloads a[href*="/{section}/"]', has_text=name)
+    with product.page.expect_download() as waiting:
+        item.click()
+    target = folder / f"{section}.{name.lower()}"
+    waiting.value.save_as(target)
+    return target
+
+
+def test_draw_plan_run_and_download(product: Product, server: Any, tmp_path: Path) -> None:
+    product.open().choose_terrain("ramp-30deg-025")
+    before = product.corner(2)
+    product.drag(2, 24, 0).planned()
+    after = product.corner(2)
+    assert after[0] > before[0]
+    assert product.status == "feasible"
+
+    outcome = product.run()
+    assert outcome in OUTCOMES
+    assert product.page.locator(".res h2").inner_text()
+    product.page.get_by_role("slider", name="Time").press("End")
+
+    plan_csv = _download(product, "plans", "CSV", tmp_path)
+    link = product.page.locator(".downloads a")
+    product.page.get_by_role("button", name="Download").click()
+    addresses = link.evaluate_all("links => links.map(link => link.getAttribute('href'))")
+    product.page.keyboard.press("Escape")
+    plan_id = next(a.split("/")[4] for a in addresses if "/plans/" in a)
+    rollout_id = next(a.split("/")[4] for a in addresses if "/rollouts/" in a)
+
+    plan = httpx.get(f"{server.url}/api/v1/plans/{plan_id}").json()
+    assert plan["terrain"]["points"][2][0] == pytest.approx(after[0], abs=6e-4)
+    rows = _rows(plan_csv.read_text())
+    assert len(rows) == len(plan["poses"])
+    for row, pose in zip(rows, plan["poses"], strict=True):
+        assert float(row["x_c"]) == pytest.approx(pose["x_c"], abs=1e-6)
+        assert float(row["pitch"]) == pytest.approx(pose["pitch"], abs=1e-6)
+
+    rollout = httpx.get(f"{server.url}/api/v1/rollouts/{rollout_id}").json()
+    assert rollout["outcome"] == outcome
+    series = _rows(_download(product, "rollouts", "CSV", tmp_path).read_text())
+    assert len(series) == len(rollout["series"]["time"])
+    assert float(series[-1]["time"]) == pytest.approx(rollout["series"]["time"][-1], abs=1e-6)
+    assert float(series[-1]["pitch"]) == pytest.approx(rollout["series"]["pitch"][-1], abs=1e-6)
+
+
+def test_every_export_downloads(product: Product, tmp_path: Path) -> None:
+    product.open()
+    product.run()
+    names = {"plans": ("JSON", "CSV", "NPZ", "MCAP", "MJCF")}
+    names["rollouts"] = ("HTML", "JSON", "CSV", "NPZ", "MCAP")
+    for section, formats in names.items():
+        for name in formats:
+            assert _download(product, section, name, tmp_path).stat().st_size > 500, name
+
+
+def test_results_of_an_edited_profile_are_called_previous(product: Product) -> None:
+    product.open()
+    product.run()
+    heading = product.page.locator(".res h2")
+    assert "seed 0" in heading.inner_text()
+    product.vertex(3).focus()
+    product.page.keyboard.press("ArrowUp")
+    product.planned()
+    assert "previous plan" in heading.inner_text()
+    product.page.keyboard.press("Control+z")
+    product.planned()
+    assert "seed 0" in heading.inner_text()
+
+
+def test_timeline_moves_robot_and_cursors_together(product: Product) -> None:
+    product.open()
+    product.run()
+    timeline = product.page.get_by_role("slider", name="Time")
+    robot = product.page.locator(".rb.cur .tr").first
+    cursor = product.page.locator(".tcur").first
+    timeline.press("Home")
+    at_start = (robot.get_attribute("points"), cursor.get_attribute("style"))
+    timeline.press("PageUp")
+    timeline.press("PageUp")
+    assert robot.get_attribute("points") != at_start[0]
+    assert cursor.get_attribute("style") != at_start[1]
+    product.page.keyboard.press("Home")
+    product.page.locator("body").press("Space")
+    product.page.get_by_role("button", name="Pause").wait_for()
+    product.page.wait_for_function(
+        "() => Number(document.querySelector('.scrub').ariaValueNow) > 0.2"
+    )
+
+
+def test_compare_puts_b_beside_a(product: Product) -> None:
+    product.open("/").choose_terrain("ramp-30deg-025")
+    product.page.get_by_role("switch", name="Compare A with B").click()
+    product.page.locator(".rb.cmp").wait_for()
+    product.run()
+    product.page.locator(".res thead").get_by_text("B", exact=True).wait_for(timeout=60_000)
+    assert product.page.locator(".res td.b").count() == product.page.locator(".res td.a").count()
