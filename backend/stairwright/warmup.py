@@ -1,7 +1,7 @@
 """Compile and load everything that a first question would wait for.
 
-Run once at set-up (``python -m stairwright.warmup``), it fills numba's cache; run in the process that workers are forked from, it
-makes each of them start warm.
+Run once at set-up (``python -m stairwright.warmup``), it fills numba's cache; run in the process
+that workers are forked from, it makes each of them start warm.
 """
 
 from __future__ import annotations

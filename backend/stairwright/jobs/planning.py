@@ -67,14 +67,18 @@ class Planning:
             product = await self._pool.run(
                 work.solve, question.data, folder, deadline=self._deadline
             )
-        entry = await asyncio.to_thread(
-            self._store.documents.put,
-            "plan",
-            product.id,
-            question=question.key,
-            engine=planning_engine(),
-            digest=product.digest,
-            size=product.size,
-            summary=product.summary,
-        )
+        entry = await asyncio.to_thread(shelve_plan, self._store, question, product)
         return Answer(entry, product.packed, cached=False)
+
+
+def shelve_plan(store: Store, question: PlanQuestion, product: work.Product) -> Entry:
+    """Write down a plan that a worker has left among the artefacts."""
+    return store.documents.put(
+        "plan",
+        product.id,
+        question=question.key,
+        engine=planning_engine(),
+        digest=product.digest,
+        size=product.size,
+        summary=product.summary,
+    )

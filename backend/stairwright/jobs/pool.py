@@ -41,8 +41,7 @@ class WorkerPool:
         self._keeper: asyncio.Task[None] | None = None
 
     async def start(self) -> None:
-        """Start the workers and keep them alive until `stop`."""
-        await asyncio.to_thread(self._healthy_pool)
+        """Start the workers, without waiting for them, and keep them alive until `stop`."""
         self._keeper = asyncio.create_task(self._keep_alive())
 
     async def stop(self) -> None:
@@ -115,11 +114,11 @@ class WorkerPool:
     async def _keep_alive(self) -> None:
         """An idle worker that dies may take pebble's pool along: replace it before it is needed."""
         while True:
-            await asyncio.sleep(CHECK_EVERY)
             try:
                 await asyncio.to_thread(self._healthy_pool)
             except OSError:
-                logger.exception("the pool %s cannot be restarted", self.name)
+                logger.exception("the pool %s cannot be started", self.name)
+            await asyncio.sleep(CHECK_EVERY)
 
 
 def _end(pool: ProcessPool) -> None:

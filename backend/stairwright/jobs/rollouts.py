@@ -18,8 +18,9 @@ from .engine import rollout_engine
 from .failures import problem, problem_of
 from .gauge import Gauge
 from .job import Job
+from .planning import shelve_plan
 from .pool import WorkerPool
-from .questions import RolloutQuestion
+from .questions import PlanQuestion, RolloutQuestion
 from .queue import FairQueue
 
 logger = logging.getLogger(__name__)
@@ -151,11 +152,15 @@ class Rollouts:
         product = await self._pool.run(
             work.simulate, run.question.data, folder, run.gauge.path, deadline=self._deadline
         )
-        return await asyncio.to_thread(
-            self._store.documents.put,
+        return await asyncio.to_thread(self._shelve, run.question, product)
+
+    def _shelve(self, question: RolloutQuestion, product: work.Product) -> Entry:
+        if product.plan is not None and isinstance(question.source, PlanQuestion):
+            shelve_plan(self._store, question.source, product.plan)
+        return self._store.documents.put(
             "rollout",
             product.id,
-            question=run.question.key,
+            question=question.key,
             engine=rollout_engine(),
             digest=product.digest,
             size=product.size,

@@ -32,6 +32,7 @@ class Product:
     size: int
     summary: Mapping[str, Any]
     packed: bytes = b""
+    plan: Product | None = None  # that a rollout made for itself
 
 
 def solve(question: Question, artefacts: str) -> Product:
@@ -96,7 +97,8 @@ def simulate(question: Question, artefacts: str, gauge_path: str) -> Product:
         "outcome": run.outcome,
         "metrics": run.metrics.model_dump(mode="json"),
     }
-    return Product(run.id, digest, len(packed), summary)
+    made = _keep_plan(plan, artefacts) if question.get("ask") else None
+    return Product(run.id, digest, len(packed), summary, plan=made)
 
 
 def _plan_of(question: Question, artefacts: str) -> Plan:

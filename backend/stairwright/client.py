@@ -1,0 +1,295 @@
+"""A small client for a running service; documents come back as the package's own models.
+
+with Client("http://localhost:8000") as service:
+plan = service.plan("single-stair-036", robot="a1_wheeled")
+run = service.rollout(plan_id=plan.id, progress=print)
+"""
+
+from __future__ import annotations
+
+import secrets
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
+
+import httpx
+
+from stairwright.documents import Model, parse
+from stairwright.errors import StairwrightError
+from stairwright.planning.plan import Method, Plan
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
+
+if TYPE_CHECKING:
+    from stairwright.simulation.result import Rollout
+
+M = TypeVar("M", bound=Model)
+Progress = Callable[[float], object]
+State = Literal["queued", "running", "done", "failed", "cancelled"]
+PREFIX = "/api/v1"
+
+
+class ServiceError(StairwrightError):
+    """The service said no: its problem document (RFC 9457)."""
+
+    def __init__(self, problem: Mapping[str, Any]) -> None:
+        super().__init__(str(problem.get("detail") or problem.get("title") or "unknown problem"))
+        self.problem = dict(problem)
+
+    @property
+    def status(self) -> int:
+        """The HTTP status."""
+        return int(self.problem.get("status", 0))
+
+
+@dataclass(frozen=True)
+class JobState:
+    """A job as the service told it last."""
+
+    id: str
+    state: State
+    progress: float
+    eta: float | None
+    result: str | None
+    error: Mapping[str, Any] | None
+
+    @property
+    def finished(self) -> bool:
+        """Whether nothing will change any more."""
+        return self.state in ("done", "failed", "cancelled")
+
+
+class Client:
+    """Talks to one service. Methods raise `ServiceError` for an answer that says no."""
+
+    def __init__(self, url: str, token: str | None = None, timeout: float = 120.0) -> None:
+        headers = {"authorization": f"Bearer {token}"} if token else {}
+        self._http = httpx.Client(base_url=url, headers=headers, timeout=timeout)
+
+    def __enter__(self) -> Client:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the connections."""
+        self._http.close()
+
+    # ------------------------------------------------------------------ terrains and robots
+
+    def robots(self) -> list[Robot]:
+        """All robots."""
+        return [parse(Robot, each) for each in self._json("GET", "/robots")]
+
+    def terrains(self) -> list[Terrain]:
+        """All terrains, presets first."""
+        return [_terrain(each) for each in self._json("GET", "/terrains")]
+
+    def terrain(self, name: str) -> Terrain:
+        """One terrain."""
+        return _terrain(self._json("GET", f"/terrains/{_quoted(name)}"))
+
+    def save_terrain(self, terrain: Terrain) -> Terrain:
+        """Save a terrain under its name."""
+        body = terrain.model_dump(mode="json")
+        return _terrain(self._json("PUT", f"/terrains/{_quoted(terrain.name)}", json=body))
+
+    def delete_terrain(self, name: str) -> None:
+        """Remove a saved terrain."""
+        self._send("DELETE", f"/terrains/{_quoted(name)}")
+
+    def generate_terrain(self, kind: Literal["stair", "ramp", "flat"], **measures: Any) -> Terrain:
+        """A terrain from a few measures."""
+        return _terrain(self._json("POST", "/terrains/generate", json={"kind": kind, **measures}))
+
+    def import_terrain(self, path: str | Path, **fields: Any) -> Terrain:
+        """The profile in a file: STL, OBJ, PLY, OFF, CSV, JSON or YAML."""
+        file = Path(path)
+        files = {"file": (file.name, file.read_bytes())}
+        return _terrain(self._json("POST", "/terrains/import", files=files, data=fields))
+
+    def settings(self) -> dict[str, Any]:
+        """JSON Schemas of weights and controller settings."""
+        return dict(self._json("GET", "/settings"))
+
+    # ------------------------------------------------------------------ plans
+
+    def plan(
+        self,
+        terrain: str | Terrain | Mapping[str, Any],
+        robot: str | Robot | Mapping[str, Any] = "a1_wheeled",
+        friction: float | None = None,
+        method: Method = "path",
+        weights: Mapping[str, float] | None = None,
+    ) -> Plan:
+        """Plan; an infeasible terrain gives a plan with a problem, no error."""
+        body = _question(terrain, robot, friction, method, weights)
+        return parse(Plan, self._json("POST", "/plans", json=body))
+
+    def get_plan(self, plan_id: str) -> Plan:
+        """A stored plan."""
+        return parse(Plan, self._json("GET", f"/plans/{_quoted(plan_id)}"))
+
+    def export_plan(self, plan_id: str, file_format: str) -> bytes:
+        """A stored plan as a file: json, csv, npz, mcap or mjcf."""
+        return self._export("plans", plan_id, file_format)
+
+    # ------------------------------------------------------------------ rollouts
+
+    def rollout(
+        self,
+        terrain: str | Terrain | Mapping[str, Any] | None = None,
+        *,
+        progress: Progress | None = None,
+        timeout: float = 900.0,
+        **question: Any,
+    ) -> Rollout:
+        """Simulate and wait; `question` as in `submit`.
+
+        Raises:
+            ServiceError: If the job fails or is cancelled.
+            TimeoutError: If it takes longer than `timeout` [s]; the job is cancelled then.
+        """
+        job = self.submit(terrain, **question)
+        return self.result(self.wait(job.id, progress=progress, timeout=timeout))
+
+    def submit(
+        self,
+        terrain: str | Terrain | Mapping[str, Any] | None = None,
+        robot: str | Robot | Mapping[str, Any] = "a1_wheeled",
+        friction: float | None = None,
+        method: Method = "path",
+        weights: Mapping[str, float] | None = None,
+        *,
+        plan_id: str | None = None,
+        controller: Mapping[str, Any] | None = None,
+        seed: int = 0,
+    ) -> JobState:
+        """Start a rollout of a stored plan or of one to be made. A lost answer starts no second."""
+        body: dict[str, Any] = {"controller": dict(controller or {}), "seed": seed}
+        if terrain is not None:
+            body |= _question(terrain, robot, friction, method, weights)
+        else:
+            body |= {"plan_id": plan_id}
+            if friction is not None:
+                body["friction"] = friction
+        headers = {"idempotency-key": secrets.token_hex(16)}
+        for attempt in (1, 2, 3):
+            try:
+                return _job(self._json("POST", "/rollouts", json=body, headers=headers))
+            except httpx.TransportError:
+                if attempt == 3:
+                    raise
+                time.sleep(0.2 * attempt)
+        raise AssertionError("unreachable")
+
+    def job(self, job_id: str) -> JobState:
+        """A job's state."""
+        return _job(self._json("GET", f"/jobs/{_quoted(job_id)}"))
+
+    def cancel(self, job_id: str) -> JobState:
+        """Cancel a job."""
+        return _job(self._json("DELETE", f"/jobs/{_quoted(job_id)}"))
+
+    def wait(
+        self, job_id: str, *, progress: Progress | None = None, timeout: float = 900.0
+    ) -> JobState:
+        """Follow a job to its end.
+
+        Raises:
+            TimeoutError: After `timeout` [s]; the job is cancelled then.
+        """
+        give_up, pause = time.monotonic() + timeout, 0.02
+        while True:
+            job = self.job(job_id)
+            if progress is not None:
+                progress(job.progress)
+            if job.finished:
+                return job
+            if time.monotonic() > give_up:
+                self.cancel(job_id)
+                raise TimeoutError(f"the job took longer than {timeout:g} s")
+            time.sleep(pause)
+            pause = min(1.0, 1.3 * pause)
+
+    def result(self, job: JobState) -> Rollout:
+        """What a job that is done led to.
+
+        Raises:
+            ServiceError: If it failed or was cancelled.
+        """
+        if job.result is None:
+            raise ServiceError(job.error or {"detail": f"the job is {job.state}"})
+        return self.get_rollout(job.result.rsplit("/", 1)[-1])
+
+    def get_rollout(self, rollout_id: str) -> Rollout:
+        """A stored rollout."""
+        from stairwright.simulation.result import Rollout
+
+        return parse(Rollout, self._json("GET", f"/rollouts/{_quoted(rollout_id)}"))
+
+    def export_rollout(self, rollout_id: str, file_format: str) -> bytes:
+        """A stored rollout as a file: json, csv, npz, mcap or html."""
+        return self._export("rollouts", rollout_id, file_format)
+
+    # ------------------------------------------------------------------
+
+    def _export(self, kind: str, name: str, file_format: str) -> bytes:
+        path = f"/{kind}/{_quoted(name)}/export"
+        return self._send("GET", path, params={"format": file_format}).content
+
+    def _json(self, method: str, path: str, **options: Any) -> Any:
+        return self._send(method, path, **options).json()
+
+    def _send(self, method: str, path: str, **options: Any) -> httpx.Response:
+        response = self._http.request(method, PREFIX + path, **options)
+        if response.is_error:
+            try:
+                problem = response.json()
+            except ValueError:
+                problem = {"detail": response.text[:200], "status": response.status_code}
+            raise ServiceError(problem)
+        return response
+
+
+def _question(
+    terrain: str | Terrain | Mapping[str, Any],
+    robot: str | Robot | Mapping[str, Any],
+    friction: float | None,
+    method: Method,
+    weights: Mapping[str, float] | None,
+) -> dict[str, Any]:
+    body = {"terrain": _plain(terrain), "robot": _plain(robot), "method": method}
+    if friction is not None:
+        body["friction"] = friction
+    return {**body, "weights": dict(weights or {})}
+
+
+def _plain(source: str | Model | Mapping[str, Any]) -> Any:
+    if isinstance(source, Model):
+        return source.model_dump(mode="json")
+    return source if isinstance(source, str) else dict(source)
+
+
+def _terrain(data: Mapping[str, Any]) -> Terrain:
+    return parse(Terrain, {key: value for key, value in data.items() if key != "readonly"})
+
+
+def _job(data: Mapping[str, Any]) -> JobState:
+    names = ("id", "state", "progress", "eta", "result", "error")
+    return JobState(**{name: data[name] for name in names})
+
+
+def _quoted(name: str) -> str:
+    from urllib.parse import quote
+
+    return quote(name, safe="")
