@@ -61,8 +61,9 @@ def legs_apart(robot: Robot, trunk: tuple[float, float, float], q: Floats) -> fl
     wheel = robot.wheel.radius
     front = [(*segments[4], radii[4]), (*segments[5], radii[5]), (segments[5][1],) * 2 + (wheel,)]
     rear = [(*segments[6], radii[6]), (*segments[7], radii[7]), (segments[7][1],) * 2 + (wheel,)]
-    gaps = [float(_segments_apart(a, b, c, d)) - r1 - r2 for a, b, r1 in front for c, d, r2 in rear]
-    return min(gaps)
+    return float(
+        min(_segments_apart(a, b, c, d) - r1 - r2 for a, b, r1 in front for c, d, r2 in rear)
+    )
 
 
 @nb.njit(cache=True)

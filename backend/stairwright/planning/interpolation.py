@@ -3,7 +3,8 @@
 ``joint`` is the paper's: joints and pitch linear between poses. Between poses far apart it lifts
 wheels off the terrain or buries them. ``curve`` interpolates the trunk and the wheels' places on
 the wheel-centre curve instead and solves the legs in closed form, so that the wheels stay on the
-terrain; it is the default where poses are sparse. Plans of dense poses (``path``) use ``joint``:
+terrain; where that is out of reach or touches the terrain, the nearest pose that is clear takes
+its place. It is the default where poses are sparse. Plans of dense poses (``path``) use ``joint``:
 their poses are placed so that it misses the curve by less than a millimetre.
 """
 
@@ -20,9 +21,12 @@ from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
+from .clearance import clearance, legs_apart
 from .plan import Plan
+from .pose_search import APART, BETWEEN, PoseSearch
 from .reference import Reference
 from .supports import contact_forces, weight_of
+from .weights import CriticalWeights
 
 Floats = NDArray[np.float64]
 Mode = Literal["joint", "curve"]
@@ -39,7 +43,8 @@ def reference(
 
     Args:
         plan: Any method's plan with at least two poses.
-        mode: ``joint`` or ``curve``; by default ``joint`` for dense plans and ``curve`` else.
+        mode: ``joint`` or ``curve``; by default ``curve`` for critical poses and ``joint`` for the
+            dense poses of the other methods.
         spacing: Largest step of progress between samples [m].
         joint_rate: Joint speed [rad/s] above which the planned time is stretched; None keeps it.
 
@@ -50,7 +55,7 @@ def reference(
         raise InputError("a trajectory needs at least two poses", ("poses",))
     robot = plan.robot_description
     if mode is None:
-        mode = "joint" if plan.method == "path" else "curve"
+        mode = "curve" if plan.method == "critical" else "joint"
     knots = np.array([pose.progress for pose in plan.poses])
     progress = _grid(knots, spacing)
     at = _Linear(knots, progress)
@@ -60,7 +65,7 @@ def reference(
     time = at([(pose.time,) for pose in plan.poses])[:, 0]
     path = wheel_path(plan.terrain, robot.wheel.radius)
     if mode == "curve":
-        q = _legs(robot, path, trunk, wheel_progress, q)
+        trunk, q = _on_curve(plan, path, trunk, wheel_progress, q)
     com = _com(robot, trunk, q)
     normals = path.normals(wheel_progress.ravel()).reshape(-1, 2, 2)
     contacts = path.contacts(wheel_progress.ravel()).reshape(-1, 2, 2)
@@ -101,20 +106,48 @@ def _grid(knots: Floats, spacing: float) -> Floats:
     return np.concatenate([*parts, knots[-1:]])
 
 
-def _legs(robot: Robot, path: WheelPath, trunk: Floats, s: Floats, q: Floats) -> Floats:
-    """Joints (n, 4) with the wheels on the curve; held from neighbours where out of reach."""
+def _on_curve(
+    plan: Plan, path: WheelPath, trunk: Floats, s: Floats, q: Floats
+) -> tuple[Floats, Floats]:
+    """Trunk (n, 3) and joints (n, 4) with the wheels on the curve, limits and clearance kept.
+
+    Where a linear trunk is out of the legs' reach or touches the terrain, the nearest pose that
+    does neither takes its place. Where there is none, the joints stay at their limits and the
+    wheels leave the curve.
+    """
+    robot = plan.robot_description
+    limits = kinematics.limits(robot)
     wheels = path.centres(s.ravel()).reshape(-1, 2, 2)
     solved = kinematics.inverse(robot, trunk[:, 0], trunk[:, 1], trunk[:, 2], wheels)
     solved = q + (solved - q + np.pi) % (2 * np.pi) - np.pi
-    limits = kinematics.limits(robot)
-    for leg in (slice(0, 2), slice(2, 4)):
-        good = np.all(np.isfinite(solved[:, leg]), axis=1)
-        places = np.arange(len(q))
-        for j in range(leg.start, leg.stop):
-            known = solved[good, j] if good.any() else q[:, j]
-            held = np.interp(places, places[good] if good.any() else places, known)
-            solved[:, j] = np.clip(held, *limits[j])
-    return solved
+    good = np.all((solved >= limits[:, 0] - 1e-9) & (solved <= limits[:, 1] + 1e-9), axis=1)
+    for i in np.flatnonzero(good):
+        good[i] = _clear(robot, path, trunk[i], solved[i])
+    if good.all():
+        return trunk, np.clip(solved, limits[:, 0], limits[:, 1])
+
+    search = PoseSearch(robot, path, plan.friction, CriticalWeights())
+    trunk, start = trunk.copy(), None
+    for i in np.flatnonzero(~good):
+        if i > 0 and good[i - 1]:
+            start = np.concatenate([trunk[i - 1], solved[i - 1], s[i]])
+        found = search.nearest((s[i, 0], s[i, 1]), trunk[i], q[i], start)
+        if found.solved:
+            trunk[i], solved[i], start = found.x[:3], found.x[3:7], found.x
+            good[i] = True
+    places = np.arange(len(q))
+    if good.any():
+        for j in range(4):
+            solved[:, j] = np.interp(places, places[good], solved[good, j])
+    else:
+        solved = q
+    return trunk, np.clip(solved, limits[:, 0], limits[:, 1])
+
+
+def _clear(robot: Robot, path: WheelPath, trunk: Floats, q: Floats) -> bool:
+    pose = (float(trunk[0]), float(trunk[1]), float(trunk[2]))
+    gap, _ = clearance(robot, path.vertices, pose, q)
+    return gap >= BETWEEN and legs_apart(robot, pose, q) >= APART
 
 
 def _com(robot: Robot, trunk: Floats, q: Floats) -> Floats:
