@@ -1,8 +1,9 @@
 """Solvers of the balance QP (eqs 13-14): min F' H F / 2 + g' F subject to C F <= d.
 
-``native`` is a dense primal-dual interior point for exactly this QP's 8 unknowns and 16
-constraints, compiled so that the control loop never leaves machine code. The others are qpsolvers'
-back ends; Clarabel is the reference that tests compare all of them with.
+``native`` is written for exactly this QP's 8 unknowns and 16 constraints and compiled, so that the
+control loop never leaves machine code: a guess of the active faces, started at the last solution's,
+is solved exactly and checked (nearly always right); else an interior point finds the faces. The
+others are qpsolvers' back ends; Clarabel is the reference that tests compare all of them with.
 """
 
 from __future__ import annotations
@@ -18,9 +19,12 @@ from stairwright.errors import StairwrightError
 
 Floats = NDArray[np.float64]
 
-UNKNOWNS, WHEELS, ROWS = 8, 4, 16
+_GUESSES = 6  # active sets that are tried before the interior point
 _ITERATIONS = 40
-_TOLERANCE = 1e-12  # of stationarity and complementarity, relative to the gradient
+_TOLERANCE = 1e-9  # of stationarity and complementarity, relative to the gradient
+_FACE = 1e-9  # of the load limit: this near a face counts as on it
+# What holds a wheel's force: nothing, a friction edge, no load, full load, full load and an edge.
+_FREE, _FORWARD, _BACKWARD, _ZERO, _FULL, _FULL_FORWARD, _FULL_BACKWARD = range(7)
 
 
 class SolverError(StairwrightError):
@@ -34,9 +38,8 @@ def solve(solver: str, H: Floats, g: Floats, C: Floats, d: Floats, start: Floats
         SolverError: If the solver gives up.
     """
     if solver == "native":
-        force = np.empty(UNKNOWNS)
-        mu, limit = -C[0, 1], d[3]
-        solve_native(H, g, mu, limit, force)
+        force = start.copy()
+        solve_native(H, g, -float(C[0, 1]), float(d[3]), force)
         return force
     import qpsolvers  # imported here: the compiled loop does not need it
     from scipy.sparse import csc_matrix
@@ -63,6 +66,161 @@ _OPTIONS: dict[str, dict[str, Any]] = {
 
 
 @nb.njit(cache=True)
+def solve_native(H: Floats, g: Floats, mu: float, limit: float, x: Floats) -> int:
+    """Minimise into `x` (8,), which holds a guess; returns the interior point's iterations or 0."""
+    faces = np.empty(4, np.int64)
+    work = np.empty(8)
+    tolerance = _FACE * limit
+    _faces_of(x, mu, limit, tolerance, faces)
+    for _ in range(_GUESSES):
+        if _on_faces(H, g, mu, limit, faces, work) and _next_faces(H, g, mu, limit, faces, work):
+            x[:] = work
+            return 0
+    iterations = _interior_point(H, g, mu, limit, x)
+    # Sharpen: solve exactly on the faces that the interior point has come close to.
+    for near in (1e-7, 1e-5):
+        _faces_of(x, mu, limit, near * limit, faces)
+        for _ in range(_GUESSES):
+            if not _on_faces(H, g, mu, limit, faces, work):
+                break
+            if _next_faces(H, g, mu, limit, faces, work):
+                x[:] = work
+                return iterations
+    return iterations
+
+
+@nb.njit(cache=True)
+def _faces_of(x: Floats, mu: float, limit: float, near: float, faces: NDArray[np.int64]) -> None:
+    """The faces on which the wheels' forces lie."""
+    for w in range(4):
+        t, n = x[2 * w], x[2 * w + 1]
+        face = _FREE
+        if n <= near:
+            face = _ZERO
+        else:
+            if t >= mu * n - near:
+                face = _FORWARD
+            elif t <= near - mu * n:
+                face = _BACKWARD
+            if n >= limit - near:
+                face += _FULL
+        faces[w] = face
+
+
+@nb.njit(cache=True)
+def _on_faces(
+    H: Floats, g: Floats, mu: float, limit: float, faces: NDArray[np.int64], x: Floats
+) -> bool:
+    """The exact minimiser on the given faces, into `x`; False if the numbers break down."""
+    Z = np.zeros((8, 8))
+    m = 0
+    for w in range(4):
+        face = faces[w]
+        t, n = 2 * w, 2 * w + 1
+        x[t] = x[n] = 0.0
+        if face == _FREE:
+            Z[t, m] = Z[n, m + 1] = 1.0
+            m += 2
+        elif face in (_FORWARD, _BACKWARD):
+            Z[t, m] = mu if face == _FORWARD else -mu
+            Z[n, m] = 1.0
+            m += 1
+        elif face == _FULL:
+            Z[t, m] = 1.0
+            x[n] = limit
+            m += 1
+        elif face != _ZERO:
+            x[n] = limit
+            x[t] = mu * limit if face == _FULL_FORWARD else -mu * limit
+    if m == 0:
+        return True
+    gradient, HZ = np.empty(8), np.zeros((8, 8))
+    for i in range(8):
+        r = g[i]
+        for j in range(8):
+            r += H[i, j] * x[j]
+        gradient[i] = r
+        for a in range(m):
+            v = 0.0
+            for j in range(8):
+                v += H[i, j] * Z[j, a]
+            HZ[i, a] = v
+    K, rhs = np.empty((8, 8)), np.empty(8)
+    for a in range(m):
+        v = 0.0
+        for i in range(8):
+            v -= Z[i, a] * gradient[i]
+        rhs[a] = v
+        for b in range(a + 1):
+            v = 0.0
+            for i in range(8):
+                v += Z[i, a] * HZ[i, b]
+            K[a, b] = v
+    _cholesky(K, m)
+    _solve_factored(K, rhs, m)
+    for i in range(8):
+        for a in range(m):
+            x[i] += Z[i, a] * rhs[a]
+        if not math.isfinite(x[i]):
+            return False
+    return True
+
+
+@nb.njit(cache=True)
+def _next_faces(
+    H: Floats, g: Floats, mu: float, limit: float, faces: NDArray[np.int64], x: Floats
+) -> bool:
+    """True if `x` is the optimum; else the faces to try next.
+
+    A force beyond a face goes onto it; a face whose multiplier pulls the wrong way is left.
+    """
+    optimal = True
+    scale = 1.0
+    for i in range(8):
+        scale = max(scale, abs(g[i]))
+    slack, pull = _FACE * limit, 1e-10 * scale
+    for w in range(4):
+        t, n, face = x[2 * w], x[2 * w + 1], faces[w]
+        gt, gn = g[2 * w], g[2 * w + 1]
+        for j in range(8):
+            gt += H[2 * w, j] * x[j]
+            gn += H[2 * w + 1, j] * x[j]
+        new = face
+        if face == _ZERO:
+            if gn < mu * abs(gt) - pull:
+                new = _BACKWARD if gt > 0.0 else _FORWARD
+                if abs(gt) < abs(gn) * mu:
+                    new = _FREE
+        elif n < -slack:
+            new = _ZERO
+        else:
+            forward = face in (_FORWARD, _FULL_FORWARD)
+            backward = face in (_BACKWARD, _FULL_BACKWARD)
+            full = face >= _FULL
+            edge = -gt if forward else gt  # the multiplier of the friction edge, if on one
+            if (forward or backward) and full:
+                if edge < -pull:
+                    forward = backward = False
+                elif mu * edge - gn < -pull:
+                    full = False
+            elif forward or backward:
+                if edge < -pull:
+                    forward = backward = False
+            elif full and gn > pull:
+                full = False
+            if not (forward or backward):
+                forward, backward = t > mu * n + slack, -t > mu * n + slack
+            full = full or n > limit + slack
+            new = _FORWARD if forward else (_BACKWARD if backward else _FREE)
+            if full:
+                new += _FULL
+        if new != face:
+            faces[w] = new
+            optimal = False
+    return optimal
+
+
+@nb.njit(cache=True)
 def _slacks(x: Floats, mu: float, limit: float, out: Floats) -> None:
     """D - C x, per wheel: forward and backward friction, pushing, saturation."""
     for w in range(4):
@@ -81,11 +239,11 @@ def _pulled(z: Floats, mu: float, w: int) -> tuple[float, float]:
 
 
 @nb.njit(cache=True)
-def solve_native(H: Floats, g: Floats, mu: float, limit: float, x: Floats) -> int:
-    """Minimise into `x` (8,); returns the number of iterations (40: gave up, x is feasible).
+def _interior_point(H: Floats, g: Floats, mu: float, limit: float, x: Floats) -> int:
+    """Minimise into `x` (8,) by Mehrotra's predictor-corrector; returns the iterations taken.
 
     A feasible start is known (no traction, half the load limit), and steps keep it feasible, so
-    that only stationarity and complementarity have to converge (Mehrotra's predictor-corrector).
+    that only stationarity and complementarity have to converge.
     """
     n, m = 8, 16
     s, z = np.empty(m), np.empty(m)
@@ -132,7 +290,7 @@ def solve_native(H: Floats, g: Floats, mu: float, limit: float, x: Floats) -> in
                 pt, pn = _pulled(pull, mu, w)
                 rhs[2 * w] = -rd[2 * w] - pt
                 rhs[2 * w + 1] = -rd[2 * w + 1] - pn
-            _solve_factored(K, rhs)
+            _solve_factored(K, rhs, 8)
             _slacks(rhs, mu, 0.0, ds)
             step_s, step_z = 1.0, 1.0
             for i in range(m):
@@ -153,7 +311,8 @@ def solve_native(H: Floats, g: Floats, mu: float, limit: float, x: Floats) -> in
             z[i] += step * dz[i]
         _slacks(x, mu, limit, s)
         for i in range(m):
-            s[i] = max(s[i], 1e-13)
+            s[i] = max(s[i], 1e-10)
+            z[i] = max(z[i], 1e-10)
     return _ITERATIONS
 
 
@@ -169,7 +328,13 @@ def _factor(H: Floats, s: Floats, z: Floats, mu: float, K: Floats) -> None:
         K[2 * w, 2 * w] += a + b
         K[2 * w + 1, 2 * w] += mu * (b - a)
         K[2 * w + 1, 2 * w + 1] += mu * mu * (a + b) + c + d
-    for i in range(8):
+    _cholesky(K, 8)
+
+
+@nb.njit(cache=True)
+def _cholesky(K: Floats, n: int) -> None:
+    """Replace the lower triangle of `K` by its factor."""
+    for i in range(n):
         for j in range(i + 1):
             v = K[i, j]
             for k in range(j):
@@ -181,15 +346,15 @@ def _factor(H: Floats, s: Floats, z: Floats, mu: float, K: Floats) -> None:
 
 
 @nb.njit(cache=True)
-def _solve_factored(K: Floats, b: Floats) -> None:
+def _solve_factored(K: Floats, b: Floats, n: int) -> None:
     """Solve K K' x = b in place."""
-    for i in range(8):
+    for i in range(n):
         v = b[i]
         for k in range(i):
             v -= K[i, k] * b[k]
         b[i] = v / K[i, i]
-    for i in range(7, -1, -1):
+    for i in range(n - 1, -1, -1):
         v = b[i]
-        for k in range(i + 1, 8):
+        for k in range(i + 1, n):
             v -= K[k, i] * b[k]
         b[i] = v / K[i, i]
