@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import time as clock
+
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.planning.plan import Margins, Pose
+from stairwright.planning.plan import Margins, Plan, Pose, Problem, Timing, plan_id
 from stairwright.planning.weights import PathWeights
 from stairwright.robot import kinematics as kin
 from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath
 
 from .course import CORNER, kink
@@ -71,3 +74,37 @@ def key_poses(path: WheelPath, s: Floats) -> list[int]:
             if column.min() < mark < column.max():
                 keys.add(int(np.argmax(column >= mark)))
     return sorted(keys)
+
+
+def make_plan(
+    terrain: Terrain,
+    robot: Robot,
+    friction: float,
+    weights: PathWeights,
+    begun: float,
+    poses: list[Pose] | None = None,
+    critical: list[int] | None = None,
+    total: float = 0.0,
+    problem: Problem | None = None,
+) -> Plan:
+    """The document around poses or a problem."""
+    chosen = weights.model_dump()
+    return Plan.model_construct(
+        schema_="stairwright/plan/1",
+        id=plan_id(terrain, robot, friction, "path", chosen),
+        method="path",
+        terrain=terrain,
+        terrain_hash=terrain.hash,
+        robot=robot.name,
+        robot_hash=robot.hash,
+        robot_description=robot,
+        friction=friction,
+        weights=chosen,
+        status="infeasible" if problem else "feasible",
+        problem=problem,
+        poses=poses or [],
+        critical=critical or [],
+        timing=Timing(total=total),
+        solve_time=clock.perf_counter() - begun,
+        certificate=None,
+    )

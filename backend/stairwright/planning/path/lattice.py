@@ -130,7 +130,14 @@ class Search:
         grid = trunk_grid(self.ground, self.planar, lat, self.pulls, self.bounds, used, x0, z0)
         return grid, x0, z0
 
-    def find(self, friction: float, reserve: float, com: float, cheap: bool = True) -> Finding:
+    def find(
+        self,
+        friction: float,
+        reserve: float,
+        com: float,
+        cheap: bool = True,
+        roll_back: bool = False,
+    ) -> Finding:
         """The way from start to goal at `friction`, wide at the `reserve` friction if possible.
 
         Args:
@@ -138,6 +145,7 @@ class Search:
             reserve: Lower friction that is kept where the terrain allows it.
             com: Least CoM margin [m].
             cheap: Also trace the smoothest way; otherwise only the verdict is given.
+            roll_back: Let wheels roll back where there is no way forward only.
         """
         p, lat = self.planar, self.lattice
         i0, j0 = self._index(self.begin)
@@ -158,7 +166,7 @@ class Search:
         moves = FORWARD
         flood(w, cells, source, seed, moves, False, qual, state, width, alive)
         best, pose = self._best(self._window(width[goal]), target)
-        if best == 0:
+        if best == 0 and roll_back:
             moves = len(MOVES)
             for k in range(_SWEEPS):
                 if not flood(w, cells, source, seed, moves, False, qual, state, width, alive):

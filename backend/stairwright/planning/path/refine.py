@@ -119,13 +119,13 @@ def _wishes(robot: Robot, weights: PathWeights, share: float) -> Floats:
     wish = np.zeros(po.WISHES)
     wish[po.W_MARGIN], wish[po.W_RESERVE], wish[po.W_LAG] = 0.02, 0.02 * size, 0.06 * size
     wish[po.W_TRUNK] = wish[po.W_LINKS] = _CLEAR
-    wish[po.W_LEGS], wish[po.W_SLACK], wish[po.W_REACH] = 0.012, 0.05, 0.006 * size
+    wish[po.W_LEGS], wish[po.W_SLACK], wish[po.W_REACH] = 0.011, 0.05, 0.006 * size
     root = share**0.5
     wish[po.H_MARGIN] = 60.0 * root
     wish[po.H_RESERVE] = 30.0 * root * weights.com_margin**0.5
     wish[po.H_LAG] = 15.0 * root * weights.com_margin**0.5
     wish[po.H_CLEAR] = 150.0 * root * weights.clearance**0.5
-    wish[po.H_LEGS] = 60.0 * root
+    wish[po.H_LEGS] = 150.0 * root
     wish[po.H_SLACK] = 30.0 * root
     wish[po.H_PITCH] = 0.05 * root * weights.pitch**0.5
     wish[po.H_HEIGHT] = 0.3 * root

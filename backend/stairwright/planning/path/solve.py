@@ -1,0 +1,130 @@
+"""The ladder of attempts: from a quick coarse search to finer and bolder ones."""
+
+from __future__ import annotations
+
+import time as clock
+from dataclasses import dataclass
+
+from stairwright.planning.certificate import certify
+from stairwright.planning.plan import Certificate, Plan, Pose
+from stairwright.planning.weights import PathWeights
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
+from stairwright.terrain.wheel_path import WheelPath
+
+from .assemble import make_plan, make_poses
+from .course import Stand
+from .ground import Ground
+from .lattice import Finding, Search, make_lattice
+from .record import LEGS_GAP
+from .refine import Refined, refine
+from .tables import Bounds
+
+RESERVE = 0.1  # friction that a plan does without where the terrain allows it
+PITCHES = 1.9  # rad; largest pitch searched: the trunk may lean back past vertical
+
+# What lattice poses keep: a little more than the final bounds (strict), or as much less as rounding
+# to the lattice may take from a pose that is really possible (bold; the polish must repair it).
+STRICT = Bounds(trunk=0.006, links=0.006, legs=LEGS_GAP, reach=0.003, thigh=0.0, com=0.005)
+BOLD = Bounds(trunk=-0.004, links=-0.004, legs=-0.004, reach=0.0, thigh=-0.02, com=-0.012)
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One attempt: lattice refinement, bounds, and whether wheels may roll back."""
+
+    fine: float
+    bounds: Bounds
+    roll_back: bool = False
+
+
+LADDER = (
+    Rung(1.0, STRICT),
+    Rung(1.0, BOLD, True),
+    Rung(0.8, STRICT),
+    Rung(0.8, BOLD),
+    Rung(0.67, STRICT, True),
+)
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A certified path."""
+
+    poses: list[Pose]
+    keys: list[int]
+    total: float
+    certificate: Certificate
+    rung: int
+
+
+@dataclass(frozen=True)
+class Blocked:
+    """No certified path: how far the boldest search came, and whether it came through at all."""
+
+    reached: tuple[float, float] | None
+    opened: bool
+
+
+@dataclass
+class Course:
+    """One planning question."""
+
+    terrain: Terrain
+    robot: Robot
+    path: WheelPath
+    ground: Ground
+    stands: tuple[Stand, Stand]
+    friction: float
+    weights: PathWeights
+
+    @property
+    def reserve(self) -> float:
+        """The lower friction at which poses shall still hold where that is possible."""
+        return self.friction - min(RESERVE, 0.25 * self.friction)
+
+    def search(self, fine: float, bounds: Bounds) -> Search:
+        """A lattice with its tables."""
+        lattice = make_lattice(self.robot, PITCHES, fine)
+        return Search(
+            self.path, self.ground, self.robot, *self.stands, lattice, self.weights, bounds
+        )
+
+    def solve(self) -> Solved | Blocked:
+        """Climb the ladder until a path passes the certificate."""
+        reached: tuple[float, float] | None = None
+        opened = False
+        for k, rung in enumerate(LADDER):
+            search = self.search(rung.fine, rung.bounds)
+            finding = search.find(
+                self.friction, self.reserve, rung.bounds.com, roll_back=rung.roll_back
+            )
+            if finding.s is None:
+                if finding.reached and (reached is None or sum(finding.reached) > sum(reached)):
+                    reached = finding.reached
+                if rung.bounds is BOLD and not opened:
+                    break  # even the bold search finds no way: finer ones will not
+                continue
+            opened = True
+            solved = self.finish(search, finding, k)
+            if solved is not None:
+                return solved
+        return Blocked(reached, opened)
+
+    def finish(self, search: Search, finding: Finding, rung: int) -> Solved | None:
+        """Polish and certify; None where that fails."""
+        assert finding.s is not None
+        assert finding.body is not None
+        found: Refined = refine(
+            self.path, self.ground, self.robot, search.legs, self.stands, finding.s, finding.body,
+            self.friction, self.reserve, self.weights,
+        )  # fmt: skip
+        if found.record.worst < 0.0:
+            return None
+        poses, keys, total = make_poses(self.path, self.robot, found, self.weights)
+        plan: Plan = make_plan(
+            self.terrain, self.robot, self.friction, self.weights, clock.perf_counter(), poses,
+            keys, total,
+        )  # fmt: skip
+        certificate = certify(plan)
+        return Solved(poses, keys, total, certificate, rung) if certificate.passed else None
