@@ -257,7 +257,10 @@ class _Run:
         plan, robot = self.plan, self.robot
         outcome, reason = judge(ending, self.loads, robot.mass * 9.81)
         series = self.recorder.series()
-        s, steps = self.score, max(1.0, self.score[score.STEPS])
+        s = np.nan_to_num(
+            self.score, posinf=1e6, neginf=-1e6
+        )  # a diverged run still has a document
+        steps = max(1.0, s[score.STEPS])
         reached, total = ending.progress
         metrics = Metrics(
             duration=ending.time,
