@@ -106,7 +106,7 @@ LIGHT = Palette(
 
 def deep(colour: Rgb) -> Rgb:
     """The albedo that comes out as `colour`: light and tone mapping wash colours out."""
-    r, g, b = (round(255 * (channel / 255) ** 1.7) for channel in colour)
+    r, g, b = (round(255 * (channel / 255) ** 1.9) for channel in colour)
     return r, g, b
 
 

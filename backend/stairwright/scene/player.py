@@ -9,11 +9,11 @@ from collections.abc import Callable
 
 log = logging.getLogger(__name__)
 
-FRAMES_PER_SECOND = 50.0
+FRAMES_PER_SECOND = 40.0
 
 
 class Player:
-    """Calls `draw(time)` at up to 50 Hz while playing, once after each change, never else.
+    """Calls `draw(time)` at up to 40 Hz while playing, once after each change, never else.
 
     The page is the authority: it may set the time at any moment; between those the clock runs on
     at `speed`. At the end of the motion it stops.

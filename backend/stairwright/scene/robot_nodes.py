@@ -132,7 +132,7 @@ class RobotNodes:
             batched_colors=colours,
             opacity=self._opacity,
             lod="off",
-            cast_shadow=self._opacity is None,
-            receive_shadow=self._opacity is None,
+            cast_shadow=False,
+            receive_shadow=False,
             visible=self._visible,
         )

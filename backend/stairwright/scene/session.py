@@ -124,12 +124,25 @@ class SceneSession:
             self._plan, self._rollout = plan, rollout
             self._redraw()
             duration = 0.0 if self._motion is None else self._motion.duration
-            self._panel.show(plan, rollout, self._motion)
+            self._panel.show(plan, rollout, self._motion, self._stage.colours)
+            self._panel.show_layers(wanted)
         self._player.set(duration=duration)
 
     def set_view(self, theme: str | None = None, layers: Mapping[str, bool] | None = None) -> None:
         """Change theme or layers and keep what is shown."""
         self.show(self._plan, self._rollout, theme, layers)
+
+    def set_layers(self, layers: Mapping[str, bool]) -> None:
+        """Show or hide layers and leave everything else.
+
+        Raises:
+            InputError: For an unknown layer.
+        """
+        wanted = check_layers(layers)
+        self._touch()
+        with self._lock, self._server.atomic():
+            self._stage.show_layers(wanted)
+            self._panel.show_layers(wanted)
 
     def playback(
         self,

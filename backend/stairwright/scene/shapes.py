@@ -80,7 +80,7 @@ def rounded_box(size: tuple[float, float, float], chamfer: float) -> Mesh:
     )
 
 
-def disc(radius: float, width: float, chamfer: float, segments: int = 36) -> Mesh:
+def disc(radius: float, width: float, chamfer: float, segments: int = 24) -> Mesh:
     """A solid of revolution about y: a disc with chamfered rims [m]."""
     rings = [
         (radius - chamfer, -width / 2),
@@ -91,7 +91,7 @@ def disc(radius: float, width: float, chamfer: float, segments: int = 36) -> Mes
     return revolved(rings, segments, capped=True)
 
 
-def ring(outer: float, inner: float, width: float, chamfer: float, segments: int = 40) -> Mesh:
+def ring(outer: float, inner: float, width: float, chamfer: float, segments: int = 28) -> Mesh:
     """A tyre about y: a ring of rectangular section with chamfered shoulders [m]."""
     section = [
         (inner, -width / 2),

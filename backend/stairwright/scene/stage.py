@@ -16,6 +16,7 @@ from stairwright.terrain.profile import Terrain
 from . import shapes
 from .clearance import clearance, nearest
 from .motion import Moment, Motion
+from .overlays import Arrows, Bars, Instances, Plate
 from .palette import DARK, Palette, deep
 from .robot_nodes import RobotNodes, part_colours
 
@@ -38,9 +39,6 @@ HALF_WIDTH = 0.5  # m, of the extruded terrain
 DEPTH = 0.25  # m, of solid below its lowest point
 MAX_GHOSTS = 12
 METRES_PER_NEWTON = 0.003
-# Of the light that casts shadows, from the trunk [m]. Near: the client's shadow camera starts at
-# 1 mm, so its depth resolution fades with the square of the distance.
-_SPOT = np.array([-0.25, -0.35, 1.25])
 
 
 def check_layers(layers: Mapping[str, Any]) -> dict[str, bool]:
@@ -75,38 +73,44 @@ class Stage:
         self._margins: tuple[Floats, Floats] | None = None  # time, CoM margin
         self._problem: Mapping[str, Any] | None = None
         self._problem_from = np.inf
+        self._points = Instances(scene, "/collision_points", shapes.sphere(0.0075, 6, 8))
+        self._ball = Instances(scene, "/com/ball", shapes.sphere(0.017, 8, 14))
+        self._marks = Bars(scene, "/com/marks", 0.004)
+        self._outline = Bars(scene, "/support/outline", 0.004)
+        self._plate = Plate(scene, "/support/area")
+        self._forces = Arrows(scene, "/forces", 0.006)
+        self._overlays: dict[str, list[Any]] = {
+            "collision_points": [self._points],
+            "com": [self._ball, self._marks],
+            "support": [self._outline, self._plate],
+            "forces": [self._forces],
+        }
         self.draw_lights()
         self.draw_grid()
 
     # --- what rarely changes -------------------------------------------------------------------
 
     def draw_lights(self) -> None:
-        """A spot that follows the robot and casts its shadow, and unshadowed light from all sides.
+        """Three lights without shadows, and the sky's.
 
-        viser's default light casts cascaded shadows whose borders show on large plain faces.
+        viser's default light casts cascaded shadows whose borders show on large plain faces, and
+        shadows and environment maps cost most of a frame where there is no graphics card.
         """
         dark = self.colours.theme == "dark"
         self._scene.configure_default_lights(enabled=False)
-        self._scene.configure_environment_map(
-            "studio", environment_intensity=0.12 if dark else 0.30
-        )
+        self._scene.configure_environment_map(None)
         for name, position, strength in (
-            ("key", (-1.0, -1.2, 4.0), 1.0 if dark else 1.5),
-            ("fill", (-3.0, -4.0, 1.6), 0.8 if dark else 1.1),
-            ("rim", (4.0, 3.0, 1.0), 0.3 if dark else 0.5),
+            ("key", (-1.0, -1.2, 4.0), 1.7 if dark else 2.2),
+            ("fill", (-3.0, -4.0, 1.6), 0.9 if dark else 1.3),
         ):
             self._scene.add_light_directional(
                 f"/lights/{name}", intensity=strength, position=position, cast_shadow=False
             )
-        self._spot = self._scene.add_light_spot(
-            "/lights/spot",
-            intensity=1.3 if dark else 1.6,
-            angle=1.0,
-            penumbra=1.0,
-            decay=0.0,
-            cast_shadow=True,
-            position=tuple(_SPOT),
-            direction=tuple(-_SPOT),
+        self._scene.add_light_hemisphere(
+            "/lights/sky",
+            sky_color=(255, 255, 255),
+            ground_color=(150, 160, 175),
+            intensity=0.8 if dark else 1.2,
         )
 
     def draw_grid(self) -> None:
@@ -196,19 +200,14 @@ class Stage:
 
     def draw_moment(self, time: float, moment: Moment | None) -> Bodies | None:
         """The robot at one moment with everything that hangs on it."""
-        for layer in ("forces",):
-            if moment is None or moment.forces is None:
-                self._drop(layer)
         if moment is None or self._robot is None or self._nodes is None:
-            for layer in ("com", "support", "collision_points"):
-                self._drop(layer)
-            if self._nodes is not None:
-                self._nodes.remove()
+            self._clear_moment()
             return None
+        if moment.forces is None:
+            self._forces.remove()
         bodies = place(self._robot, moment.position, moment.quaternion, moment.q)
         self._nodes.visible = self.layers["robot"]
         self._nodes.update(bodies, self.colours)
-        self._spot.position = bodies.trunk[0] + _SPOT
         if self._terrain is None:
             return bodies
         feet = nearest(self._terrain.vertices, bodies.wheels[0][:, [0, 2]])
@@ -225,6 +224,9 @@ class Stage:
         self.layers.update(layers)
         for layer, handle in self._handles.values():
             handle.visible = self.layers[layer]
+        for layer, overlays in self._overlays.items():
+            for overlay in overlays:
+                overlay.show(self.layers[layer])
         for name, nodes in (("robot", self._nodes), ("ghosts", self._ghosts)):
             if nodes is not None:
                 nodes.visible = self.layers[name]
@@ -238,8 +240,6 @@ class Stage:
             self._ghosts = RobotNodes(
                 self._scene, "/ghosts", self._robot, opacity=colours.ghost_opacity
             )
-        for layer in ("com", "support", "collision_points", "forces"):
-            self._drop(layer)
 
     # --- parts ---------------------------------------------------------------------------------
 
@@ -276,28 +276,14 @@ class Stage:
     def _draw_points(self, bodies: Bodies, gaps: Floats) -> None:
         # Just outside the legs' sides, where they can be seen.
         points = bodies.points[0] + np.array([0.0, 0.016, 0.0]) * np.sign(bodies.points[0][:, 1:2])
-        colours = self.colours.clearance_colours(gaps)
-        node = "/collision_points"
-        if node in self._handles and len(self._handles[node][1].batched_positions) == len(points):
-            handle = self._handles[node][1]
-            handle.batched_positions = points.astype(np.float32)
-            if not np.array_equal(handle.batched_colors, colours):
-                handle.batched_colors = colours
-            return
-        ball = shapes.sphere(0.0075)
-        handle = self._scene.add_batched_meshes_simple(
-            node,
-            ball.vertices,
-            ball.faces,
-            np.tile([1.0, 0.0, 0.0, 0.0], (len(points), 1)),
+        turns = np.tile([1.0, 0.0, 0.0, 0.0], (len(points), 1))
+        self._points.draw(
             points,
-            batched_colors=colours,
-            lod="off",
-            cast_shadow=False,
-            receive_shadow=False,
-            visible=self.layers["collision_points"],
+            turns,
+            np.ones_like(points),
+            self.colours.clearance_colours(gaps),
+            self.layers["collision_points"],
         )
-        self._keep("collision_points", node, handle)
 
     def _draw_support(self, time: float, bodies: Bodies, feet: Floats) -> None:
         """CoM, its plumb line and the quadrilateral of the contacts, coloured by the CoM margin."""
@@ -311,27 +297,17 @@ class Stage:
         if self._margins is not None:
             margin = float(np.interp(time, *self._margins))
         tint = self._margin_colour(margin)
-        quad = shapes.polygons(np.array([[fr, fl, rl, rr]]))
         outline = np.array([[fr, fl], [fl, rl], [rl, rr], [rr, fr]])
-        plumb = np.array([[com, [com[0], com[1], below[2]]]])
         room = np.array([margin, 0.0, 0.0])
-        reach = np.array([[below - room, below + room]])
-        self._mesh("support", "/support/area", quad, tint, opacity=0.22)
-        self._lines("support", "/support/outline", outline, tint, 2.0)
-        self._lines("com", "/com/plumb", np.concatenate([plumb, reach]), self.colours.com, 2.0)
-        node = "/com/ball"
-        if node in self._handles:
-            self._handles[node][1].position = com
-        else:
-            ball = self._scene.add_icosphere(
-                node,
-                radius=0.017,
-                color=self.colours.com,
-                position=com,
-                cast_shadow=False,
-                visible=self.layers["com"],
-            )
-            self._keep("com", node, ball)
+        marks = np.array([[com, [com[0], com[1], below[2]]], [below - room, below + room]])
+        width = float(fl[1] - fr[1])
+        self._plate.draw((rl + rr) / 2, (fl + fr) / 2, width, tint, self.layers["support"])
+        self._outline.draw(outline, _rows(tint, 4), self.layers["support"])
+        self._marks.draw(marks, _rows(deep(self.colours.com), 2), self.layers["com"])
+        still = np.array([[1.0, 0.0, 0.0, 0.0]])
+        self._ball.draw(
+            com[None], still, np.ones((1, 3)), _rows(deep(self.colours.com), 1), self.layers["com"]
+        )
 
     def _draw_forces(self, bodies: Bodies, feet: Floats, forces: Floats) -> None:
         wheels = bodies.wheels[0]
@@ -339,21 +315,8 @@ class Stage:
         y = wheels[:, 1] + np.sign(wheels[:, 1]) * 0.75 * width  # beside the wheel, not inside it
         start = np.column_stack([feet[:, 0], y, feet[:, 1]])
         end = start + METRES_PER_NEWTON * np.column_stack([forces[:, 0], np.zeros(4), forces[:, 1]])
-        points = np.stack([start, end], axis=1).astype(np.float32)
-        node = "/forces"
-        if node in self._handles:
-            self._handles[node][1].points = points
-            return
-        handle = self._scene.add_arrows(
-            node,
-            points,
-            self.colours.force,
-            shaft_radius=0.006,
-            head_radius=0.016,
-            head_length=0.034,
-            visible=self.layers["forces"],
-        )
-        self._keep("forces", node, handle)
+        ends = np.stack([start, end], axis=1)
+        self._forces.draw(ends, _rows(deep(self.colours.force), 4), self.layers["forces"])
 
     def _draw_problem(self, problem: Mapping[str, Any]) -> None:
         x, z = problem["at"]
@@ -394,7 +357,7 @@ class Stage:
         return "calves", int(np.argmin(away))
 
     def _margin_colour(self, margin: float) -> tuple[int, int, int]:
-        ample, fair, thin, critical = self.colours.strip
+        ample, fair, thin, critical = (deep(colour) for colour in self.colours.strip)
         if margin >= 0.04:
             return ample
         if margin >= 0.02:
@@ -402,6 +365,13 @@ class Stage:
         return thin if margin >= 0.005 else critical
 
     # --- bookkeeping ---------------------------------------------------------------------------
+
+    def _clear_moment(self) -> None:
+        for overlays in self._overlays.values():
+            for overlay in overlays:
+                overlay.remove()
+        if self._nodes is not None:
+            self._nodes.remove()
 
     def _keep(self, layer: str, node: str, handle: Any) -> None:
         self._handles[node] = (layer, handle)
@@ -460,6 +430,10 @@ class Stage:
             visible=self.layers[layer],
         )
         self._keep(layer, node, handle)
+
+
+def _rows(colour: tuple[int, int, int], count: int) -> NDArray[np.uint8]:
+    return np.tile(np.array(colour, np.uint8), (count, 1))
 
 
 def _dashes(course: Floats, dash: float = 0.022) -> Floats:

@@ -1,0 +1,161 @@
+"""The panel's plots: desired against actual, growing while the scene plays (uPlot)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .motion import Motion
+from .palette import Palette, Rgb
+
+Floats = NDArray[np.float64]
+SAMPLES = 320  # a panel is about as many pixels wide
+DEGREES = 180.0 / np.pi
+
+
+class Curve(NamedTuple):
+    """One pair of curves over time [degrees]; `leg` 0 front, 1 rear, None the trunk."""
+
+    desired: Floats
+    actual: Floats | None
+    leg: int | None
+
+
+class Chart(NamedTuple):
+    """A chart's title and curves."""
+
+    title: str
+    curves: list[Curve]
+
+
+def charts(rollout: Mapping[str, Any] | None, motion: Motion) -> tuple[Floats, list[Chart]]:
+    """Times (n,) and what to plot over them: of the rollout, else of the planned motion."""
+    grid = np.linspace(0.0, motion.duration, SAMPLES)
+
+    def over(time: Any, values: Any) -> Floats:
+        found: Floats = np.interp(grid, np.asarray(time, float), np.asarray(values, float))
+        return found
+
+    if rollout is None:
+        w, y = motion.quaternion[:, 0], motion.quaternion[:, 2]
+        pitch = Curve(over(motion.time, -2 * np.arctan2(y, w) * DEGREES), None, None)
+
+        def joint(k: int, leg: int) -> Curve:
+            return Curve(over(motion.time, motion.q[:, k] * DEGREES), None, leg)
+    else:
+        series = rollout["series"]
+        time = series["time"]
+        asked = np.asarray(series["q_desired"], float) * DEGREES
+        reached = np.asarray(series["q"], float) * DEGREES
+        pitch = Curve(
+            over(time, -np.asarray(series["pitch_desired"], float) * DEGREES),
+            over(time, -np.asarray(series["pitch"], float) * DEGREES),
+            None,
+        )
+
+        def joint(k: int, leg: int) -> Curve:
+            return Curve(over(time, asked[:, k]), over(time, reached[:, k]), leg)
+
+    return grid, [
+        Chart("Pitch, nose-up °", [pitch]),
+        Chart("Thigh ° · front, rear", [joint(0, 0), joint(6, 1)]),
+        Chart("Calf ° · front, rear", [joint(1, 0), joint(7, 1)]),
+    ]
+
+
+class TrackingPlots:
+    """Charts inside the current container of `gui`; replaced by `show`, advanced by `tick`."""
+
+    def __init__(self, gui: Any, folder: Any) -> None:
+        self._gui, self._folder = gui, folder
+        self._handles: list[Any] = []
+        self._grid: Floats = np.zeros(0)
+        self._charts: list[Chart] = []
+        self._shown = -1
+
+    def show(
+        self, rollout: Mapping[str, Any] | None, motion: Motion | None, colours: Palette
+    ) -> None:
+        """Draw the charts of a new motion."""
+        for handle in self._handles:
+            handle.remove()
+        self._handles, self._charts, self._shown = [], [], -1
+        if motion is None:
+            return
+        self._grid, self._charts = charts(rollout, motion)
+        with self._folder:
+            for chart in self._charts:
+                self._handles.append(
+                    self._gui.add_uplot(
+                        self._data(chart, len(self._grid)),
+                        _series(chart, colours),
+                        title=chart.title,
+                        scales={
+                            "x": {"time": False, "range": (0.0, max(motion.duration, 0.01))},
+                            "y": {"range": _range(chart)},
+                        },
+                        axes=_axes(colours),
+                        legend={"show": False},
+                        height=150,
+                        padding=(0, 8, 0, 0),
+                    )
+                )
+
+    def tick(self, time: float) -> None:
+        """Show the actual curves up to `time`."""
+        if not self._charts or self._charts[0].curves[0].actual is None:
+            return
+        upto = int(np.searchsorted(self._grid, time, side="right"))
+        if upto == self._shown:
+            return
+        self._shown = upto
+        for chart, handle in zip(self._charts, self._handles, strict=True):
+            handle.data = self._data(chart, upto)
+
+    def _data(self, chart: Chart, upto: int) -> tuple[Floats, ...]:
+        data = [self._grid]
+        for curve in chart.curves:
+            data.append(curve.desired)
+            if curve.actual is not None:
+                seen = curve.actual.copy()
+                seen[upto:] = np.nan
+                data.append(seen)
+        return tuple(data)
+
+
+def _series(chart: Chart, colours: Palette) -> tuple[dict[str, Any], ...]:
+    rows: list[dict[str, Any]] = [{"label": "s"}]
+    plain = {"points": {"show": False}}
+    for curve in chart.curves:
+        tint = colours.path if curve.leg is None else (colours.front, colours.rear)[curve.leg]
+        # Desired is a wide pale band and actual a thin line on it: legible where they coincide.
+        rows.append({"label": "desired", "stroke": _css(tint, 0.35), "width": 5.0, **plain})
+        if curve.actual is not None:
+            rows.append({"label": "actual", "stroke": _css(tint, 1.0), "width": 1.5, **plain})
+    return tuple(rows)
+
+
+def _range(chart: Chart) -> tuple[float, float]:
+    values = np.concatenate(
+        [v for c in chart.curves for v in (c.desired, c.actual) if v is not None]
+    )
+    low, high = float(values.min()), float(values.max())
+    room = 0.08 * (high - low) + 1.0
+    return low - room, high + room
+
+
+def _axes(colours: Palette) -> tuple[dict[str, Any], ...]:
+    axis = {
+        "stroke": _css(colours.path, 0.8),
+        "grid": {"stroke": _css(colours.grid_section, 1.0), "width": 1.0},
+        "ticks": {"show": False},
+        "font": "10px Inter, system-ui, sans-serif",
+    }
+    return ({**axis, "size": 24.0}, {**axis, "size": 36.0})
+
+
+def _css(colour: Rgb, alpha: float) -> str:
+    return f"rgba({colour[0]},{colour[1]},{colour[2]},{alpha})"
