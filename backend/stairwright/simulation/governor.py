@@ -150,10 +150,10 @@ def advance(
 ) -> None:
     """Advance the plan by one control step and write the set point into `target` (26,).
 
-    `start`, `step`, `rows` and `speeds` are of the `Track`; `leash` is how far the plan may run ahead
-    [m]; `places` (4,) are where the wheels are, NaN before the first measurement; `moving` tells
-    whether the plan may advance yet; `clock` (3,) holds progress [m], its rate [m/s] and the robot's
-    lag [m], and is updated in place.
+    `start`, `step`, `rows` and `speeds` are of the `Track`; `leash` is how far the plan may run
+    ahead [m]; `places` (4,) are where the wheels are, NaN before the first measurement; `moving`
+    tells whether the plan may advance yet; `clock` (3,) holds progress [m], its rate [m/s] and the
+    robot's lag [m], and is updated in place.
     """
     last = len(rows) - 1
     spot = min(max((clock[0] - start) / step, 0.0), float(last))

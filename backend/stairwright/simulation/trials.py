@@ -1,0 +1,226 @@
+"""Many rollouts of one plan under random deviations: how often does it succeed?"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from stairwright.control.settings import ControllerSettings, parse_settings
+from stairwright.documents import Model, parse
+from stairwright.errors import InputError
+from stairwright.planning.plan import Plan
+
+from .disturbance import Disturbance
+from .result import Outcome
+from .rollout import rollout
+
+Bound = Annotated[float, Field(ge=-5.0, le=5.0)]
+Range = tuple[Bound, Bound]
+
+CONFIDENCE_Z = 1.959964  # two-sided 95 %
+
+
+class Ranges(Model):
+    """Ranges (low, high) from which each trial draws its deviations; see `Disturbance`."""
+
+    friction: Range = Field((-0.1, 0.1), description="added to the true friction")
+    mass: Range = Field((-0.1, 0.1), description="share of the robot's mass, on the trunk")
+    com_x: Range = Field((-0.02, 0.02), description="CoM forward [m]")
+    com_z: Range = Field((-0.02, 0.02), description="CoM up [m]")
+    height: Range = Field((-0.01, 0.01), description="added to the terrain's rise [m]")
+    noise: Range = Field((1.0, 1.0), description="sensor noise, in units of the sensors' own")
+    delay: Range = Field((0.004, 0.004), description="from sensing to torque [s]")
+
+    @model_validator(mode="after")
+    def _check_order(self) -> Ranges:
+        for name in type(self).model_fields:
+            low, high = getattr(self, name)
+            if low > high:
+                raise InputError(f"the low end {low:g} lies above the high end {high:g}", (name,))
+            for end in (low, high):
+                try:
+                    parse(Disturbance, {name: end})
+                except InputError as error:
+                    raise InputError(error.message, (name,)) from None
+        return self
+
+
+class Trial(Model):
+    """One rollout of the set."""
+
+    seed: int
+    disturbance: Disturbance
+    outcome: Outcome
+    reason: str
+    pitch_error_max: float
+    link_contacts: int
+
+
+class Trials(Model):
+    """A set of randomised rollouts (``stairwright/trials/1``)."""
+
+    schema_: Literal["stairwright/trials/1"] = Field("stairwright/trials/1", alias="schema")
+    plan_id: str
+    friction: float = Field(description="nominal true friction; each trial adds its own")
+    seed: int
+    controller: ControllerSettings
+    ranges: Ranges
+    count: int
+    successes: int
+    rate: float = Field(description="share of successes")
+    wilson: tuple[float, float] = Field(description="95 % confidence interval of the rate")
+    clopper_pearson: tuple[float, float] = Field(description="95 % interval, exact")
+    outcomes: dict[str, int]
+    trials: list[Trial]
+
+
+def trials(
+    plan: Plan | Mapping[str, Any],
+    n: int = 100,
+    seed: int = 0,
+    ranges: Mapping[str, Any] | Ranges | None = None,
+    workers: int = 1,
+    friction: float | None = None,
+    controller: Mapping[str, Any] | ControllerSettings | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Trials:
+    """Roll `plan` out `n` times under random deviations.
+
+    The same seed gives the same trials, whatever the number of workers.
+
+    Args:
+        plan: What to carry out.
+        n: Number of rollouts, 1..100,000.
+        seed: Of the deviations and of each rollout's sensor noise.
+        ranges: Where the deviations come from, see `Ranges`.
+        workers: Processes to share the work.
+        friction: Nominal true friction; the plan's by default.
+        controller: Settings by name, see `ControllerSettings`.
+        progress: Called with the share done, 0..1; may raise `Cancelled`.
+
+    Raises:
+        InputError: If an argument is bad.
+    """
+    if not isinstance(plan, Plan):
+        plan = parse(Plan, dict(plan))
+    if not isinstance(n, int) or isinstance(n, bool) or not 1 <= n <= 100_000:
+        raise InputError("must be a whole number from 1 to 100,000", ("trials",))
+    if not isinstance(workers, int) or workers < 1:
+        raise InputError("must be at least 1", ("workers",))
+    settings, limits = parse_settings(controller), parse_ranges(ranges)
+    nominal = plan.friction if friction is None else friction
+    draws = draw(limits, n, seed)
+    jobs = [(seed + i, deviation) for i, deviation in enumerate(draws)]
+    document, results = plan.model_dump(mode="json"), []
+    if workers == 1:
+        _start_worker(document, nominal, settings.model_dump())
+        for job in jobs:
+            results.append(_one(job))
+            if progress is not None:
+                progress(len(results) / n)
+    else:
+        pool = ProcessPoolExecutor(
+            workers,
+            mp_context=get_context("spawn"),
+            initializer=_start_worker,
+            initargs=(document, nominal, settings.model_dump()),
+        )
+        try:
+            for result in pool.map(_one, jobs, chunksize=max(1, min(8, n // (4 * workers)))):
+                results.append(result)
+                if progress is not None:
+                    progress(len(results) / n)
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+    successes = sum(result.outcome == "success" for result in results)
+    return Trials(
+        plan_id=plan.id,
+        friction=nominal,
+        seed=seed,
+        controller=settings,
+        ranges=limits,
+        count=n,
+        successes=successes,
+        rate=successes / n,
+        wilson=wilson(successes, n),
+        clopper_pearson=clopper_pearson(successes, n),
+        outcomes=dict(Counter(result.outcome for result in results)),
+        trials=results,
+    )
+
+
+def parse_ranges(ranges: Mapping[str, Any] | Ranges | None) -> Ranges:
+    """Ranges with defaults filled in.
+
+    Raises:
+        InputError: For an unknown name or a bad range.
+    """
+    if isinstance(ranges, Ranges):
+        return ranges
+    try:
+        return parse(Ranges, dict(ranges or {}))
+    except InputError as error:
+        raise error.within("ranges") from None
+
+
+def draw(ranges: Ranges, n: int, seed: int) -> list[Disturbance]:
+    """`n` deviations, each uniform in its range."""
+    random = np.random.default_rng(seed)
+    names = list(Ranges.model_fields)
+    low, high = np.array([getattr(ranges, name) for name in names]).T
+    rows = random.uniform(low, high, (n, len(names)))
+    return [Disturbance(**dict(zip(names, map(float, row), strict=True))) for row in rows]
+
+
+def wilson(successes: int, n: int) -> tuple[float, float]:
+    """Wilson's 95 % score interval of a rate."""
+    z2 = CONFIDENCE_Z**2
+    p = successes / n
+    middle = (p + z2 / (2 * n)) / (1 + z2 / n)
+    half = CONFIDENCE_Z / (1 + z2 / n) * math.sqrt(p * (1 - p) / n + z2 / (4 * n * n))
+    return max(0.0, middle - half), min(1.0, middle + half)
+
+
+def clopper_pearson(successes: int, n: int) -> tuple[float, float]:
+    """Clopper and Pearson's exact 95 % interval of a rate."""
+    from scipy.stats import beta
+
+    low = float(beta.ppf(0.025, successes, n - successes + 1)) if successes else 0.0
+    high = float(beta.ppf(0.975, successes + 1, n - successes)) if successes < n else 1.0
+    return low, high
+
+
+_job: dict[str, Any] = {}
+
+
+def _start_worker(plan: dict[str, Any], friction: float, settings: dict[str, Any]) -> None:
+    """What all rollouts of a worker share: parsed once, not sent with each."""
+    _job.update(plan=parse(Plan, plan), friction=friction, settings=parse_settings(settings))
+
+
+def _one(job: tuple[int, Disturbance]) -> Trial:
+    seed, disturbance = job
+    run = rollout(
+        _job["plan"],
+        friction=_job["friction"],
+        controller=_job["settings"],
+        seed=seed,
+        disturbance=disturbance,
+        record_hz=5.0,
+        keep_plan=False,
+    )
+    return Trial(
+        seed=seed,
+        disturbance=disturbance,
+        outcome=run.outcome,
+        reason=run.reason,
+        pitch_error_max=run.metrics.pitch_error_max,
+        link_contacts=run.metrics.link_contacts,
+    )
