@@ -1,6 +1,6 @@
 """Cells of the search: pairs of wheel samples, each with a window of body poses.
 
-A window's volume is stored flat with a rim of two lattice steps on every side, rows `ROW` long:
+A window's volume is stored flat with a rim of two lattice steps on every side, rows `row` long:
 shifting by any few steps, dilating and comparing whole volumes are then single loops over bytes.
 """
 
@@ -18,7 +18,7 @@ from stairwright.robot.description import Planar
 from .contacts import lagged_interval, pair_interval
 from .ground import Ground
 from .legs import Leg
-from .tables import INF, ROW, Floats32, Lattice, LegTable
+from .tables import INF, Floats32, Lattice, LegTable
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -136,13 +136,13 @@ class World(NamedTuple):
 @nb.njit(cache=True)
 def volume_size(lat: Lattice) -> int:
     """Length of a flat volume."""
-    return (lat.nt + 4) * (lat.nz + 4) * ROW
+    return (lat.nt + 4) * (lat.nz + 4) * lat.row
 
 
 @nb.njit(cache=True)
 def row_start(lat: Lattice, t: int, z: int) -> int:
     """Position of column 0 of row (t, z) of a window in its flat volume."""
-    return ((t + 2) * (lat.nz + 4) + z + 2) * ROW + 2
+    return ((t + 2) * (lat.nz + 4) + z + 2) * lat.row + 2
 
 
 @nb.njit(cache=True)
@@ -207,8 +207,8 @@ def quality(w: World, cells: Cells, c: int, out: Bytes) -> bool:
                 com = share * (first + np.float32(x) * step) + mass * (fm[x] + rm[x])
                 m = min(com - lo, hi - com)
                 mr = min(com - rlo, rhi - com)
-                base = np.float32(99.0) * min(one, m * scale) + one
-                more = np.float32(154.0) * min(one, mr * scale) + np.float32(RESERVED)
+                base = np.float32(99.0) * min(one, (m - least) * scale) + one
+                more = np.float32(154.0) * min(one, (mr - least) * scale) + np.float32(RESERVED)
                 level = more if mr >= least else base
                 level = level if m >= least else np.float32(0.0)
                 level = level if e < INF else np.float32(0.0)

@@ -6,7 +6,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from .tables import ROW, Floats32, Lattice
+from .tables import Floats32, Lattice
 
 Bytes = NDArray[np.uint8]
 
@@ -16,7 +16,7 @@ FAR = np.float32(2.6)  # cost of two lattice steps in one move, in steps
 @nb.njit(cache=True)
 def shift(lat: Lattice, t: int, z: int, x: int) -> int:
     """Flat distance of poses that are (t, z, x) lattice steps apart."""
-    return (t * (lat.nz + 4) + z) * ROW + x
+    return (t * (lat.nz + 4) + z) * lat.row + x
 
 
 @nb.njit(cache=True)
@@ -61,8 +61,8 @@ def dilate(a: Bytes, b: Bytes, lat: Lattice) -> None:
     Right inside the window; the rim holds scratch.
     """
     _largest(a, b, 1)
-    _largest(b, a, ROW)
-    _largest(a, b, ROW * (lat.nz + 4))
+    _largest(b, a, lat.row)
+    _largest(a, b, lat.row * (lat.nz + 4))
 
 
 @nb.njit(cache=True, fastmath=True)
@@ -82,5 +82,5 @@ def _cheapest(a: Floats32, b: Floats32, o: int, one: float) -> None:
 def convolve(a: Floats32, b: Floats32, lat: Lattice, one: float) -> None:
     """Min-plus convolution with the cost of body motion; the result is in `b`, `a` is spent."""
     _cheapest(a, b, 1, one)
-    _cheapest(b, a, ROW, one)
-    _cheapest(a, b, ROW * (lat.nz + 4), one)
+    _cheapest(b, a, lat.row, one)
+    _cheapest(a, b, lat.row * (lat.nz + 4), one)

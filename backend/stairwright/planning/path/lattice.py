@@ -18,7 +18,7 @@ from .course import Stand, sample_course, scale
 from .ground import Ground
 from .legs import Leg, make_legs
 from .search import FORWARD, MOVES, cheapest, flood, trace
-from .tables import INF, ROW, Bounds, Floats32, Lattice, Pulls, hip_grid, on_lattice, trunk_grid
+from .tables import INF, Bounds, Floats32, Lattice, Pulls, hip_grid, on_lattice, trunk_grid
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -59,7 +59,8 @@ def make_lattice(robot: Robot, pitches: float, fine: float = 1.0) -> Lattice:
         pitches=2 * int(pitches / turn) + 1,
         nt=2 * round(8 / fine) + 1,
         nz=round(17 / fine),
-        nx=min(ROW - 4, 2 * round(13 / fine)),
+        nx=2 * round(13 / fine),
+        row=16 * math.ceil((2 * round(13 / fine) + 6) / 16),
         low=-round(3 / fine),
         half=half,
     )
@@ -240,7 +241,7 @@ class Search:
     def _window(self, volume: NDArray[Any]) -> NDArray[Any]:
         """(nt, nz, nx) view of a flat volume without its rim."""
         lat = self.lattice
-        full = volume.reshape(lat.nt + 4, lat.nz + 4, ROW)
+        full = volume.reshape(lat.nt + 4, lat.nz + 4, lat.row)
         return full[2:-2, 2:-2, 2 : 2 + lat.nx]
 
     @staticmethod

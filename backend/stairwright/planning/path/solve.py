@@ -23,10 +23,12 @@ from .tables import Bounds
 RESERVE = 0.1  # friction that a plan does without where the terrain allows it
 PITCHES = 1.9  # rad; largest pitch searched: the trunk may lean back past vertical
 
-# What lattice poses keep: a little more than the final bounds (strict), or as much less as rounding
-# to the lattice may take from a pose that is really possible (bold; the polish must repair it).
+# What lattice poses keep: a little more than the final bounds (strict); as much less as rounding to
+# the lattice may take from a pose that is really possible (bold: the polish must repair it); or so
+# much less that a search without success settles the matter (hope).
 STRICT = Bounds(trunk=0.006, links=0.006, legs=LEGS_GAP, reach=0.003, thigh=0.0, com=0.005)
-BOLD = Bounds(trunk=-0.004, links=-0.004, legs=-0.004, reach=0.0, thigh=-0.02, com=-0.012)
+BOLD = Bounds(trunk=-0.003, links=-0.003, legs=-0.003, reach=0.0, thigh=-0.02, com=-0.01)
+HOPE = Bounds(trunk=-0.012, links=-0.012, legs=-0.009, reach=-0.006, thigh=-0.06, com=-0.02)
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,8 @@ LADDER = (
     Rung(0.8, STRICT),
     Rung(0.8, BOLD),
     Rung(0.67, STRICT, True),
+    Rung(0.67, BOLD, True),
+    Rung(0.5, BOLD),
 )
 
 
@@ -103,13 +107,22 @@ class Course:
                 if finding.reached and (reached is None or sum(finding.reached) > sum(reached)):
                     reached = finding.reached
                 if rung.bounds is BOLD and not opened:
-                    break  # even the bold search finds no way: finer ones will not
+                    opened = self.hopeful()
+                    if not opened:
+                        break
                 continue
             opened = True
             solved = self.finish(search, finding, k)
             if solved is not None:
                 return solved
         return Blocked(reached, opened)
+
+    def hopeful(self) -> bool:
+        """Whether a search that forgives more than rounding can hide comes through."""
+        found = self.search(1.0, HOPE).find(
+            self.friction, self.reserve, HOPE.com, cheap=False, roll_back=True
+        )
+        return found.quality > 0
 
     def finish(self, search: Search, finding: Finding, rung: int) -> Solved | None:
         """Polish and certify; None where that fails."""

@@ -25,7 +25,6 @@ Ints = NDArray[np.int32]
 Bytes = NDArray[np.uint8]
 
 INF = np.float32(1e9)
-ROW = 32  # lattice columns stored per row: whole vector registers
 
 
 class Lattice(NamedTuple):
@@ -36,7 +35,8 @@ class Lattice(NamedTuple):
     pitches: int  # of the whole table
     nt: int  # pitches of one cell's window
     nz: int  # rows of one cell's window
-    nx: int  # columns of one cell's window, at most ROW
+    nx: int  # columns of one cell's window
+    row: int  # columns stored per row: the window, its rim, and room for shifts
     low: int  # first row of a window, relative to the mean wheel height
     half: int  # the hip grid spans -half..half of step / 2 round the wheel
 
@@ -144,8 +144,8 @@ def on_lattice(
     cost, moment, angle = grid
     n, m = len(centres), cost.shape[3]
     fine = 0.5 * lat.step
-    out = np.full((n, lat.pitches, m, ROW), INF, np.float32)
-    mom = np.zeros((n, lat.pitches, m, ROW), np.float32)
+    out = np.full((n, lat.pitches, m, lat.row), INF, np.float32)
+    mom = np.zeros((n, lat.pitches, m, lat.row), np.float32)
     x0, z0 = np.empty((n, lat.pitches), np.int32), np.empty((n, lat.pitches), np.int32)
     first = np.zeros((n, lat.pitches, m), np.uint8)
     last = np.zeros((n, lat.pitches, m), np.uint8)
@@ -170,7 +170,7 @@ def on_lattice(
                 src = cost[i, v % 2, u % 2, v // 2 + j]
                 ang = angle[i, v % 2, u % 2, v // 2 + j]
                 mos = moment[i, v % 2, u % 2, v // 2 + j]
-                width = min(ROW, m - u // 2)
+                width = min(lat.row, m - u // 2)
                 src, ang, mos = src[u // 2 :], ang[u // 2 :], mos[u // 2 :]
                 value, drag = out[i, t, j], mom[i, t, j]
                 for k in range(width):
@@ -207,7 +207,7 @@ def trunk_grid(
     `used` (rows, columns) marks points that some cell's window covers; the others stay INF.
     """
     nz, nx = used.shape
-    out = np.full((lat.pitches, nz, nx + ROW), INF, np.float32)
+    out = np.full((lat.pitches, nz, nx + lat.row), INF, np.float32)
     soft = 0.15 * (p.thigh + p.calf) / 2.0
     radius = math.hypot(p.half_length, p.half_height)
     for j in range(nz):
