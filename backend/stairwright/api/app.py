@@ -10,7 +10,7 @@ from starlette.middleware.gzip import GZipMiddleware
 
 from stairwright import __version__
 
-from . import problems
+from . import openapi, problems
 from .middleware import Gate, LimitBody, Observe
 from .routes import health, jobs, page, plans, robots, rollouts, scene, sessions, terrains, tuning
 from .services import Services
@@ -49,6 +49,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     app.state.services = services
     problems.install(app)
+    openapi.install(app, token=bool(settings.token))
     # The last one added is the outermost.
     app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=4)
     app.add_middleware(

@@ -33,9 +33,11 @@ TerrainSource = Annotated[
 RobotSource = Annotated[
     Annotated[Name, Tag("~name")] | Annotated[Robot, Tag("~document")], Discriminator(_form)
 ]
-Friction = Annotated[float, Field(gt=0.0, le=5.0, description="Coulomb, wheel on terrain")]
+Friction = Annotated[
+    float, Field(strict=True, gt=0.0, le=5.0, description="Coulomb, wheel on terrain")
+]
 SettingName = Annotated[str, Field(max_length=64, pattern=r"^[a-z0-9_]+$")]
-Number = Annotated[float, Field(ge=-1e9, le=1e9)]
+Number = Annotated[float, Field(strict=True, ge=-1e9, le=1e9)]
 SettingValue = StrictBool | Number | Annotated[str, Field(max_length=64)]
 Weights = Annotated[
     dict[SettingName, Number],
@@ -94,7 +96,7 @@ class RolloutRequest(Model):
         None, description="friction in the simulation (and of the plan, with `terrain`)"
     )
     controller: Controller = {}
-    seed: int = Field(0, ge=0, le=2**31 - 1)
+    seed: int = Field(0, strict=True, ge=0, le=2**31 - 1)
 
 
 class TerrainDocument(Terrain):
@@ -103,7 +105,7 @@ class TerrainDocument(Terrain):
     readonly: bool = Field(description="a preset; it cannot be changed or deleted")
 
 
-Length = Annotated[float, Field(gt=0.0, le=100.0)]
+Length = Annotated[float, Field(strict=True, gt=0.0, le=100.0)]
 Name100 = Annotated[Name | None, Field(description="made from the measures by default")]
 
 
@@ -122,10 +124,19 @@ class StairParameters(_Generated):
     rise: Length = Field(description="height of a step [m]")
     run: Length = Field(0.30, description="from edge to edge [m]")
     count: int = Field(
-        1, ge=1, le=200, validation_alias=AliasChoices("count", "steps"), description="of steps"
+        1,
+        strict=True,
+        ge=1,
+        le=200,
+        validation_alias=AliasChoices("count", "steps"),
+        description="of steps",
     )
     face_angle: float = Field(
-        math.pi / 2, gt=0.0, le=math.pi / 2, description="of the faces from the horizontal [rad]"
+        math.pi / 2,
+        strict=True,
+        gt=0.0,
+        le=math.pi / 2,
+        description="of the faces from the horizontal [rad]",
     )
 
 
@@ -137,6 +148,7 @@ class RampParameters(_Generated):
         validation_alias=AliasChoices("rise", "height"), description="height gained [m]"
     )
     slope: float = Field(
+        strict=True,
         gt=0.0,
         lt=math.pi / 2,
         validation_alias=AliasChoices("slope", "angle"),
@@ -206,10 +218,14 @@ class SceneRequest(Model):
 class PlaybackRequest(Model):
     """The scene's clock; what is left out stays."""
 
-    time: float | None = Field(None, ge=0.0, le=1e6, description="[s]")
-    progress: float | None = Field(None, ge=-1e3, le=1e3, description="[m] along the course")
+    time: float | None = Field(None, strict=True, ge=0.0, le=1e6, description="[s]")
+    progress: float | None = Field(
+        None, strict=True, ge=-1e3, le=1e3, description="[m] along the course"
+    )
     playing: StrictBool | None = None
-    speed: float | None = Field(None, gt=0.0, le=20.0, description="factor on real time")
+    speed: float | None = Field(
+        None, strict=True, gt=0.0, le=20.0, description="factor on real time"
+    )
 
 
 class Health(Model):

@@ -130,6 +130,7 @@ def from_validation(errors: Sequence[Mapping[str, Any]]) -> Problem:
 
 def install(app: FastAPI) -> None:
     """Let every exception leave as a problem document."""
+    from .openapi import allowed_methods  # which describes problems itself
 
     @app.exception_handler(Problem)
     async def on_problem(_: Request, error: Problem) -> Response:
@@ -168,9 +169,12 @@ def install(app: FastAPI) -> None:
         detail = str(error.detail)
         if error.status_code == 404 and detail == "Not Found":
             detail = f"there is nothing at {request.url.path}"
+        headers = dict(error.headers or {})
         if error.status_code == 405:
             detail = f"{request.method} is not allowed here"
-        return Problem(error.status_code, detail, headers=error.headers).response()
+            allowed = allowed_methods(app, request.url.path)
+            headers = {"Allow": allowed} if allowed else headers
+        return Problem(error.status_code, detail, headers=headers).response()
 
     @app.exception_handler(Exception)
     async def on_bug(_: Request, error: Exception) -> Response:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
@@ -29,9 +29,13 @@ from . import stored
 router = APIRouter(prefix="/plans", tags=["plans"])
 PlanId = Annotated[str, Path(max_length=64, examples=["p-0123456789abcdef"])]
 PlanFormat = Literal["json", "csv", "npz", "mcap", "mjcf"]
-FILE: dict[int | str, dict[str, Any]] = {
-    200: {"content": {"application/octet-stream": {}}, "description": "The file"}
-}
+PLAN_MEDIA = (
+    "application/json",
+    "text/csv",
+    "application/x-npz",
+    "application/x-mcap",
+    "application/xml",
+)
 
 
 def plan_question(services: Services, body: PlanRequest) -> PlanQuestion:
@@ -76,7 +80,7 @@ async def get_plan(request: Request, services: Service, plan_id: PlanId) -> Resp
 @router.get(
     "/{plan_id}/export",
     response_class=Response,
-    responses={**FILE, **describe(404, 429, 503)},
+    responses={**stored.files(PLAN_MEDIA), **describe(404, 429, 503)},
 )
 async def export_plan(
     request: Request,

@@ -19,11 +19,18 @@ from stairwright.planning.plan import Plan
 
 from . import stored
 from .jobs import job_document
-from .plans import FILE, plan_question
+from .plans import plan_question
 
 router = APIRouter(prefix="/rollouts", tags=["rollouts"])
 RolloutId = Annotated[str, Path(max_length=64, examples=["r-0123456789abcdef"])]
 RolloutFormat = Literal["json", "csv", "npz", "mcap", "html"]
+ROLLOUT_MEDIA = (
+    "application/json",
+    "text/csv",
+    "application/x-npz",
+    "application/x-mcap",
+    "text/html",
+)
 
 
 @router.post(
@@ -97,7 +104,7 @@ async def get_rollout(request: Request, services: Service, rollout_id: RolloutId
 @router.get(
     "/{rollout_id}/export",
     response_class=Response,
-    responses={**FILE, **describe(404, 429, 503)},
+    responses={**stored.files(ROLLOUT_MEDIA), **describe(404, 429, 503)},
 )
 async def export_rollout(
     request: Request,

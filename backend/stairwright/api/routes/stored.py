@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Sequence
+from typing import Any
 
 from fastapi import Request, Response
 
@@ -12,6 +14,13 @@ from stairwright.api.responses import models_json, not_modified, stored_json
 from stairwright.api.services import EXPORT_DEADLINE, Services
 from stairwright.jobs import work
 from stairwright.storage.documents import Entry, Kind
+
+
+def files(media_types: Sequence[str]) -> dict[int | str, dict[str, Any]]:
+    """OpenAPI's word for a download in one of several formats."""
+    binary = {"schema": {"type": "string", "format": "binary"}}
+    content = {each: {} if each == "application/json" else binary for each in media_types}
+    return {200: {"description": "The file", "content": content}}
 
 
 async def listing(

@@ -6,10 +6,11 @@ from pathlib import PurePath
 from typing import Annotated, Any
 
 from fastapi import APIRouter, File, Form, Path, Request, Response, UploadFile
+from pydantic import ValidationError
 
-from stairwright.api.bodies import Friction, Generation, Name, SentTerrain, TerrainDocument
+from stairwright.api.bodies import Generation, Name, SentTerrain, TerrainDocument
 from stairwright.api.deps import JSON_BODY, Limit, Offset, Service
-from stairwright.api.problems import Problem, describe, not_found
+from stairwright.api.problems import Problem, describe, from_validation, not_found
 from stairwright.api.responses import model_json, models_json
 from stairwright.api.services import UPLOAD_DEADLINE, Services
 from stairwright.jobs import uploads
@@ -43,7 +44,10 @@ def generate(body: Generation) -> Terrain:
     """A stair, a ramp or level ground from a few measures; it is not saved."""
     parameters = body.model_dump(exclude={"kind"})
     make: Any = {"stair": stairs.stair, "ramp": stairs.ramp, "flat": stairs.flat}[body.kind]
-    made: Terrain = make(**parameters)
+    try:
+        made: Terrain = make(**parameters)
+    except ValidationError as error:  # the measures are fine one by one, the terrain is not
+        raise from_validation(error.errors()) from None
     return made
 
 
@@ -52,7 +56,7 @@ async def import_terrain(
     services: Service,
     file: Annotated[UploadFile, File(description="STL, OBJ, PLY, OFF, CSV, JSON or YAML")],
     name: Annotated[Name | None, Form(description="the file's by default")] = None,
-    friction: Annotated[Friction | None, Form()] = None,
+    friction: Annotated[float | None, Form(gt=0.0, le=5.0)] = None,
     x: Annotated[float, Form(ge=-1e6, le=1e6, description="of the cut's origin [m]")] = 0.0,
     y: Annotated[float | None, Form(ge=-1e6, le=1e6, description="of the cut [m]")] = None,
     heading: Annotated[float, Form(ge=-7.0, le=7.0, description="of the cut [rad]")] = 0.0,
