@@ -75,10 +75,10 @@ class ControllerSettings(Model):
         8.0, 0.0, 80.0, "1/s", "CoM damping", "K_d of eq 9, position", "log"
     )
     pitch_stiffness: float = _number(
-        200.0, 0.0, 1000.0, "1/s²", "Pitch stiffness", "K_p of eq 9, pitch", "log"
+        100.0, 0.0, 1000.0, "1/s²", "Pitch stiffness", "K_p of eq 9, pitch", "log"
     )
     pitch_damping: float = _number(
-        20.0, 0.0, 100.0, "1/s", "Pitch damping", "K_d of eq 9, pitch", "log"
+        10.0, 0.0, 100.0, "1/s", "Pitch damping", "K_d of eq 9, pitch", "log"
     )
     force_weight: float = _number(
         1.0, 0.001, 100.0, "1", "Force task", "S of eq 13 for the force rows", "log"
