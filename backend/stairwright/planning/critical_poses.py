@@ -100,19 +100,21 @@ def _solve(
     posture = np.array([begin.body[2], *search.standing])
     pairs: list[tuple[_Knot, _Knot]] = []
     fronts = front_places(obstacles, search.path.radius, end.wheels[0])
-    for k, (_obstacle, (first, second)) in enumerate(zip(obstacles, fronts, strict=True)):
+    for k, (obstacle, (first, second)) in enumerate(zip(obstacles, fronts, strict=True)):
         moved = _moved_pair(search, obstacles, pairs, k) if len(pairs) > 1 else None
         if moved is not None and moved[0].wheels[1] >= rear:
             pair = moved
         else:
             places = (
-                Place(first, (rear, end.wheels[1]), True, posture),
-                Place(second, (rear, end.wheels[1]), False, posture),
+                Place(first, (rear, end.wheels[1]), True, obstacle.steepest, posture),
+                Place(second, (rear, end.wheels[1]), False, obstacle.steepest, posture),
             )
             both = search.best_pair(*places)
             for place, one in zip(places, both, strict=True):
                 if one is None or not one.solution.solved:
-                    return knots, diagnose(search, place)
+                    way = (place.front + place.rear[0] - sum(begin.wheels)) / 2
+                    problem = diagnose(search, place)
+                    return knots, problem.model_copy(update={"progress": max(0.0, way)})
                 knots.append(_knot(one))
             pair = (knots[-2], knots[-1])
             del knots[-2:]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -15,6 +16,7 @@ from .path.course import NoStand
 from .plan import Limit, Pose, Problem
 from .pose_search import APART, CLEARANCE, Place, PoseSearch
 from .solver import Bounds
+from .supports import support
 
 Floats = NDArray[np.float64]
 
@@ -67,6 +69,8 @@ def diagnose(search: PoseSearch, place: Place) -> Problem:
     front = search.path.contacts(np.array([place.front]))[0]
     at = (float(front[0]), float(front[1]))
     rears = search.rear_places(place)
+    if len(rears) == 0:
+        return _no_rear_place(search, place, at)
     trials: list[tuple[str, float, Callable[[Bounds, float], Bounds]]] = [
         ("clearance", 0.2, lambda b, d: replace(b, clearance=CLEARANCE - d, apart=APART - d)),
         ("joint_limit", 1.5, _widen),
@@ -101,6 +105,56 @@ def diagnose(search: PoseSearch, place: Place) -> Problem:
     text = f"The rear wheel cannot stay behind its hip (eq 20): {amount * 1e3:.0f} mm are missing."
     limit = Limit(needed=amount, available=0.0, quantity="rear hip behind contact", unit="m")
     return Problem(kind="reach", at=at, progress=0.0, message=text, limit=limit)
+
+
+def _no_rear_place(search: PoseSearch, place: Place, at: tuple[float, float]) -> Problem:
+    """No ground within reach holds the rear wheel: too far away, or too slippery."""
+    path, friction = search.path, search.friction
+    behind = min(place.rear[1], place.front, place.face) - search.span[0]
+    s = np.arange(place.rear[0], max(behind, place.rear[0] + 1e-6), 0.01)
+    centre = path.centres(np.array([place.front]))[0]
+    gap = np.hypot(*(path.centres(s) - centre).T)
+    near = gap <= search.span[1]
+
+    def holds(mu: float) -> NDArray[np.bool_]:
+        spans = [support(path, place.face, float(one)).com_interval(mu) for one in s]
+        return np.array([low <= high for low, high in spans])
+
+    slope = _slope(search, place.face)
+    if slope < math.pi / 3 and near.any() and not holds(friction)[near].any():
+        low, high = friction, 5.0
+        for _ in range(12):
+            middle = (low + high) / 2
+            low, high = (low, middle) if holds(middle)[near].any() else (middle, high)
+        return Problem(
+            kind="statics",
+            at=at,
+            progress=0.0,
+            message=(
+                f"The ground is too slippery: on this slope the wheels need friction {high:.2f}, "
+                f"there is {friction:g}."
+            ),
+            limit=Limit(needed=high, available=friction, quantity="friction", unit="1"),
+        )
+    held = gap[holds(friction)]
+    needed = float(held.min()) if len(held) else float(gap.min())
+    return Problem(
+        kind="reach",
+        at=at,
+        progress=0.0,
+        message=(
+            f"Too high: with the front wheel here the rear wheel has nowhere to stand within "
+            f"{search.span[1]:.2f} m; the nearest ground that holds it is {needed:.2f} m away."
+        ),
+        limit=Limit(
+            needed=needed, available=search.span[1], quantity="distance of the wheels", unit="m"
+        ),
+    )
+
+
+def _slope(search: PoseSearch, s: float) -> float:
+    normal = search.path.normals(np.array([s]))[0]
+    return abs(math.atan2(normal[0], normal[1]))
 
 
 def _widen(bounds: Bounds, amount: float) -> Bounds:

@@ -36,12 +36,14 @@ class Obstacle:
         end: Arc length where the next tread is reached.
         height: Gained, or lost where negative (h of eq 26).
         face: h / sin(gamma), gamma the steepest slope of the wheel's way.
+        steepest: Arc length of the last place that is as steep.
     """
 
     begin: float
     end: float
     height: float
     face: float
+    steepest: float
 
     def same_as(self, other: Obstacle) -> bool:
         """Whether the other is as high and as long, to a tenth of a millimetre."""
@@ -116,16 +118,22 @@ def _monotone_runs(z: Floats) -> list[tuple[int, int]]:
 
 
 def _obstacle(path: WheelPath, s: Floats, z: Floats, a: int, b: int) -> Obstacle:
-    """The obstacle between two samples; its ends moved inward over level parts."""
-    while a + 1 < b and abs(z[a + 1] - z[a]) <= math.sin(LEVEL) * (s[a + 1] - s[a]) + 1e-12:
-        a += 1
-    while b - 1 > a and abs(z[b] - z[b - 1]) <= math.sin(LEVEL) * (s[b] - s[b - 1]) + 1e-12:
-        b -= 1
+    """The obstacle between two samples: whole arcs, without level pieces at its ends."""
+    marks = np.unique([0, len(s) - 1, *np.flatnonzero(np.isin(s, path.pieces[:, 1]))])
+    first = int(np.searchsorted(marks, a, side="right")) - 1
+    last = int(np.searchsorted(marks, b, side="left"))
+    marks = marks[first : last + 1]
+    level = np.abs(np.diff(z[marks])) <= math.sin(LEVEL) * np.diff(s[marks]) + 1e-12
+    steep = np.flatnonzero(~level)
+    if len(steep):
+        a, b = int(marks[steep[0]]), int(marks[steep[-1] + 1])
     height = float(z[b] - z[a])
     # The normal (-sin, cos) of the steepest place; samples lie at pieces' ends, so look between.
     middle = (s[a:b] + s[a + 1 : b + 1]) / 2
-    steepest = float(np.max(-math.copysign(1.0, height) * path.normals(middle)[:, 0]))
-    return Obstacle(float(s[a]), float(s[b]), height, abs(height) / max(steepest, 1e-3))
+    slope = -math.copysign(1.0, height) * path.normals(middle)[:, 0]
+    steepest = float(slope.max())
+    place = float(middle[np.flatnonzero(slope >= steepest - 1e-6)[-1]])
+    return Obstacle(float(s[a]), float(s[b]), height, abs(height) / max(steepest, 1e-3), place)
 
 
 def front_places(obstacles: list[Obstacle], radius: float, end: float) -> list[tuple[float, float]]:

@@ -45,12 +45,15 @@ class Place:
         front: Of the front wheel.
         rear: Least and largest of the rear wheel.
         ahead: Whether the front wheel is about to take a face, which alone must carry it next.
+        face: Where on the obstacle's face the front wheel is, or was, while the rear wheel is here:
+            both must hold the robot together.
         posture: (5,) pitch and joints of the pose before [rad].
     """
 
     front: float
     rear: tuple[float, float]
     ahead: bool
+    face: float
     posture: Floats
 
 
@@ -108,7 +111,7 @@ class PoseSearch:
                 rear = float(one.solution.x[8])
                 stop = self._steep_ahead(rear) if gentle else second.rear[1]
                 stop = min(stop, second.rear[1])
-                place = Place(second.front, (rear, stop), False, one.solution.x[2:7])
+                place = Place(second.front, (rear, stop), False, second.face, one.solution.x[2:7])
                 later = self.search(place, gentle)
                 if later:
                     return one, max(later, key=lambda found: found.score)
@@ -222,6 +225,9 @@ class PoseSearch:
             normals = self.path.normals(s)
             slope = np.abs(np.arctan2(normals[:, 0], normals[:, 1]))
             keep &= slope <= GRIP * math.atan(self.friction)
+        for i in np.flatnonzero(keep):
+            low_com, high_com = support(self.path, place.face, s[i]).com_interval(self.friction)
+            keep[i] = low_com <= high_com
         # From the place like standing outward: neighbours start from each other's solution.
         wheelbase = self.robot.hips.front[0] - self.robot.hips.rear[0]
         order = np.argsort(np.abs(gap[keep] - 1.4 * wheelbase), kind="stable")

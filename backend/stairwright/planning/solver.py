@@ -30,11 +30,8 @@ _SQP = {
 }
 _OPTIONS: dict[str, tuple[str, dict[str, Any]]] = {
     "daqp": ("sqpmethod", {**_SQP, "qpsol": "daqp", "qpsol_options": {"error_on_fail": False}}),
-    # qpOASES would do as well, but prints its licence to the standard output, where plans go.
-    "proxqp": (
-        "sqpmethod",
-        {**_SQP, "qpsol": "proxqp", "qpsol_options": {"error_on_fail": False}},
-    ),
+    # qpOASES would be a second rung, but prints its licence to the standard output, where plans
+    # go; proxqp and qrqp solved nothing that daqp did not, and took up to a second.
     "ipopt": (
         "ipopt",
         {
@@ -102,7 +99,7 @@ class PoseSolver:
             parameters: (p,) made by `poses.parameters`.
             bounds: Of variables and constraints.
             starts: First guesses (9,), best first.
-            patient: Whether to go on to other solvers and perturbed starts where the first fails.
+            patient: Whether to go on to perturbed starts and IPOPT where the first solver fails.
         """
         lower, upper = self._constraint_bounds(bounds)
         best: Solution | None = None
@@ -137,8 +134,6 @@ class PoseSolver:
             yield "daqp", start
         if not patient:
             return
-        for start in starts:
-            yield "proxqp", start
         random = np.random.default_rng(0)
         spread = np.array([0.08, 0.08, 0.35, 0.4, 0.3, 0.4, 0.3, 0.03, 0.03])
         for _ in range(3):
