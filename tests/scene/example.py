@@ -8,7 +8,7 @@ from stairwright.control.settings import ControllerSettings
 from stairwright.library import load_robot
 from stairwright.planning.plan import Limit, Margins, Plan, Pose, Problem, Timing, plan_id
 from stairwright.robot import kinematics
-from stairwright.scene.bodies import lift
+from stairwright.robot.spatial import lift
 from stairwright.scene.clearance import clearance
 from stairwright.simulation.result import Metrics, Rollout, Series
 from stairwright.terrain.profile import Terrain

@@ -154,7 +154,8 @@ def _axes(colours: Palette) -> tuple[dict[str, Any], ...]:
         "ticks": {"show": False},
         "font": "10px Inter, system-ui, sans-serif",
     }
-    return ({**axis, "size": 24.0}, {**axis, "size": 36.0})
+    across = {**axis, "scale": "x", "side": 2, "size": 26.0}
+    return across, {**axis, "scale": "y", "side": 3, "size": 36.0}
 
 
 def _css(colour: Rgb, alpha: float) -> str:

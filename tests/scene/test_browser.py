@@ -1,0 +1,210 @@
+"""The scene in real Chromium: embedded without viser's panel, complete when opened alone."""
+
+from __future__ import annotations
+
+import io
+import threading
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+import uvicorn
+from fastapi import FastAPI, WebSocket
+from fastapi.responses import HTMLResponse
+from PIL import Image
+from playwright.sync_api import expect
+
+from stairwright.scene.proxy import proxy_websocket
+from stairwright.scene.session import SceneSession
+from tests.scene.example import example_plan, example_rollout
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+pytestmark = pytest.mark.browser
+PATIENCE = 60_000  # ms
+
+
+class Site:
+    """A server that mounts sessions as the product does, and can be stopped and started again."""
+
+    def __init__(self) -> None:
+        self.sessions: dict[str, SceneSession] = {}
+        self.port = 0
+        self.start()
+
+    def start(self) -> None:
+        app = FastAPI()
+
+        @app.get("/scene/{name}/")
+        def page(name: str) -> HTMLResponse:
+            return HTMLResponse(self.sessions[name].client_html(f"/scene/{name}/"))
+
+        @app.get("/frame/{name}")
+        def frame(name: str) -> HTMLResponse:
+            source = f"/scene/{name}/?embedded=1"
+            return HTMLResponse(
+                f'<iframe src="{source}" style="width:600px;height:420px"></iframe>'
+            )
+
+        @app.websocket("/scene/{name}")
+        async def socket(websocket: WebSocket, name: str) -> None:
+            await proxy_websocket(websocket, self.sessions[name].port)
+
+        config = uvicorn.Config(
+            app,
+            host="127.0.0.1",
+            port=self.port,
+            log_level="warning",
+            ws_per_message_deflate=False,
+            timeout_graceful_shutdown=1,
+        )
+        self._server = uvicorn.Server(config)
+        self._thread = threading.Thread(target=self._server.run, daemon=True)
+        self._thread.start()
+        while not self._server.started:
+            self._thread.join(0.02)
+        self.port = self._server.servers[0].sockets[0].getsockname()[1]
+
+    def stop(self) -> None:
+        self._server.should_exit = True
+        self._thread.join(30)
+
+    def open(self, name: str) -> SceneSession:
+        self.sessions[name] = SceneSession(name)
+        return self.sessions[name]
+
+    def close(self) -> None:
+        for session in self.sessions.values():
+            session.close()
+        self.stop()
+
+
+@pytest.fixture(scope="module")
+def site() -> Iterator[Site]:
+    site = Site()
+    yield site
+    site.close()
+
+
+@pytest.fixture
+def visit(browser: Browser, site: Site) -> Iterator[Callable[[str], Page]]:
+    with browser.new_context(
+        base_url=f"http://127.0.0.1:{site.port}", viewport={"width": 900, "height": 640}
+    ) as context:
+
+        def go(address: str) -> Page:
+            page = context.new_page()
+            page.problems = []
+            page.on("pageerror", lambda error: page.problems.append(str(error)))
+            page.on(
+                "console",
+                lambda m: page.problems.append(m.text) if "Security Policy" in m.text else None,
+            )
+            page.goto(address)
+            return page
+
+        yield go
+
+
+def pixels(page: Page) -> np.ndarray:
+    return np.asarray(Image.open(io.BytesIO(page.screenshot(timeout=PATIENCE))).convert("RGB"), int)
+
+
+def legs(shot: np.ndarray) -> tuple[int, int]:
+    """How many pixels are front-leg blue and rear-leg orange."""
+    red, blue = shot[..., 0], shot[..., 2]
+    return int(((blue > red + 45) & (blue > 90)).sum()), int(((red > blue + 45) & (red > 90)).sum())
+
+
+def wait_until(page: Page, check: Callable[[np.ndarray], bool]) -> np.ndarray:
+    for _ in range(PATIENCE // 500):
+        shot = pixels(page)
+        if check(shot):
+            return shot
+        page.wait_for_timeout(500)
+    pytest.fail("the picture never became what was expected")
+
+
+def seen(shot: np.ndarray) -> bool:
+    return min(legs(shot)) > 300
+
+
+@pytest.fixture(scope="module")
+def plan() -> dict:
+    return example_plan(count=40).model_dump(mode="json")
+
+
+def test_embedded_scene_shows_the_robot_and_no_panel(site, visit, plan):
+    site.open("a").show(plan=plan)
+    page = visit("/scene/a/?embedded=1&websocket=ws://127.0.0.1:1&playbackPath=x")
+    dark = wait_until(page, seen)
+    assert dark[5:40, 5:40].mean() < 60
+    expect(page.get_by_text("Tracking")).to_be_hidden()
+    assert page.locator(".mantine-Notifications-root:visible").count() == 0
+    # Another server's address in the link is neither used nor kept.
+    assert "websocket" not in page.url
+    assert "playbackPath" not in page.url
+    assert page.problems == []
+    site.sessions["a"].set_view(theme="light")
+    wait_until(page, lambda shot: shot[5:40, 5:40].mean() > 200 and seen(shot))
+    # Playback moves the robot along the course.
+    before = legs(pixels(page))
+    site.sessions["a"].camera("side")
+    site.sessions["a"].playback(progress=plan["poses"][-1]["progress"])
+    wait_until(page, lambda shot: legs(shot) != before)
+
+
+def test_a_frame_without_focus_comes_back_after_the_server_does(site, visit, plan):
+    session = site.open("b")
+    session.show(plan=plan)
+    page = visit("/frame/b")
+    wait_until(page, seen)
+    assert session.clients == 1
+    site.stop()
+    for _ in range(100):
+        if session.clients == 0:
+            break
+        page.wait_for_timeout(100)
+    assert session.clients == 0
+    session.show(plan=plan, theme="light")
+    site.start()
+    wait_until(page, lambda shot: session.clients == 1 and shot[30:60, 30:60].mean() > 200)
+
+
+def test_opened_alone_it_has_a_working_panel(site, visit):
+    run = example_rollout(example_plan(count=30))
+    session = site.open("c")
+    session.show(rollout=run.model_dump(mode="json"))
+    session.playback(time=1.0)
+    page = visit("/scene/c/")
+    expect(page.get_by_text("Rollout: success")).to_be_visible(timeout=PATIENCE)
+    expect(page.get_by_text("Pitch, nose-up °")).to_be_visible()
+    assert page.locator(".uplot:visible").count() == 3
+    page.get_by_role("button", name="Play").click()
+    for _ in range(200):
+        if session.player.playing:
+            break
+        page.wait_for_timeout(50)
+    assert session.player.playing
+    expect(page.get_by_role("button", name="Pause")).to_be_visible(timeout=PATIENCE)
+    session.playback(playing=False)
+    page.get_by_text("Layers").click()
+    page.get_by_label("Ghosts").click()
+    for _ in range(200):
+        if not session._stage.layers["ghosts"]:
+            break
+        page.wait_for_timeout(50)
+    assert not session._stage.layers["ghosts"]
+    assert page.problems == []
+
+
+def test_two_sessions_do_not_see_each_other(site, visit, plan):
+    site.open("d").show(plan=plan)
+    site.open("e").show(theme="light")
+    one, other = visit("/scene/d/?embedded=1"), visit("/scene/e/?embedded=1")
+    wait_until(one, seen)
+    shot = wait_until(other, lambda shot: shot[5:40, 5:40].mean() > 200)
+    assert legs(shot) == (0, 0)
+    assert site.sessions["d"].clients == site.sessions["e"].clients == 1

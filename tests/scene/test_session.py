@@ -1,0 +1,198 @@
+"""A scene session without a browser: what it accepts, and that it cleans up after itself."""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+
+import numpy as np
+import pytest
+
+from stairwright.errors import InputError
+from stairwright.scene.palette import DARK, LIGHT
+from stairwright.scene.session import SceneSession
+from tests.scene.example import example_plan, example_rollout, example_terrain
+
+
+@pytest.fixture
+def session():
+    session = SceneSession("s")
+    yield session
+    session.close()
+
+
+@pytest.fixture(scope="module")
+def plan():
+    return example_plan(count=20).model_dump(mode="json")
+
+
+def nodes(session: SceneSession) -> set[str]:
+    return set(session._server.scene._handle_from_node_name)
+
+
+def wait_for(check) -> None:
+    give_up = time.monotonic() + 20
+    while not check() and time.monotonic() < give_up:
+        time.sleep(0.01)
+    assert check()
+
+
+def test_listens_on_loopback_only(session):
+    assert session._server.get_host() == "127.0.0.1"
+    with socket.create_connection(("127.0.0.1", session.port), timeout=5):
+        pass
+
+
+def test_shows_terrain_robot_ghosts_paths_and_margins(session, plan):
+    session.show(plan=plan)
+    wait_for(lambda: "/forces/heads" in nodes(session))  # drawn last
+    assert {
+        "/terrain/treads",
+        "/terrain/edges",
+        "/ghosts/trunk",
+        "/wheel_path",
+        "/com_path",
+        "/com/ball",
+        "/support/area",
+        "/collision_points",
+        "/forces/shafts",
+    } <= nodes(session)
+    assert "/problem/halo" not in nodes(session)
+
+
+def test_showing_again_reuses_every_node_name(session, plan):
+    session.show(plan=plan)
+    wait_for(lambda: "/forces/heads" in nodes(session))
+    before = nodes(session)
+    for count in (12, 30):
+        session.show(plan=example_plan(count=count).model_dump(mode="json"), theme="light")
+    session.playback(time=1.0)
+    wait_for(lambda: nodes(session) == before)
+
+
+def test_an_infeasible_plan_marks_the_place_and_the_part(session):
+    plan = example_plan(count=40, problem=True).model_dump(mode="json")
+    session.show(plan=plan)
+    session.playback(time=1e6)
+    wait_for(lambda: "/forces/heads" in nodes(session))
+    assert {"/problem/halo", "/problem/line"} <= nodes(session)
+    session.show(plan=example_plan(count=10).model_dump(mode="json"))
+    assert "/problem/halo" not in nodes(session)
+
+
+def test_an_infeasible_plan_without_poses_still_shows_its_terrain(session, plan):
+    session.show(plan={**plan, "poses": [], "critical": [], "status": "infeasible"})
+    assert "/terrain/treads" in nodes(session)
+    assert "/robot/trunk" not in nodes(session)
+
+
+def test_nothing_to_show_empties_the_scene(session, plan):
+    session.show(plan=plan)
+    wait_for(lambda: "/robot/trunk" in nodes(session))
+    session.show()
+    wait_for(lambda: not nodes(session) & {"/robot/trunk", "/com/ball", "/forces/heads"})
+    assert "/terrain/treads" not in nodes(session)
+    session.playback(time=1.0, playing=True)
+
+
+def test_a_rollout_plays_and_its_plan_gives_the_ghosts(session):
+    run = example_rollout(example_plan(count=20))
+    session.show(rollout=run.model_dump(mode="json"))
+    assert session.player.duration == pytest.approx(run.series.time[-1])
+    session.playback(time=2.0)
+    wait_for(lambda: "/robot/trunk" in nodes(session))
+    handle = session._server.scene.get_handle_by_name("/robot/trunk")
+    expected = [np.interp(2.0, run.series.time, run.series.base_position[:, k]) for k in range(3)]
+    wait_for(lambda: np.allclose(handle.batched_positions[0], expected, atol=1e-4))
+    assert "/ghosts/trunk" in nodes(session)
+
+
+def test_progress_is_a_way_to_say_the_time(session, plan):
+    session.show(plan=plan)
+    half = plan["poses"][10]
+    session.playback(progress=half["progress"])
+    assert session.player.time == pytest.approx(half["time"], abs=1e-6)
+
+
+def test_layers_hide_and_come_back(session, plan):
+    session.show(plan=plan, layers={"ghosts": False, "forces": False})
+    wait_for(lambda: "/forces/heads" in nodes(session))
+    by_name = session._server.scene.get_handle_by_name
+    assert not by_name("/ghosts/trunk").visible
+    assert not by_name("/forces/heads").visible
+    session.set_view(layers={"forces": True})
+    assert by_name("/forces/heads").visible
+    assert not by_name("/ghosts/trunk").visible
+    assert by_name("/terrain/treads").visible
+
+
+@pytest.mark.parametrize(
+    ("call", "field"),
+    [
+        (lambda s: s.show(theme="sepia"), "theme"),
+        (lambda s: s.show(layers={"clouds": True}), "layers.clouds"),
+        (lambda s: s.show(layers={"grid": 1}), "layers.grid"),
+        (lambda s: s.camera("behind"), "camera"),
+        (lambda s: s.playback(speed=0.0), "speed"),
+        (lambda s: s.playback(time=float("nan")), "time"),
+        (lambda s: s.client_html("scene/x"), "base_path"),
+    ],
+)
+def test_bad_input_says_where(session, call, field):
+    with pytest.raises(InputError) as error:
+        call(session)
+    assert error.value.path == field
+
+
+def test_friction_tints_the_terrain():
+    slippery, usual, grippy = (np.array(DARK.terrain(mu)[0], float) for mu in (0.1, 0.6, 1.2))
+    assert slippery[2] - slippery[0] > usual[2] - usual[0] > grippy[2] - grippy[0]
+    assert LIGHT.terrain(0.6)[0] == LIGHT.ground
+
+
+def test_clearance_colours_follow_the_strip():
+    found = DARK.clearance_colours(np.array([0.05, 0.012, 0.004, -0.001]))
+    assert [tuple(row) for row in found] == list(DARK.strip)
+
+
+def test_a_weight_slider_asks_for_a_new_plan(plan):
+    asked: list[dict[str, float]] = []
+    session = SceneSession("s", replan=asked.append)
+    try:
+        session.show(plan={**plan, "weights": {"clearance": 10.0}})
+        sliders = session._panel._weights
+        assert set(sliders) == {*example_weights()}
+        assert sliders["clearance"].value == pytest.approx(1.0)
+        for callback in sliders["pitch"]._impl.update_cb:
+            callback(type("Event", (), {"client_id": 1}))
+        assert asked[0]["clearance"] == pytest.approx(10.0)
+    finally:
+        session.close()
+
+
+def example_weights() -> list[str]:
+    from stairwright.planning.weights import PathWeights
+
+    return list(PathWeights.model_fields)
+
+
+def test_closing_frees_port_and_threads(plan):
+    session = SceneSession("s")
+    session.show(plan=plan)
+    port = session.port
+    session.close()
+    session.close()
+    assert not any(t.name == "scene-player" and t.is_alive() for t in threading.enumerate())
+    with pytest.raises(OSError), socket.create_connection(("127.0.0.1", port), timeout=2):
+        pass
+
+
+def test_terrain_with_two_thousand_points_is_drawn(session):
+    x = np.linspace(-2, 4, 2000)
+    points = [(float(a), float(0.02 * np.sin(9 * a))) for a in x]
+    terrain = example_terrain().model_copy(update={"points": points, "name": "waves"})
+    plan = example_plan(count=4).model_dump(mode="json")
+    session.show(plan={**plan, "terrain": terrain.model_dump(mode="json")})
+    session.playback(time=0.5)
+    wait_for(lambda: "/robot/trunk" in nodes(session))
