@@ -24,22 +24,37 @@ TERMS = 13
 WISHES = 17
 
 
+HARD = 600.0  # weight of what must not be violated
+
+
+@nb.njit(cache=True)
+def _hinge(value: float, wish: float, least: float, weight: float) -> float:
+    """Pull towards `wish`, and hard away from less than `least`."""
+    return weight * max(0.0, wish - value) + HARD * max(0.0, least - value)
+
+
 @nb.njit(cache=True)
 def _residuals(
     record: Floats, body: Floats, wheels: Floats, spans: Floats, w: Floats, out: Floats
 ) -> None:
     x = record[COM_X]
     for k in range(3):
-        target, weight = w[W_MARGIN + k], w[H_MARGIN + k]
         # A narrow interval cannot give the target on both sides: aim at its middle.
-        target = min(target, 0.45 * max(0.0, spans[2 * k + 1] - spans[2 * k]))
-        out[2 * k] = max(0.0, target - (x - spans[2 * k])) * weight
-        out[2 * k + 1] = max(0.0, target - (spans[2 * k + 1] - x)) * weight
-    out[6] = max(0.0, w[W_TRUNK] - record[TRUNK]) * w[H_CLEAR]
-    out[7] = max(0.0, w[W_LINKS] - record[LINKS]) * w[H_CLEAR]
-    out[8] = max(0.0, w[W_LEGS] - record[LEGS]) * w[H_LEGS]
-    out[9] = max(0.0, w[W_SLACK] - record[SLACK]) * w[H_SLACK]
-    out[10] = max(0.0, w[W_REACH] - record[REACH]) * w[H_CLEAR]
+        target = min(w[W_MARGIN + k], 0.45 * max(0.0, spans[2 * k + 1] - spans[2 * k]))
+        weight = w[H_MARGIN + k]
+        below, above = x - spans[2 * k], spans[2 * k + 1] - x
+        out[2 * k], out[2 * k + 1] = (
+            weight * max(0.0, target - below),
+            weight * max(0.0, target - above),
+        )
+        if k == 0:
+            out[0] += HARD * max(0.0, 0.25 * target - below)
+            out[1] += HARD * max(0.0, 0.25 * target - above)
+    out[6] = _hinge(record[TRUNK], w[W_TRUNK], 0.002, w[H_CLEAR])
+    out[7] = _hinge(record[LINKS], w[W_LINKS], 0.004, w[H_CLEAR])
+    out[8] = _hinge(record[LEGS], w[W_LEGS], 0.007, w[H_LEGS])
+    out[9] = _hinge(record[SLACK], w[W_SLACK], 0.004, w[H_SLACK])
+    out[10] = _hinge(record[REACH], w[W_REACH], 0.0005, w[H_CLEAR])
     slope = math.atan2(wheels[1] - wheels[3], wheels[0] - wheels[2])
     out[11] = (body[2] + 0.8 * slope) * w[H_PITCH]
     out[12] = (body[1] - 0.5 * (wheels[1] + wheels[3]) - w[HEIGHT]) * w[H_HEIGHT]

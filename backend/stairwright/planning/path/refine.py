@@ -121,8 +121,8 @@ def _wishes(robot: Robot, weights: PathWeights, share: float) -> Floats:
     wish[po.W_TRUNK] = wish[po.W_LINKS] = _CLEAR
     wish[po.W_LEGS], wish[po.W_SLACK], wish[po.W_REACH] = 0.011, 0.05, 0.006 * size
     root = share**0.5
-    wish[po.H_MARGIN] = 60.0 * root
-    wish[po.H_RESERVE] = 30.0 * root * weights.com_margin**0.5
+    wish[po.H_MARGIN] = 100.0 * root
+    wish[po.H_RESERVE] = 50.0 * root * weights.com_margin**0.5
     wish[po.H_LAG] = 15.0 * root * weights.com_margin**0.5
     wish[po.H_CLEAR] = 150.0 * root * weights.clearance**0.5
     wish[po.H_LEGS] = 150.0 * root
