@@ -13,7 +13,9 @@ from stairwright.terrain.profile import Terrain
 from stairwright.terrain.tables import parse_table
 
 Options = Mapping[str, Any]
-MAX_TEXT = 4 * 2**20  # bytes of a YAML, JSON or CSV file
+MAX_TEXT = 4 * 2**20  # bytes of a JSON or CSV file
+MAX_YAML = 2**18  # characters; read by plain Python
+MAX_DEPTH = 20  # of brackets in YAML
 
 
 def import_terrain(data: bytes, file_name: str, options: Options) -> dict[str, Any]:
@@ -55,10 +57,27 @@ def _table(data: bytes, _: str, options: Options) -> Terrain:
     return parse_table(_text(data), options.get("name", "imported"), options.get("friction", 0.6))
 
 
-def _document(data: bytes, _: str, options: Options) -> Terrain:
-    mapping = parse_mapping(_text(data), "the file")
+def _document(data: bytes, suffix: str, options: Options) -> Terrain:
+    text = _text(data)
+    if suffix == "json":
+        if not text.lstrip().startswith("{"):
+            raise InputError("the file must hold a JSON object", ("file",))
+    else:
+        _refuse_deep_yaml(text)
+    mapping = parse_mapping(text, "the file")
     given = {key: options[key] for key in ("name", "friction") if key in options}
     return parse(Terrain, {**mapping, **given})
+
+
+def _refuse_deep_yaml(text: str) -> None:
+    """YAML takes its reader time that grows with the square of the nesting."""
+    if len(text) > MAX_YAML:
+        raise InputError(f"a YAML file may have at most {MAX_YAML >> 10} KiB", ("file",))
+    depth = 0
+    for character in text:
+        depth += (character in "[{") - (character in "]}")
+        if depth > MAX_DEPTH:
+            raise InputError(f"the file nests deeper than {MAX_DEPTH} levels", ("file",))
 
 
 def _text(data: bytes) -> str:

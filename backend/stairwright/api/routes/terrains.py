@@ -13,7 +13,9 @@ from stairwright.api.deps import JSON_BODY, Limit, Offset, Service
 from stairwright.api.problems import Problem, describe, from_validation, not_found
 from stairwright.api.responses import model_json, models_json
 from stairwright.api.services import UPLOAD_DEADLINE, Services
+from stairwright.errors import InputError
 from stairwright.jobs import uploads
+from stairwright.jobs.failures import DeadlineExceeded, WorkerDied
 from stairwright.library import load_terrain, terrains
 from stairwright.terrain import stairs
 from stairwright.terrain.profile import Terrain
@@ -75,10 +77,13 @@ async def import_terrain(
     elif suffix not in (".json", ".yaml", ".yml"):
         options["name"] = _usable(PurePath(file_name).stem)
     data = await file.read()
-    async with services.uploading:
-        document = await services.upload_pool.run(
-            uploads.import_terrain, data, f"upload{suffix}", options, deadline=UPLOAD_DEADLINE
-        )
+    try:
+        async with services.uploading:
+            document = await services.upload_pool.run(
+                uploads.import_terrain, data, f"upload{suffix}", options, deadline=UPLOAD_DEADLINE
+            )
+    except (DeadlineExceeded, WorkerDied, MemoryError):
+        raise InputError("takes too much time or memory to read", ("file",)) from None
     return Terrain.model_validate(document)
 
 
