@@ -1,0 +1,206 @@
+"""Equations of the controller, and the compiled form against the plain one."""
+
+from __future__ import annotations
+
+import math
+
+import mujoco
+import numpy as np
+import pytest
+
+from stairwright import load_robot, load_terrain, robots
+from stairwright.control import balance, compiled, rigid_body, rolling, tracking
+from stairwright.control.contact import face_normal
+from stairwright.control.controller import Controller
+from stairwright.control.measurement import measure
+from stairwright.control.setpoint import WIDTH, Setpoint
+from stairwright.control.settings import ControllerSettings, parse_settings
+from stairwright.errors import InputError
+from stairwright.robot import kinematics
+from stairwright.robot.description import LEGS
+from stairwright.robot.mujoco_model import build_model
+from stairwright.terrain.wheel_path import wheel_path
+
+
+def random_state(robot, random: np.random.Generator):
+    qpos, qvel = np.empty(19), random.normal(0, 0.5, 18)
+    qpos[:3] = random.uniform(-0.8, 0.8), random.normal(0, 0.1), random.uniform(0.3, 0.7)
+    angles = random.normal(0, 0.15, 3) + [0.0, random.uniform(-1.5, 1.5), 0.0]
+    mujoco.mju_euler2Quat(qpos[3:7], angles, "xyz")
+    legs = random.uniform(*kinematics.limits(robot).T, (2, 4)).reshape(4, 2)[[0, 2, 1, 3]]
+    qpos[7:] = np.column_stack([legs, random.normal(0, 3, 4)]).ravel()
+    return qpos, qvel
+
+
+@pytest.mark.parametrize("name", robots())
+def test_measurement_equals_the_simulators(name: str) -> None:
+    robot = load_robot(name)
+    model = build_model(robot)
+    data = mujoco.MjData(model)
+    random = np.random.default_rng(0)
+    for _ in range(50):
+        qpos, qvel = random_state(robot, random)
+        data.qpos[:], data.qvel[:] = qpos, qvel
+        mujoco.mj_forward(model, data)
+        mujoco.mj_subtreeVel(model, data)
+        state = measure(robot, qpos, qvel)
+        for part, places in (("thigh", state.hips), ("calf", state.knees), ("wheel", state.wheels)):
+            true = [data.body(f"{leg}_{part}").xpos[[0, 2]] for leg in LEGS]
+            np.testing.assert_allclose(places, true, atol=1e-9)
+        np.testing.assert_allclose(state.com, data.subtree_com[1][[0, 2]], atol=1e-9)
+        np.testing.assert_allclose(state.com_velocity, data.subtree_linvel[1][[0, 2]], atol=1e-9)
+
+
+def test_inertia_is_the_simulators() -> None:
+    """A rigid robot that turns about y: angular momentum over rate."""
+    robot = load_robot("a1_wheeled")
+    model = build_model(robot)
+    data = mujoco.MjData(model)
+    data.qpos[3] = 1.0
+    data.qpos[7:] = np.tile([0.8, -1.6, 0.0], 4)
+    data.qvel[4] = 1.0
+    mujoco.mj_forward(model, data)
+    mujoco.mj_subtreeVel(model, data)
+    state = measure(robot, data.qpos, data.qvel)
+    assert state.inertia == pytest.approx(data.subtree_angmom[1][1], rel=1e-9)
+
+
+def test_heading_has_no_singularity_at_vertical_pitch() -> None:
+    robot = load_robot("a1_wheeled")
+    qpos, qvel = np.zeros(19), np.zeros(18)
+    for pitch in (-2.0, -math.pi / 2, 0.0, 1.0, math.pi / 2):
+        for yaw in (-0.3, 0.0, 0.2):
+            a = [math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)]
+            b = [math.cos(pitch / 2), 0.0, math.sin(pitch / 2), 0.0]
+            mujoco.mju_mulQuat(qpos[3:7], np.array(a), np.array(b))
+            state = measure(robot, qpos, qvel)
+            assert state.heading == pytest.approx(yaw, abs=1e-12)
+            assert math.cos(state.pitch - pitch) > math.cos(0.2)
+
+
+def test_wrench_of_forces() -> None:
+    """A force map equals forces and moments summed one by one (eqs 4-5)."""
+    random = np.random.default_rng(1)
+    angle = random.uniform(-1.5, 1.5, 4)
+    normals = np.column_stack([-np.sin(angle), np.cos(angle)])
+    frames = rigid_body.contact_frames(normals)
+    levers, F = random.normal(size=(4, 2)), random.normal(size=(4, 2))
+    total = np.zeros(3)
+    for frame, lever, force in zip(frames, levers, F, strict=True):
+        x, z = frame @ force
+        total += x, z, lever[1] * x - lever[0] * z
+    np.testing.assert_allclose(rigid_body.force_map(frames, levers) @ F.ravel(), total)
+    np.testing.assert_allclose(frames[:, :, 0] @ [0, 0], 0)
+    assert rigid_body.traction(np.array([0.5]), 0.05) == pytest.approx(10.0)
+    # Level ground: tangent forward, normal up; a vertical face ahead: tangent up.
+    np.testing.assert_allclose(rigid_body.contact_frames(np.array([[0.0, 1.0]]))[0], np.eye(2))
+    wall = rigid_body.contact_frames(np.array([[-1.0, 0.0]]))[0]
+    np.testing.assert_allclose(wall[:, 0], [0.0, 1.0])
+
+
+def test_force_torques_are_the_jacobians(name: str = "a1_wheeled") -> None:
+    """J' F by virtual work: torque times a small turn is minus force times the wheel's motion."""
+    robot = load_robot(name)
+    random = np.random.default_rng(2)
+    qpos, qvel = random_state(robot, random)
+    qpos[3:7] = 1.0, 0.0, 0.0, 0.0
+    state = measure(robot, qpos, qvel)
+    F = random.normal(size=(4, 2))
+    torques = balance.force_torques(state, state.wheels, F)
+    for leg in range(4):
+        for part in range(2):
+            moved = qpos.copy()
+            moved[7 + 3 * leg + part] += 1e-6
+            shift = (measure(robot, moved, qvel).wheels[leg] - state.wheels[leg]) / 1e-6
+            assert torques[leg, part] == pytest.approx(-F[leg] @ shift, abs=1e-5)
+
+
+def test_leg_weight_is_gravity_of_the_simulator() -> None:
+    robot = load_robot("a1_wheeled_x")
+    model = build_model(robot)
+    data = mujoco.MjData(model)
+    qpos, _ = random_state(robot, np.random.default_rng(6))
+    qpos[3:7] = 1.0, 0.0, 0.0, 0.0
+    data.qpos[:] = qpos
+    mujoco.mj_forward(model, data)
+    state = measure(robot, qpos, np.zeros(18))
+    expected = data.qfrc_bias[6:].reshape(4, 3)[:, :2]
+    np.testing.assert_allclose(balance.leg_weight_torques(robot, state), expected, atol=1e-9)
+
+
+def test_rolling_and_tracking_laws() -> None:
+    assert rolling.wheel_rates(np.array([0.1]), 0.05) == pytest.approx(2.0)
+    difference = rolling.yaw_difference(1.0, 0.5, 0.1, 3.0)
+    np.testing.assert_allclose(difference, 2.7 * np.array([-1, 1, -1, 1]))
+    torque = rolling.wheel_torques(0.6, np.array([2.0]), np.array([1.5]))
+    assert torque == pytest.approx(0.3)
+    zero = np.zeros((4, 2))
+    found = tracking.joint_torques(zero + 1.0, 40.0, 1.0, zero + 0.1, zero, zero + 0.2, zero)
+    np.testing.assert_allclose(found, 1.0 + 4.0 + 0.2)
+
+
+def test_planned_face_at_a_concave_corner() -> None:
+    terrain = load_terrain("single-stair-036")
+    path = wheel_path(terrain, 0.05)
+    corner = float(path.corners[0])
+
+    def normal(measured: float, planned: float):
+        return face_normal(path.pieces, path.radius, path.corners, measured, planned)
+
+    floor, wall = (0.0, 1.0), (-1.0, 0.0)
+    np.testing.assert_allclose(normal(corner - 0.01, corner - 0.005), floor, atol=1e-9)
+    np.testing.assert_allclose(normal(corner - 0.01, corner + 0.005), wall, atol=1e-9)
+    np.testing.assert_allclose(normal(corner + 0.01, corner + 0.02), wall, atol=1e-9)
+    np.testing.assert_allclose(normal(corner + 0.005, corner - 0.01), floor, atol=1e-9)
+    # Far behind its plan, the wheel counts where it is.
+    np.testing.assert_allclose(normal(corner - 0.2, corner + 0.2), floor, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", robots())
+def test_compiled_equals_plain(name: str) -> None:
+    robot = load_robot(name)
+    path = wheel_path(load_terrain("single-stair-036"), robot.wheel.radius)
+    settings = ControllerSettings(solver="quadprog", beta=0.01)
+    record = compiled.parameters(robot, 0.6, settings)
+    random = np.random.default_rng(7)
+    for _ in range(100):
+        qpos, qvel = random_state(robot, random)
+        row = np.concatenate(
+            [
+                random.uniform(0.5, 3.0, 2),
+                random.normal(0, 1, 5),
+                qpos[[0, 2]] + random.normal(0, 0.05, 2),
+                qpos[[0, 2]] + random.normal(0, 0.05, 2),
+                random.normal(0, 0.2, 11),
+                [3.0, 29.0, -2.0, 27.0],
+            ]
+        )
+        assert len(row) == WIDTH
+        plain = Controller(robot, path, 0.6, settings)
+        places, forces, torques = np.full(4, np.nan), plain.forces.copy(), np.empty(12)
+        for _ in range(3):  # memory of forces and places, too
+            expected = plain.step(qpos, qvel, Setpoint.from_row(row, 0.2))
+            compiled.contact_control(
+                record, path.pieces, path.corners, qpos, qvel, row, 0.2, places, forces, torques
+            )
+            np.testing.assert_allclose(places, plain.places, atol=1e-9)
+            np.testing.assert_allclose(torques, expected, atol=1e-5)
+
+
+def test_settings_say_what_is_wrong() -> None:
+    assert parse_settings(None) == ControllerSettings()
+    with pytest.raises(InputError) as caught:
+        parse_settings({"alpha": -1.0})
+    assert caught.value.field == ("controller", "alpha")
+    with pytest.raises(InputError, match="unknown field"):
+        parse_settings({"gain": 1.0})
+
+
+def test_settings_schema_feeds_sliders() -> None:
+    for name, entry in ControllerSettings.model_json_schema()["properties"].items():
+        assert entry["title"], name
+        assert entry["description"], name
+        assert "default" in entry, name
+        if "enum" not in entry:
+            assert {"minimum", "maximum", "unit", "scale"} <= set(entry), name
+            assert entry["scale"] in ("log", "linear")
