@@ -80,7 +80,7 @@ def test_link_restores_terrain_set_up_and_result(product: Product, second: Produ
     product.page.get_by_role("slider", name="Speed").press("PageUp")
     product.planned()
     outcome = product.run()
-    product.page.wait_for_timeout(100)
+    product.page.wait_for_timeout(500)
     address = product.page.url
     second.open(address)
     second.page.locator(f".app[data-run={outcome}]").wait_for(timeout=20_000)
@@ -104,8 +104,8 @@ def test_two_sessions_do_not_see_each_other(product: Product, second: Product) -
     assert second.corner(6) == before
 
 
-def test_the_scene_draws_and_hides_viser_panel(product: Product) -> None:
-    product.open()
+def test_the_scene_draws_and_hides_viser_panel(product_with_scene: Product) -> None:
+    product = product_with_scene.open()
     frame = product.page.frame_locator("iframe")
     frame.locator("canvas").first.wait_for(timeout=30_000)
     panel = frame.locator("[data-floating-window]")

@@ -49,6 +49,7 @@ export function press(event: PointerEvent, at: Vec2, target: Target): void {
     return;
   }
   if (event.button === 2) return;
+  performance.clearMarks();
   const panning = event.button === 1 || spaceHeld.peek();
   const drawn = drawing.peek().points;
   const kind = panning ? "pan" : dragKind(target);
@@ -98,7 +99,7 @@ function apply(): void {
   const far = Math.hypot(at[0] - drag.down[0], at[1] - drag.down[1]) > SLACK;
   if (!drag.moved && !far) return;
   drag.moved = true;
-  performance.mark("stairwright:move");
+  performance.mark("stairwright:move", { startTime: event.timeStamp });
   if (drag.kind === "pan") pan(at[0] - drag.last[0], at[1] - drag.last[1]);
   else if (drag.kind === "marquee") marquee.value = [...drag.down, ...at];
   else if (drag.kind === "tool") drawWith(drag, at, event.altKey);

@@ -186,7 +186,7 @@ function Editable({ label, edit, children }: EditableProps) {
     <g
       class="editable"
       role="button"
-      tabIndex={0}
+      tabindex={0}
       aria-label={`${label}, Enter to change`}
       data-dimension
       onDblClick={edit}

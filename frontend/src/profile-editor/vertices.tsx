@@ -7,7 +7,7 @@ import { drawing, selection } from "../state/drawing";
 import { tool } from "../state/view";
 import { onVertexKey } from "./commands";
 import { dragging, guides, marquee } from "./gestures";
-import { canvasBox, projection } from "./viewport";
+import { canvasBox, centreOn, projection } from "./viewport";
 
 export const names = computed(() => cornerNames(drawing.value.points));
 
@@ -42,14 +42,16 @@ export function Vertices() {
         const half = selected ? 4.5 : 3.5;
         const hidden = x < left - 4 || x > right + 4 || y < top - 4 || y > bottom + 4;
         const focus = () => {
-          if (!dragging.peek() && !selection.peek().includes(i)) selection.value = [i];
+          if (dragging.peek()) return;
+          if (!selection.peek().includes(i)) selection.value = [i];
+          if (hidden) centreOn(p);
         };
         return (
           <g
             key={i}
-            class={hidden ? "vertex off" : "vertex"}
+            class="vertex"
             role="button"
-            tabIndex={0}
+            tabindex={0}
             aria-pressed={selected}
             aria-label={`${words[i]}, x ${fixed(p[0], 3)}, z ${fixed(p[1], 3)} m`}
             data-vertex={i}

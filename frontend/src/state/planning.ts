@@ -30,6 +30,8 @@ export const waited = signal(0);
 const shownKey = signal("");
 
 interface Question {
+  /** When the drawing asked, for the benchmark of dragging. */
+  asked?: number;
   which: "preview" | "a" | "b";
   request: PlanRequest;
   key: string;
@@ -91,6 +93,10 @@ async function solve(question: Question, abort: AbortSignal): Promise<Plan> {
 }
 
 function show(answer: Plan, question: Question, newest: boolean): void {
+  if (question.asked !== undefined) {
+    const detail = question.asked;
+    requestAnimationFrame(() => performance.mark("stairwright:poses", { detail }));
+  }
   if (question.which === "b") {
     if (newest) planB.value = answer;
     return;
@@ -112,7 +118,6 @@ function show(answer: Plan, question: Question, newest: boolean): void {
     shownKey.value = question.key;
     refusal.value = null;
   });
-  performance.mark("stairwright:plan");
   if (!newest) return;
   stopWaiting();
   if (compare.peek()) askForB(question);
@@ -123,11 +128,16 @@ function askForA(question: PlanRequest, key: string): void {
   // Only where the quick method is quick: on some terrains it is not.
   const worth = took.a > LIVE && took.preview < took.a / 2;
   if (question.method !== "path" || !worth) {
-    queue.ask({ which: "a", request: question, key });
+    queue.ask({ which: "a", request: question, key, asked: performance.now() });
     return;
   }
   const { weights: _, ...rest } = question;
-  queue.ask({ which: "preview", request: { ...rest, method: "critical" }, key });
+  queue.ask({
+    which: "preview",
+    asked: performance.now(),
+    request: { ...rest, method: "critical" },
+    key,
+  });
 }
 
 /** After the preview: the question that was meant. */

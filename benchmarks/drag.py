@@ -1,0 +1,149 @@
+"""How long the poses take to follow a dragged corner, in real Chromium on the real server.
+
+    python benchmarks/drag.py [--url http://localhost:8000] [--seconds 6] [--browser PATH]
+
+Drags the upper corner of the 0.36 m stair and of five stairs at 60 moves a second. Prints, per
+terrain, from the pointer's move to the frame with its poses (median, 95th percentile), the longest
+frame of the drag, how many plans were shown, and the time until the page was interactive. Without
+`--url` it starts a server of its own. The 3-D frame is left out: without a graphics card it would
+take a core of its own.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import math
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import httpx
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+CASES = (("single-stair-036", 2), ("stairs-us-7-11", 6))
+RATE = 60.0  # moves a second
+REACH = 24.0  # pixels to either side
+WATCH = """() => {
+  window.frames_ = [];
+  let last = performance.now();
+  const tick = now => { window.frames_.push(now - last); last = now; requestAnimationFrame(tick); };
+  requestAnimationFrame(tick);
+}"""
+COLLECT = """() => ({
+  frames: window.frames_,
+  moves: performance.getEntriesByName("stairwright:move").map(m => m.startTime),
+  shown: performance.getEntriesByName("stairwright:poses").map(m => [m.startTime, m.detail]),
+})"""
+
+
+def percentile(values: list[float], share: float) -> float:
+    """The value that `share` of all do not exceed (nearest rank); NaN for none."""
+    ordered = sorted(values)
+    return ordered[max(0, math.ceil(share * len(ordered)) - 1)] if ordered else math.nan
+
+
+def delays(found: dict[str, Any]) -> list[float]:
+    """From the last move before each question to the frame that showed its answer [ms]."""
+    moves = found["moves"]
+    out = []
+    for shown, asked in found["shown"]:
+        before = [move for move in moves if move <= asked]
+        if before:
+            out.append(shown - before[-1])
+    return out
+
+
+def drag(page: Page, vertex: int, seconds: float) -> dict[str, Any]:
+    """Move a corner to and fro along x and z, and return what the page noted meanwhile."""
+    box = page.locator(f'[data-vertex="{vertex}"] rect').bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.evaluate(WATCH)
+    start = time.perf_counter()
+    for i in range(int(seconds * RATE)):
+        angle = i / RATE * 2.0
+        page.mouse.move(x + REACH * math.sin(angle), y + REACH / 2 * math.sin(0.7 * angle))
+        time.sleep(max(0.0, start + (i + 1) / RATE - time.perf_counter()))
+    found: dict[str, Any] = page.evaluate(COLLECT)
+    page.mouse.up()
+    return found
+
+
+def measure(browser: Browser, url: str, terrain: str, vertex: int, seconds: float) -> None:
+    """Print the figures of one terrain."""
+    with browser.new_context(viewport={"width": 1440, "height": 900}) as context:
+        page = context.new_page()
+        page.route("**/scene/**", lambda route: route.fulfill(content_type="text/html", body=""))
+        page.goto(url)
+        page.locator("[data-vertex]").first.wait_for()
+        ready = page.evaluate("performance.now()")
+        page.get_by_role("button", name="Terrain:").click()
+        page.locator(".terrains .item", has_text=terrain).first.click()
+        page.locator(".app[data-plan=feasible], .app[data-plan=infeasible]").wait_for()
+        drag(page, vertex, 1.0)  # both sides warm
+        found = drag(page, vertex, seconds)
+    times = delays(found)
+    print(
+        f"{terrain}: move to poses p50 {percentile(times, 0.5):.0f} ms, "
+        f"p95 {percentile(times, 0.95):.0f} ms ({len(times)} plans in {seconds:g} s); "
+        f"frames p95 {percentile(found['frames'], 0.95):.0f} ms, "
+        f"longest {max(found['frames']):.0f} ms; interactive after {ready:.0f} ms"
+    )
+
+
+@contextlib.contextmanager
+def own_server() -> Iterator[str]:
+    """A server with a data folder of its own."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    url = f"http://127.0.0.1:{port}"
+    with tempfile.TemporaryDirectory() as data:
+        command = [sys.executable, "-m", "stairwright", "serve", "--port", str(port)]
+        process = subprocess.Popen(
+            command, env=os.environ | {"STAIRWRIGHT_DATA": data}, stdout=subprocess.DEVNULL
+        )
+        try:
+            while process.poll() is None:
+                with contextlib.suppress(httpx.TransportError):
+                    if httpx.get(f"{url}/api/v1/healthz").is_success:
+                        break
+                time.sleep(0.2)
+            yield url
+        finally:
+            process.terminate()
+            process.wait(15)
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--url", help="a running server; its own otherwise")
+    parser.add_argument("--seconds", type=float, default=6.0)
+    parser.add_argument("--browser", default=shutil.which("chromium"))
+    arguments = parser.parse_args()
+    from playwright.sync_api import sync_playwright
+
+    server = contextlib.nullcontext(arguments.url) if arguments.url else own_server()
+    with server as url, sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path=arguments.browser, args=["--no-sandbox", "--disable-dev-shm-usage"]
+        )
+        for terrain, vertex in CASES:
+            measure(browser, url, terrain, vertex, arguments.seconds)
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()
