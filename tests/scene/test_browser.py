@@ -191,7 +191,7 @@ def test_opened_alone_it_has_a_working_panel(site, visit):
     expect(page.get_by_role("button", name="Pause")).to_be_visible(timeout=PATIENCE)
     session.playback(playing=False)
     page.get_by_text("Layers").click()
-    page.get_by_label("Ghosts").click()
+    page.get_by_role("checkbox", name="Ghosts").click()
     for _ in range(200):
         if not session._stage.layers["ghosts"]:
             break

@@ -20,7 +20,8 @@ _DIRECTIONS = {
     "front": (0.95, -0.32, 0.34),
     "follow": (-0.45, -0.92, 0.42),
 }
-_DISTANCE = {"iso": 2.7, "side": 2.4, "front": 2.1, "follow": 1.9}
+_DISTANCE = {"side": 2.4, "front": 2.1, "follow": 2.3}
+_NEAREST, _FARTHEST = 2.7, 9.0  # m, of the view of a whole course
 
 
 class View(NamedTuple):
@@ -43,10 +44,23 @@ def check(name: str) -> Preset:
     return name  # type: ignore[return-value]
 
 
-def view(name: Preset, subject: Floats) -> View:
-    """The view of preset `name` on the robot at `subject` (3,)."""
-    direction = np.array(_DIRECTIONS[name])
-    direction /= np.linalg.norm(direction)
+def view(name: Preset, robot: Floats) -> View:
+    """The view of preset `name` on the robot at `robot` (3,)."""
     # A little ahead of the robot and below its trunk: the course matters as much as the robot.
-    aim = subject + np.array([0.10, 0.0, -0.12])
-    return View(aim + _DISTANCE[name] * direction, aim)
+    aim = robot + np.array([0.10, 0.0, -0.12])
+    return View(aim + _DISTANCE.get(name, _NEAREST) * _direction(name), aim)
+
+
+def course_view(positions: Floats) -> View:
+    """The ``iso`` view that holds a whole course of trunk points (n, 3)."""
+    low, high = positions.min(axis=0), positions.max(axis=0)
+    span = float(np.linalg.norm(high - low))
+    aim = (low + high) / 2 + np.array([0.0, 0.0, -0.12])
+    distance = float(np.clip(1.05 * span + 0.9, _NEAREST, _FARTHEST))
+    return View(aim + distance * _direction("iso"), aim)
+
+
+def _direction(name: Preset) -> Floats:
+    direction = np.array(_DIRECTIONS[name])
+    unit: Floats = direction / np.linalg.norm(direction)
+    return unit

@@ -53,7 +53,7 @@ class SceneSession:
         self._motion: Motion | None = None
         self._terrain_name: str | None = None
         self._subject = np.array([0.0, 0.0, 0.33])
-        self._follow = False
+        self._follow = True
         self._closed = False
         # viser announces each server on the terminal; a service that opens many must not.
         rich.get_console().quiet = True
@@ -66,7 +66,8 @@ class SceneSession:
         self._player = Player(self._frame)
         self._panel = Panel(self._server, self, replan)
         self._apply_theme("dark")
-        self._aim(cameras.view("iso", self._subject))
+        self._aim(cameras.view("follow", self._subject))
+        self._server.on_client_connect(self._welcome)
 
     @property
     def port(self) -> int:
@@ -184,7 +185,10 @@ class SceneSession:
         self._touch()
         with self._lock:
             self._follow = preset == "follow"
-            self._aim(cameras.view(preset, self._subject))
+            if preset == "iso" and self._motion is not None:
+                self._aim(cameras.course_view(self._motion.position))
+            else:
+                self._aim(cameras.view(preset, self._subject))
 
     def close(self) -> None:
         """Stop playback and the server; the session cannot be used again."""
@@ -228,9 +232,9 @@ class SceneSession:
         self._stage.draw_plan(plan, planned)
         if self._motion is not None and terrain.name != self._terrain_name:
             # A new course is looked at afresh; an edited one keeps the user's camera.
-            self._terrain_name = terrain.name
-            self._subject = self._motion.at(0.45 * self._motion.duration).position.copy()
-            self._aim(cameras.view("iso", self._subject))
+            self._terrain_name, self._follow = terrain.name, True
+            self._subject = self._motion.at(self._player.time).position.copy()
+            self._aim(cameras.view("follow", self._subject))
 
     def _frame(self, time: float) -> None:
         """Draw one moment; runs on the player's thread."""
@@ -252,10 +256,13 @@ class SceneSession:
         start.fov = cameras.FIELD_OF_VIEW
         start.position, start.look_at = view.position, view.look_at
         for client in self._server.get_clients().values():
-            with client.atomic():
-                client.camera.fov = cameras.FIELD_OF_VIEW
-                client.camera.position = view.position
-                client.camera.look_at = view.look_at
+            _point(client, view)
+
+    def _welcome(self, client: Any) -> None:
+        """A viewer that comes while the camera follows starts where the robot is by now."""
+        with self._lock:
+            if self._follow and not self._closed:
+                _point(client, cameras.view("follow", self._subject))
 
     def _shift_cameras(self, moved: Any) -> None:
         if float(np.abs(moved).max()) < 1e-6:
@@ -263,6 +270,13 @@ class SceneSession:
         for client in self._server.get_clients().values():
             # Setting the position carries the point looked at along.
             client.camera.position = client.camera.position + moved
+
+
+def _point(client: Any, view: cameras.View) -> None:
+    with client.atomic():
+        client.camera.fov = cameras.FIELD_OF_VIEW
+        client.camera.position = view.position
+        client.camera.look_at = view.look_at
 
 
 def _robot_of(document: Mapping[str, Any]) -> Robot:
