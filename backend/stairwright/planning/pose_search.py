@@ -23,8 +23,8 @@ from .weights import CriticalWeights
 
 Floats = NDArray[np.float64]
 
-CLEARANCE = 0.005  # m between trunk or links and the terrain at a critical pose
-BETWEEN = 0.002  # m between trunk or links and the terrain on the way between critical poses
+CLEARANCE = 0.012  # m between trunk or links and the terrain at a critical pose
+BETWEEN = 0.004  # m, the same between critical poses, where room is scarce
 APART = 0.006  # m between front and rear leg
 WANTED = 0.05  # m of CoM margin beyond which other things decide
 GRID = 0.05  # m between the rear wheel places that are tried
@@ -32,7 +32,7 @@ ENOUGH = 3  # poses with the room wanted; then the search ends
 TRIES = 4  # places that the slower solvers are tried at where the fast one finds nothing
 GRIP = 0.9  # of the friction angle: steeper ground does not hold a resting wheel alone
 TURN = 0.05  # 1/rad^2; what turning the joints weighs against room for the CoM
-_NEAREST = np.array([100.0, 100.0, 10.0, 0.05, 0.05, 0.05, 0.05])  # 1/m^2, 1/rad^2
+_NEAREST = np.array([100.0, 30.0, 3.0, 0.05, 0.05, 0.05, 0.05])  # 1/m^2, 1/rad^2
 _FACE = 2e-3  # m past a corner, where the face ahead alone carries the wheel
 _BESIDE = 0.35  # m of ground before the rear and after the front wheel that legs can meet
 
@@ -190,14 +190,18 @@ class PoseSearch:
         """
         lower, upper = self._lower.copy(), self._upper.copy()
         lower[7:] = upper[7:] = wheels
-        bounds = Bounds(lower, upper, BETWEEN, APART, -np.inf)
         window, size = self._window(*wheels)
         wanted = np.concatenate([trunk, q])
         parameters = np.concatenate([wanted, _NEAREST, self._dimensions, window])
         starts = [np.concatenate([wanted, wheels])]
         if start is not None:
             starts.insert(0, start)
-        return self._solvers[size].solve(parameters, bounds, starts)
+        for clearance_wanted in (CLEARANCE, BETWEEN):
+            bounds = Bounds(lower, upper, clearance_wanted, APART, -np.inf)
+            solution = self._solvers[size].solve(parameters, bounds, starts, patient=False)
+            if solution.solved:
+                break
+        return solution
 
     def bounds(self, place: Place, rear: float) -> Bounds:
         """Bounds with the front wheel fixed and the rear one free within half a grid step."""

@@ -1,0 +1,52 @@
+"""Where the centre of mass passes between critical poses so that the ground holds the robot."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.terrain.wheel_path import WheelPath
+
+from .supports import support
+
+Floats = NDArray[np.float64]
+
+ROOM = 0.03  # m of CoM margin wanted on the way
+EASE = 0.06  # m of progress over which the CoM moves aside before and after it must
+
+
+def com_ways(path: WheelPath, friction: float, wheels: Floats) -> tuple[Floats, Floats]:
+    """Least and largest x (n,) of the CoM with room to spare [m]; infinite where nothing holds.
+
+    Args:
+        path: Wheel-centre curve.
+        friction: Between wheels and terrain.
+        wheels: (n, 2) arc lengths of front and rear wheels.
+    """
+    low, high = np.empty(len(wheels)), np.empty(len(wheels))
+    for i, (front, rear) in enumerate(wheels):
+        a, b = support(path, float(front), float(rear)).com_interval(friction)
+        room = min(ROOM, (b - a) / 2)
+        # Where no CoM is held at all (both wheels on one wall), moving it is of no use.
+        low[i], high[i] = (a + room, b - room) if a <= b else (-np.inf, np.inf)
+    return low, high
+
+
+def eased_shift(progress: Floats, com: Floats, low: Floats, high: Floats) -> Floats:
+    """Smooth shift (n,) of `com` that brings it between `low` and `high` wherever it can [m].
+
+    What is missing is spread to `EASE` before and behind, then averaged over the same window, so
+    the shift is nowhere smaller than what is missing, unless both sides ask.
+    """
+    ahead = _eased(progress, np.maximum(low - com, 0.0))
+    back = _eased(progress, np.maximum(com - high, 0.0))
+    shift: Floats = np.clip(ahead - back, low - com, high - com)
+    return shift
+
+
+def _eased(progress: Floats, missing: Floats) -> Floats:
+    first = np.searchsorted(progress, progress - EASE)
+    last = np.searchsorted(progress, progress + EASE, side="right")
+    most = np.array([missing[a:b].max() for a, b in zip(first, last, strict=True)])
+    mean = np.array([most[a:b].mean() for a, b in zip(first, last, strict=True)])
+    return mean
