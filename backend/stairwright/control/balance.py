@@ -16,6 +16,8 @@ Floats = NDArray[np.float64]
 
 # Larger accelerations are not asked for: a far-away set point must not throw the robot.
 MAX_ACCELERATION = 3.5  # m/s^2, along x
+CONTROL_PERIOD = 0.002  # s
+MAX_LEARNT = 15.0  # rad/s^2 that the pitch integral may add
 
 
 def desired_wrench(
@@ -25,17 +27,24 @@ def desired_wrench(
     drift: Floats,
     state: Measurement,
     target: Setpoint,
+    learnt: float = 0.0,
 ) -> Floats:
     """(3,) ``b_des`` of eqs 9-10.
 
     `offset` and `drift` (2,) are desired minus measured position [m] and velocity [m/s] of the
-    body's centre.
+    body's centre; `learnt` [rad/s^2] is what the pitch integral adds.
     """
     acceleration = settings.com_stiffness * offset + settings.com_damping * drift
     acceleration[0] = np.clip(acceleration[0], -MAX_ACCELERATION, MAX_ACCELERATION)
-    spin = settings.pitch_stiffness * (target.pitch - state.pitch)
+    spin = learnt + settings.pitch_stiffness * (target.pitch - state.pitch)
     spin += settings.pitch_damping * (target.pitch_rate - state.pitch_rate)
     return wrench(robot.mass, state.inertia, acceleration, spin)
+
+
+def learn(settings: ControllerSettings, learnt: float, state: Measurement, goal: float) -> float:
+    """The pitch integral [rad/s^2] one control step on, bounded."""
+    learnt += CONTROL_PERIOD * settings.pitch_integral * (goal - state.pitch)
+    return min(max(learnt, -MAX_LEARNT), MAX_LEARNT)
 
 
 def force_cost(

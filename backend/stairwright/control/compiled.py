@@ -25,6 +25,7 @@ Floats = NDArray[np.float64]
 
 _MAX_ACCELERATION = balance.MAX_ACCELERATION
 _GRAVITY = rigid_body.GRAVITY
+_PERIOD, _MAX_LEARNT = balance.CONTROL_PERIOD, balance.MAX_LEARNT
 _Q, _PITCH, _COM, _FORCE = 2, 6, 7, 22
 
 _NAMES = (
@@ -56,6 +57,7 @@ _NAMES = (
     "com_damping",
     "pitch_stiffness",
     "pitch_damping",
+    "pitch_integral",
     "force_weight",
     "moment_weight",
     "alpha",
@@ -117,12 +119,14 @@ def contact_control(
     yaw_rate: float,
     places: Floats,
     forces: Floats,
+    learnt: Floats,
     torques: Floats,
 ) -> None:
-    """Torques (12,) before the motors' limits; updates `places` (4,) and `forces` (8,) in place.
+    """Torques (12,) before the motors' limits; updates the memory in place.
 
     `record` is of `parameters`, `pieces` and `corners` of the `WheelPath`, `qpos` (19,) and `qvel`
     (18,) are measured, `target` (26,) is a row in the order of `setpoint`, `yaw_rate` is commanded.
+    The memory is `places` (4,), `forces` (8,) and `learnt` (1,).
     """
     p = record[0]
     R = p.radius
@@ -196,7 +200,9 @@ def contact_control(
     ax = min(max(ax, -_MAX_ACCELERATION), _MAX_ACCELERATION)
     az = p.com_stiffness * (target[_COM + 1] - com_z)
     az += p.com_damping * (target[RATES + _COM + 1] - com_vz)
-    spin = p.pitch_stiffness * (target[_PITCH] - pitch)
+    learnt[0] += _PERIOD * p.pitch_integral * (target[_PITCH] - pitch)
+    learnt[0] = min(max(learnt[0], -_MAX_LEARNT), _MAX_LEARNT)
+    spin = learnt[0] + p.pitch_stiffness * (target[_PITCH] - pitch)
     spin += p.pitch_damping * (target[RATES + _PITCH] - sy)
     S = (p.force_weight, p.force_weight, p.moment_weight)
     b = (S[0] * p.mass * ax, S[1] * p.mass * (az + _GRAVITY), S[2] * inertia * spin)

@@ -75,10 +75,19 @@ class ControllerSettings(Model):
         8.0, 0.0, 80.0, "1/s", "CoM damping", "K_d of eq 9, position", "log"
     )
     pitch_stiffness: float = _number(
-        100.0, 0.0, 1000.0, "1/s²", "Pitch stiffness", "K_p of eq 9, pitch", "log"
+        200.0, 0.0, 1000.0, "1/s²", "Pitch stiffness", "K_p of eq 9, pitch", "log"
     )
     pitch_damping: float = _number(
-        10.0, 0.0, 100.0, "1/s", "Pitch damping", "K_d of eq 9, pitch", "log"
+        14.0, 0.0, 100.0, "1/s", "Pitch damping", "K_d of eq 9, pitch", "log"
+    )
+    pitch_integral: float = _number(
+        300.0,
+        0.0,
+        2000.0,
+        "1/s³",
+        "Pitch integral",
+        "Learns a moment that the model does not know, e.g. of a shifted load (form contact)",
+        "linear",
     )
     force_weight: float = _number(
         1.0, 0.001, 100.0, "1", "Force task", "S of eq 13 for the force rows", "log"

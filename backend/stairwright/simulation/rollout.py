@@ -115,6 +115,7 @@ class _Run:
         self.clock = np.array([self.track.start, 0.0, 0.0])
         self.places = np.full(4, np.nan)
         self.forces = np.tile([0.0, robot.mass * 9.81 / 4], 4)
+        self.learnt = np.zeros(1)
         self.target = np.zeros(self.track.rows.shape[1])
         self.wanted = np.zeros(12)
         self.score = np.zeros(score.SCORES)
@@ -181,15 +182,8 @@ class _Run:
         ground = (self.record, self.path.pieces, self.path.corners)
         course = (track.start, track.step, track.rows, track.speeds, self.settings.leash)
         common: tuple[Any, ...] = (*ground, *course, moving, self.dt, qpos, qvel)
-        memory: tuple[Any, ...] = (
-            self.clock,
-            self.places,
-            self.forces,
-            self.target,
-            self.wanted,
-            ctrl,
-            self.score,
-        )
+        memory: tuple[Any, ...] = (self.clock, self.places, self.forces, self.learnt, self.target)
+        memory = (*memory, self.wanted, ctrl, self.score)
         for _ in range(CHUNK):
             if not exact:
                 seen_qpos, seen_qvel = self.sensors.sense(qpos, qvel)

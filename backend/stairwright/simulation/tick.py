@@ -80,6 +80,7 @@ def tick(
     clock: Floats,
     places: Floats,
     forces: Floats,
+    learnt: Floats,
     target: Floats,
     wanted: Floats,
     ctrl: Floats,
@@ -92,7 +93,17 @@ def tick(
     """
     advance(start, step, rows, speeds, leash, places, moving, dt, clock, target)
     contact_control(
-        record, pieces, corners, sensed_qpos, sensed_qvel, target, 0.0, places, forces, wanted
+        record,
+        pieces,
+        corners,
+        sensed_qpos,
+        sensed_qvel,
+        target,
+        0.0,
+        places,
+        forces,
+        learnt,
+        wanted,
     )
     limit_torques(record, qvel[6:], wanted, ctrl)
     keep_score(qpos, qvel, ctrl, target, dt, score)
