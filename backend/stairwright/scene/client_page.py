@@ -24,7 +24,8 @@ canvas[data-engine]
 [data-mantine-color-scheme="light"] canvas[data-engine]
   { background: radial-gradient(120% 90% at 50% 15%, #ffffff 0%, #f4f7f9 55%, #e6ebef 100%); }
 html[data-embedded] [data-floating-window], html[data-embedded] [data-dock-group],
-html[data-embedded] .mantine-Paper-root, /* the panel of frames narrower than a phone held upright */
+/* in frames narrower than a phone the panel is a sheet of another kind */
+html[data-embedded] .mantine-Paper-root,
 html[data-embedded] .mantine-Notifications-root { display: none !important; }
 """
 

@@ -40,7 +40,8 @@ class Panel:
         self._build_layers()
         self._weights_folder = self._gui.add_folder("Weights", expand_by_default=False)
         self._weights_folder.visible = False
-        self._plots = TrackingPlots(self._gui, self._gui.add_folder("Tracking"))
+        self._tracking = self._gui.add_folder("Tracking")
+        self._plots = TrackingPlots(self._gui, self._tracking)
 
     def show(
         self,
@@ -54,6 +55,8 @@ class Panel:
         self._slider.disabled = motion is None
         self._slider.max = max(math.ceil(100 * duration) / 100, 0.01)
         self._summary.content = _summary(plan, rollout)
+        # Only a rollout has something to track; plans change too often while a vertex is dragged.
+        self._tracking.visible = rollout is not None
         self._plots.show(rollout, motion, colours)
         if plan is not None and self._replan is not None:
             self._build_weights(plan["method"], plan.get("weights", {}))

@@ -37,7 +37,8 @@ LAYERS = {
 }
 HALF_WIDTH = 0.5  # m, of the extruded terrain
 DEPTH = 0.25  # m, of solid below its lowest point
-MAX_GHOSTS = 12
+GHOST_SPACING = 0.20  # m between trunks; nearer ghosts hide one another
+MAX_GHOSTS = 20
 METRES_PER_NEWTON = 0.003
 
 
@@ -73,6 +74,8 @@ class Stage:
         self._margins: tuple[Floats, Floats] | None = None  # time, CoM margin
         self._problem: Mapping[str, Any] | None = None
         self._problem_from = np.inf
+        self._ground: object = None  # what the terrain's and the grid's nodes were drawn from
+        self._grid: object = None
         self._points = Instances(scene, "/collision_points", shapes.sphere(0.0075, 6, 8))
         self._ball = Instances(scene, "/com/ball", shapes.sphere(0.017, 8, 14))
         self._marks = Bars(scene, "/com/marks", 0.004)
@@ -119,7 +122,11 @@ class Stage:
         floor = 0.0
         if self._terrain is not None:
             floor = float(self._terrain.vertices[:, 1].min()) - DEPTH
-        centre = 0.0 if self._terrain is None else float(self._terrain.vertices[:, 0].mean())
+        centre = 0.0 if self._terrain is None else round(float(self._terrain.vertices[:, 0].mean()))
+        drawn = (c, floor, centre)
+        if drawn == self._grid:
+            return
+        self._grid = drawn
         self._keep(
             "grid",
             "/grid",
@@ -145,11 +152,17 @@ class Stage:
         """The extruded profile, its faces tinted by friction; None clears it."""
         self._terrain = terrain
         if terrain is None:
+            self._ground = None
             self._drop("terrain")
             self.draw_grid()
             return
+        mu = terrain.friction if friction is None else friction
+        ground = (terrain.hash, mu, self.colours)
+        if ground == self._ground:
+            return
+        self._ground = ground
         solid = shapes.extrude(terrain.vertices, HALF_WIDTH, DEPTH)
-        tints = self.colours.terrain(terrain.friction if friction is None else friction)
+        tints = self.colours.terrain(mu)
         for name, mesh, tint in zip(("treads", "risers", "flanks"), solid[:3], tints, strict=True):
             node = f"/terrain/{name}"
             handle = self._scene.add_mesh_simple(
@@ -179,8 +192,10 @@ class Stage:
     def draw_plan(self, plan: Mapping[str, Any] | None, motion: Motion | None) -> None:
         """Ghosts of the key poses, the paths of wheel centres and CoM, and the problem."""
         self._problem, self._problem_from, self._margins = None, np.inf, None
-        for layer in ("wheel_path", "com_path", "problem"):
-            self._drop(layer)
+        self._drop("problem")
+        if plan is None or motion is None:
+            self._drop("wheel_path")
+            self._drop("com_path")
         if self._ghosts is not None and (plan is None or motion is None or not plan["critical"]):
             self._ghosts.remove()
         if plan is None or motion is None or self._robot is None:
@@ -193,7 +208,8 @@ class Stage:
         self._draw_ghosts(plan, motion, times)
         if plan.get("problem") is not None:
             self._problem = plan["problem"]
-            self._problem_from = motion.duration - 1e-3
+            # The paper's and the nominal method list poses beyond the one that fails.
+            self._problem_from = motion.time_at(plan["problem"]["progress"]) - 1e-3
             self._draw_problem(plan["problem"])
 
     # --- every frame ---------------------------------------------------------------------------
@@ -260,10 +276,7 @@ class Stage:
     def _draw_ghosts(self, plan: Mapping[str, Any], motion: Motion, times: Floats) -> None:
         if self._robot is None or self._ghosts is None or not plan["critical"]:
             return
-        keys = list(plan["critical"])
-        if len(keys) > MAX_GHOSTS:
-            keys = [keys[i] for i in np.linspace(0, len(keys) - 1, MAX_GHOSTS).round().astype(int)]
-        moments = [motion.at(float(times[k])) for k in keys]
+        moments = _apart([motion.at(float(times[k])) for k in plan["critical"]], GHOST_SPACING)
         bodies = place(
             self._robot,
             np.array([m.position for m in moments]),
@@ -434,6 +447,17 @@ class Stage:
 
 def _rows(colour: tuple[int, int, int], count: int) -> NDArray[np.uint8]:
     return np.tile(np.array(colour, np.uint8), (count, 1))
+
+
+def _apart(moments: list[Moment], spacing: float) -> list[Moment]:
+    """First and last, and of those between at most `MAX_GHOSTS` that stand `spacing` apart."""
+    kept: list[Moment] = []
+    for moment in moments:
+        if not kept or np.linalg.norm(moment.position - kept[-1].position) >= spacing:
+            kept.append(moment)
+    if len(kept) > MAX_GHOSTS:
+        kept = [kept[i] for i in np.linspace(0, len(kept) - 1, MAX_GHOSTS).round().astype(int)]
+    return kept
 
 
 def _dashes(course: Floats, dash: float = 0.022) -> Floats:

@@ -20,7 +20,7 @@ class Curve(NamedTuple):
     """One pair of curves over time [degrees]; `leg` 0 front, 1 rear, None the trunk."""
 
     desired: Floats
-    actual: Floats | None
+    actual: Floats
     leg: int | None
 
 
@@ -31,36 +31,24 @@ class Chart(NamedTuple):
     curves: list[Curve]
 
 
-def charts(rollout: Mapping[str, Any] | None, motion: Motion) -> tuple[Floats, list[Chart]]:
-    """Times (n,) and what to plot over them: of the rollout, else of the planned motion."""
-    grid = np.linspace(0.0, motion.duration, SAMPLES)
+def charts(rollout: Mapping[str, Any], duration: float) -> tuple[Floats, list[Chart]]:
+    """Times (n,) and what to plot over them."""
+    grid = np.linspace(0.0, duration, SAMPLES)
+    series = rollout["series"]
+    time = np.asarray(series["time"], float)
 
-    def over(time: Any, values: Any) -> Floats:
-        found: Floats = np.interp(grid, np.asarray(time, float), np.asarray(values, float))
+    def over(values: Floats) -> Floats:
+        found: Floats = np.interp(grid, time, values * DEGREES)
         return found
 
-    if rollout is None:
-        w, y = motion.quaternion[:, 0], motion.quaternion[:, 2]
-        pitch = Curve(over(motion.time, -2 * np.arctan2(y, w) * DEGREES), None, None)
+    asked, reached = (np.asarray(series[name], float) for name in ("q_desired", "q"))
+    pitch, wanted = (-np.asarray(series[name], float) for name in ("pitch", "pitch_desired"))
 
-        def joint(k: int, leg: int) -> Curve:
-            return Curve(over(motion.time, motion.q[:, k] * DEGREES), None, leg)
-    else:
-        series = rollout["series"]
-        time = series["time"]
-        asked = np.asarray(series["q_desired"], float) * DEGREES
-        reached = np.asarray(series["q"], float) * DEGREES
-        pitch = Curve(
-            over(time, -np.asarray(series["pitch_desired"], float) * DEGREES),
-            over(time, -np.asarray(series["pitch"], float) * DEGREES),
-            None,
-        )
-
-        def joint(k: int, leg: int) -> Curve:
-            return Curve(over(time, asked[:, k]), over(time, reached[:, k]), leg)
+    def joint(k: int, leg: int) -> Curve:
+        return Curve(over(asked[:, k]), over(reached[:, k]), leg)
 
     return grid, [
-        Chart("Pitch, nose-up °", [pitch]),
+        Chart("Pitch, nose-up °", [Curve(over(wanted), over(pitch), None)]),
         Chart("Thigh ° · front, rear", [joint(0, 0), joint(6, 1)]),
         Chart("Calf ° · front, rear", [joint(1, 0), joint(7, 1)]),
     ]
@@ -83,9 +71,9 @@ class TrackingPlots:
         for handle in self._handles:
             handle.remove()
         self._handles, self._charts, self._shown = [], [], -1
-        if motion is None:
+        if rollout is None or motion is None:
             return
-        self._grid, self._charts = charts(rollout, motion)
+        self._grid, self._charts = charts(rollout, motion.duration)
         with self._folder:
             for chart in self._charts:
                 self._handles.append(
@@ -106,7 +94,7 @@ class TrackingPlots:
 
     def tick(self, time: float) -> None:
         """Show the actual curves up to `time`."""
-        if not self._charts or self._charts[0].curves[0].actual is None:
+        if not self._charts:
             return
         upto = int(np.searchsorted(self._grid, time, side="right"))
         if upto == self._shown:
@@ -118,11 +106,9 @@ class TrackingPlots:
     def _data(self, chart: Chart, upto: int) -> tuple[Floats, ...]:
         data = [self._grid]
         for curve in chart.curves:
-            data.append(curve.desired)
-            if curve.actual is not None:
-                seen = curve.actual.copy()
-                seen[upto:] = np.nan
-                data.append(seen)
+            seen = curve.actual.copy()
+            seen[upto:] = np.nan
+            data += [curve.desired, seen]
         return tuple(data)
 
 
@@ -133,8 +119,7 @@ def _series(chart: Chart, colours: Palette) -> tuple[dict[str, Any], ...]:
         tint = colours.path if curve.leg is None else (colours.front, colours.rear)[curve.leg]
         # Desired is a wide pale band and actual a thin line on it: legible where they coincide.
         rows.append({"label": "desired", "stroke": _css(tint, 0.35), "width": 5.0, **plain})
-        if curve.actual is not None:
-            rows.append({"label": "actual", "stroke": _css(tint, 1.0), "width": 1.5, **plain})
+        rows.append({"label": "actual", "stroke": _css(tint, 1.0), "width": 1.5, **plain})
     return tuple(rows)
 
 
