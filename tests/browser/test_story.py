@@ -59,15 +59,15 @@ def test_draw_plan_run_and_download(product: Product, server: Any, tmp_path: Pat
     rows = _rows(plan_csv.read_text())
     assert len(rows) == len(plan["poses"])
     for row, pose in zip(rows, plan["poses"], strict=True):
-        assert float(row["x_c"]) == pytest.approx(pose["x_c"], abs=1e-6)
-        assert float(row["pitch"]) == pytest.approx(pose["pitch"], abs=1e-6)
+        assert float(row["x_c_m"]) == pytest.approx(pose["x_c"], abs=1e-6)
+        assert float(row["pitch_rad"]) == pytest.approx(pose["pitch"], abs=1e-6)
 
     rollout = httpx.get(f"{server.url}/api/v1/rollouts/{rollout_id}").json()
     assert rollout["outcome"] == outcome
     series = _rows(_download(product, "rollouts", "CSV", tmp_path).read_text())
     assert len(series) == len(rollout["series"]["time"])
-    assert float(series[-1]["time"]) == pytest.approx(rollout["series"]["time"][-1], abs=1e-6)
-    assert float(series[-1]["pitch"]) == pytest.approx(rollout["series"]["pitch"][-1], abs=1e-6)
+    assert float(series[-1]["time_s"]) == pytest.approx(rollout["series"]["time"][-1], abs=1e-6)
+    assert float(series[-1]["pitch_rad"]) == pytest.approx(rollout["series"]["pitch"][-1], abs=1e-6)
 
 
 def test_every_export_downloads(product: Product, tmp_path: Path) -> None:

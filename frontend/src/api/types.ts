@@ -1,73 +1,42 @@
-/** The documents that the page reads, as the REST contract words them. SI units and radians. */
+/**
+ * The documents that the page reads. Generated from the service's OpenAPI (`npm run types`), with
+ * pairs of numbers as pairs; what OpenAPI leaves open is written out here. SI units and radians.
+ */
+
+import type { components } from "./schema";
+
+type Schemas = components["schemas"];
 
 export type Vec2 = [number, number];
 
-export interface TerrainDocument {
+export type TerrainDocument = Omit<Schemas["Terrain"], "points" | "schema"> & {
   schema: string;
-  name: string;
-  description: string;
   points: Vec2[];
-  friction: number;
-  start?: number | null;
-  goal?: number | null;
   readonly?: boolean;
-}
+};
 
-/** Only what the page draws; the rest of the robot file passes through untouched. */
-export interface RobotDocument {
-  name: string;
-  description?: string;
-  [field: string]: unknown;
-}
+/** Only what the page draws is looked at; the rest of the robot file passes through untouched. */
+export type RobotDocument = Schemas["Robot"];
+export type Method = Schemas["PlanRequest"]["method"];
+export type Margins = Schemas["Margins"];
 
-export type Method = "path" | "critical" | "nominal";
-
-export interface Margins {
-  clearance: number;
-  com: number;
-  friction: number;
-  torque: number;
-}
-
-export interface Pose {
-  progress: number;
-  time?: number;
-  x_c: number;
-  z_c: number;
-  pitch: number;
-  q: number[];
+export type Pose = Omit<
+  Schemas["Pose"],
+  "wheels" | "contacts" | "com" | "collision_points" | "forces"
+> & {
   wheels: Vec2[];
-  wheel_progress: number[];
   contacts: Vec2[];
   com: Vec2;
   collision_points: Vec2[];
-  margins: Margins;
-}
+};
 
-export interface Problem {
-  kind: string;
-  at: Vec2;
-  progress: number;
-  message: string;
-  limit?: { needed: number; available: number; quantity?: string; unit?: string } | null;
-}
+export type Problem = Omit<Schemas["Problem"], "at"> & { at: Vec2 };
 
-export interface Plan {
-  schema: string;
-  id: string;
-  method: Method;
+export type Plan = Omit<Schemas["Plan"], "terrain" | "problem" | "poses"> & {
   terrain: TerrainDocument;
-  robot: string;
-  robot_description?: RobotDocument | null;
-  friction: number;
-  status: "feasible" | "infeasible";
-  problem: Problem | null;
+  problem?: Problem | null;
   poses: Pose[];
-  critical: number[];
-  timing: { total: number; [field: string]: unknown };
-  solve_time: number;
-  certificate?: Record<string, unknown> | null;
-}
+};
 
 export type Outcome = "success" | "fell" | "stuck" | "collided" | "diverged" | "timeout";
 
@@ -109,16 +78,7 @@ export interface Rollout {
   series: Series;
 }
 
-export type JobState = "queued" | "running" | "done" | "failed" | "cancelled";
-
-export interface Job {
-  id: string;
-  state: JobState;
-  progress: number;
-  eta: number | null;
-  result: string | null;
-  error: ProblemDetail | null;
-}
+export type Job = Omit<Schemas["JobDocument"], "error"> & { error: ProblemDetail | null };
 
 /** RFC 9457. */
 export interface ProblemDetail {

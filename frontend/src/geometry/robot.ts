@@ -11,7 +11,8 @@ export interface RobotShape {
   wheel: number;
   /** Peak torques [Nm]. */
   limit: { leg: number; wheel: number };
-  nominalHeight: number;
+  /** In trunk sizes from its centre, and as fractions of the links. */
+  collisionPoints: { trunk: Vec2[]; thigh: number[]; calf: number[] };
 }
 
 /** Planar configuration: trunk point, pitch about +y, [front thigh, calf, rear thigh, calf]. */
@@ -28,31 +29,22 @@ export interface Skeleton {
   legs: [Vec2[], Vec2[]];
 }
 
-interface RobotFile {
-  name: string;
-  nominal_height?: number;
-  trunk: { size: [number, number, number] };
-  hips: { front: Vec2; rear: Vec2 };
-  thigh: { length: number };
-  calf: { length: number };
-  wheel: { radius: number };
-  actuators?: { leg?: { torque: number }; wheel?: { torque: number } };
-}
+const pair = (v: readonly number[]): Vec2 => [v[0]!, v[1]!];
 
-export function robotShape(document: RobotDocument): RobotShape {
-  const file = document as unknown as RobotFile;
+export function robotShape(file: RobotDocument): RobotShape {
   return {
     name: file.name,
-    trunk: { length: file.trunk.size[0], height: file.trunk.size[2] },
-    hips: [file.hips.front, file.hips.rear],
+    trunk: { length: file.trunk.size[0]!, height: file.trunk.size[2]! },
+    hips: [pair(file.hips.front), pair(file.hips.rear)],
     thigh: file.thigh.length,
     calf: file.calf.length,
     wheel: file.wheel.radius,
-    limit: {
-      leg: file.actuators?.leg?.torque ?? Number.NaN,
-      wheel: file.actuators?.wheel?.torque ?? Number.NaN,
+    limit: { leg: file.actuators.leg.torque, wheel: file.actuators.wheel.torque },
+    collisionPoints: {
+      trunk: file.collision_points.trunk.map(pair),
+      thigh: file.collision_points.thigh,
+      calf: file.collision_points.calf,
     },
-    nominalHeight: file.nominal_height ?? 0.3,
   };
 }
 

@@ -3,7 +3,7 @@
 import uPlot from "uplot";
 import { fixed } from "../geometry/format";
 import { decimate } from "./decimate";
-import type { Color, Line, Panel } from "./panels";
+import type { Color, Line, Panel } from "./lines";
 
 export const LEFT = 34;
 export const RIGHT = 8;

@@ -2,93 +2,21 @@
 
 import type { Plan, Rollout } from "../api/types";
 import { degrees, fixed } from "../geometry/format";
-import { interpolate, planar, poseTimes } from "../geometry/frames";
+import { interpolate, planar } from "../geometry/frames";
 import { MARGINS, type MarginName } from "../profile-editor/margins";
-
-export type LineKind = "band" | "line" | "dash";
-export type Color = "tx" | "tx2" | "tx3" | "front" | "rear" | "third" | "fourth";
-
-export interface Line {
-  label: string;
-  color: Color;
-  kind: LineKind;
-  values: Float64Array;
-  /** Shown as a number in the header: its short name and digits. */
-  read?: { name: string; digits: number };
-}
-
-export interface Panel {
-  id: PanelId;
-  title: string;
-  unit: string;
-  time: Float64Array;
-  /** One or two plots above each other on one time axis. */
-  halves: Line[][];
-  /** Least spans of the halves' value axes. */
-  spans: number[];
-  caption?: string;
-  limit?: number;
-  range?: [number, number];
-  /** Where B ended early. */
-  cross?: { time: number; value: number };
-}
-
-export interface Source {
-  plan: Plan | null;
-  run: Rollout | null;
-  runB: Rollout | null;
-  legLimit: number;
-  wheelLimit: number;
-}
-
-export const PANELS = {
-  pitch: "Pitch, nose-up",
-  thigh: "Thigh",
-  calf: "Calf",
-  torque: "Peak torque",
-  margins: "Margins",
-  force: "Contact force",
-  wheel: "Wheel torque",
-} as const;
-export type PanelId = keyof typeof PANELS;
+import {
+  type Color,
+  desired,
+  type Line,
+  PANELS,
+  type Panel,
+  type PanelId,
+  planned,
+  type Source,
+  sampled,
+} from "./lines";
 
 const NOSE_UP = -1;
-
-/** Time axis: the rollout's samples, then the plan's where the robot never got to. */
-export function timeAxis({ plan, run }: Source): Float64Array {
-  if (!run) return Float64Array.from(plan ? poseTimes(plan) : []);
-  const end = run.series.time[run.series.time.length - 1] ?? 0;
-  const tail =
-    run.outcome === "success" || !plan ? [] : poseTimes(plan).filter((t) => t > end + 1e-6);
-  return Float64Array.from([...run.series.time, ...tail]);
-}
-
-/** Values at the rollout's samples, NaN where it has none. */
-function sampled(time: Float64Array, run: Rollout, value: (i: number) => number): Float64Array {
-  const n = run.series.time.length;
-  return time.map((_, i) => (i < n ? value(i) : Number.NaN));
-}
-
-function planned(time: Float64Array, plan: Plan, value: (i: number) => number): Float64Array {
-  const times = poseTimes(plan);
-  const values = plan.poses.map((_, i) => value(i));
-  const end = times[times.length - 1] ?? 0;
-  return time.map((t) => (t > end + 1e-9 ? Number.NaN : interpolate(times, values, t)));
-}
-
-/** What was asked for: by the rollout's controller while it ran, by the plan after that. */
-function desired(
-  time: Float64Array,
-  source: Source,
-  ofRun: (run: Rollout, i: number) => number,
-  ofPlan: (plan: Plan, i: number) => number,
-): Float64Array {
-  const { plan, run } = source;
-  const rest = plan ? planned(time, plan, (i) => ofPlan(plan, i)) : time.map(() => Number.NaN);
-  if (!run) return rest;
-  const n = run.series.time.length;
-  return time.map((_, i) => (i < n ? ofRun(run, i) : rest[i]!));
-}
 
 function pitchPanel(source: Source, time: Float64Array): Panel {
   const { run, runB } = source;

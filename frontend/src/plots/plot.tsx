@@ -10,7 +10,7 @@ import { theme } from "../state/view";
 import { Icon } from "../ui/icon";
 import { Menu } from "../ui/menu";
 import { Chart, LEFT, palette, RIGHT, type Tint } from "./chart";
-import type { Panel } from "./panels";
+import type { Panel } from "./lines";
 import { timeWindow, zoomTime } from "./window";
 
 interface PlotProps {

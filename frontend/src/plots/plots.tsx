@@ -7,7 +7,8 @@ import { activity, progress, run, runB, runPlan, showProgress } from "../state/r
 import { compare, robot } from "../state/setup";
 import { isNarrow } from "../state/view";
 import type { Tint } from "./chart";
-import { buildPanel, type PanelId, type Source, timeAxis } from "./panels";
+import { type PanelId, type Source, timeAxis } from "./lines";
+import { buildPanel } from "./panels";
 import { Plot } from "./plot";
 
 /** In the order of the row. On narrow pages the last ones fall away: the strip tells the margins. */

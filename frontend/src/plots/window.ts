@@ -2,9 +2,17 @@
 
 import { computed, effect, signal } from "@preact/signals";
 import { plannedEnd } from "../state/playback";
+import { activity, run, runPlan } from "../state/rollouts";
 
 const chosen = signal<[number, number] | null>(null);
-const whole = computed<[number, number]>(() => [0, Math.max(plannedEnd.value, 0.5)]);
+/** A rollout of the previous plan keeps its own axis. */
+const end = computed(() => {
+  const times = activity.value === "running" ? undefined : run.value?.series.time;
+  if (!times) return plannedEnd.value;
+  const planned = run.value?.outcome === "success" ? 0 : (runPlan.value?.timing.total ?? 0);
+  return Math.max(times[times.length - 1] ?? 0, planned);
+});
+const whole = computed<[number, number]>(() => [0, Math.max(end.value, 0.5)]);
 
 export const timeWindow = {
   get value(): [number, number] {

@@ -71,7 +71,7 @@ export function Obstruction() {
       >
         <h4>
           <Icon name="warning" />
-          {problem.message}
+          {problem.message.charAt(0).toUpperCase() + problem.message.slice(1)}
         </h4>
         <dl>
           <dt>where</dt>

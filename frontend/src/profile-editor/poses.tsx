@@ -2,7 +2,7 @@
 
 import { computed } from "@preact/signals";
 import type { Plan, Vec2 } from "../api/types";
-import { planFrame } from "../geometry/frames";
+import { planFrame, runFrame } from "../geometry/frames";
 import {
   type Frame,
   nearestPart,
@@ -13,6 +13,7 @@ import {
 } from "../geometry/robot";
 import { plan, planB } from "../state/planning";
 import { duration, frame, poseIndex, shownRun, shownTime } from "../state/playback";
+import { runB } from "../state/rollouts";
 import { robot } from "../state/setup";
 import { layers } from "../state/view";
 import { type Projection, projection } from "./viewport";
@@ -222,9 +223,7 @@ export function Current() {
   const to = projection.value;
   const bones = skeleton(shape, now);
   const pose = plan.value?.poses[poseIndex.value];
-  const points = layers.value.has("collision")
-    ? collisionPoints(bones, pose?.collision_points)
-    : null;
+  const points = layers.value.has("collision") ? collisionPoints(shape, bones) : null;
   const rollout = shownRun.value;
   const fallen =
     rollout && rollout.outcome !== "success" && shownTime.value >= duration.value - 0.05;
@@ -239,11 +238,9 @@ export function Current() {
   );
 }
 
-/** The plan's collision points carried over to where the robot is between two poses. */
-function collisionPoints(bones: Skeleton, planned: Vec2[] | undefined): Vec2[] | null {
-  if (!planned) return null;
-  const layout = robot.value && collisionLayout.value;
-  if (!layout) return planned;
+/** The collision points where the robot is now, between two poses too. */
+function collisionPoints(shape: RobotShape, bones: Skeleton): Vec2[] {
+  const layout = shape.collisionPoints;
   const [a, b, , d] = bones.trunk as [Vec2, Vec2, Vec2, Vec2];
   const trunk = layout.trunk.map(
     ([u, v]): Vec2 => [
@@ -262,20 +259,6 @@ function collisionPoints(bones: Skeleton, planned: Vec2[] | undefined): Vec2[] |
   return [...trunk, ...legs];
 }
 
-interface Layout {
-  trunk: Vec2[];
-  thigh: number[];
-  calf: number[];
-}
-
-const collisionLayout = computed<Layout | null>(() => {
-  const document = plan.value?.robot_description as
-    | { collision_points?: Layout }
-    | null
-    | undefined;
-  return document?.collision_points ?? null;
-});
-
 function CentreOfMass({ at, to }: { at: Vec2; to: Projection }) {
   const [x, y] = [to.px(at[0]), to.py(at[1])];
   return (
@@ -286,12 +269,12 @@ function CentreOfMass({ at, to }: { at: Vec2; to: Projection }) {
   );
 }
 
-/** B at the same share of its own time. */
+/** B at the same time: where it cannot go on, it stays behind. */
 function Other() {
   const shown = planB.value;
   const shape = robot.value;
   if (!shown || !shape) return null;
-  const share = duration.value > 0 ? shownTime.value / duration.value : 0;
-  const f = planFrame(shown, share * shown.timing.total);
+  const driven = shownRun.value ? runB.value : null;
+  const f = driven ? runFrame(driven, shownTime.value) : planFrame(shown, shownTime.value);
   return f && <Figure robot={shape} bones={skeleton(shape, f)} to={projection.value} kind="cmp" />;
 }

@@ -89,7 +89,7 @@ async function runOther(): Promise<void> {
   const other = planB.peek();
   failureB.value = null;
   if (!compare.peek() || !other) return;
-  if (other.problem) {
+  if (other.problem && other.poses.length < 2) {
     failureB.value = other.problem.message;
     return;
   }

@@ -1,14 +1,13 @@
 /** The top bar: what is planned, what came of it, and what to do with it. */
 
 import { useState } from "preact/hooks";
-import { fixed } from "../geometry/format";
-import { commit, draft, drawing, isEdited } from "../state/drawing";
+import { drawing, isEdited } from "../state/drawing";
 import { robotName, robots } from "../state/setup";
 import { theme, toggleTheme } from "../state/view";
 import { Icon, Logo } from "../ui/icon";
 import { Menu, MenuItem } from "../ui/menu";
-import { NumberField } from "../ui/number-field";
 import { DownloadMenu } from "./download-menu";
+import { Friction } from "./friction";
 import { PlanPill } from "./plan-pill";
 import { RunButton } from "./run-button";
 import { TerrainMenu } from "./terrain-menu";
@@ -80,45 +79,6 @@ function RobotMenu() {
         ))
       }
     </Menu>
-  );
-}
-
-const LEAST = 0.05;
-const MOST = 2;
-
-function Friction() {
-  const value = drawing.value.friction;
-  const set = (next: number) =>
-    draft({ friction: Math.round(Math.min(MOST, Math.max(LEAST, next)) * 1000) / 1000 });
-  const step = (by: number) => () => {
-    set(drawing.peek().friction + by);
-    commit();
-  };
-  return (
-    <div class="fld box">
-      <small aria-hidden="true">
-        Friction <span class="wide">μ</span>
-      </small>
-      <NumberField
-        label="Friction coefficient"
-        value={value}
-        min={LEAST}
-        max={MOST}
-        step={0.01}
-        format={(v) => fixed(v, 2)}
-        onChange={set}
-        onDone={() => commit()}
-        onCancel={() => commit()}
-      />
-      <span class="stp">
-        <button type="button" tabIndex={-1} aria-label="More friction" onClick={step(0.05)}>
-          <Icon name="down" turn />
-        </button>
-        <button type="button" tabIndex={-1} aria-label="Less friction" onClick={step(-0.05)}>
-          <Icon name="down" />
-        </button>
-      </span>
-    </div>
   );
 }
 

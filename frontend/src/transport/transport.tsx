@@ -2,7 +2,7 @@
 
 import { fixed } from "../geometry/format";
 import { poseTimes } from "../geometry/frames";
-import { PANELS, type PanelId } from "../plots/panels";
+import { PANELS, type PanelId } from "../plots/lines";
 import { shownPanels } from "../plots/plots";
 import { plan } from "../state/planning";
 import {
