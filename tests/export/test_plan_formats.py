@@ -156,6 +156,22 @@ def test_mjcf_poses_hold(plan):
         assert np.abs(data.qpos[7:] - start[7:]).max() < 0.06, i
 
 
+@pytest.mark.slow
+def test_mjcf_poses_of_a_real_climb_hold():
+    """Every tenth pose of the certified path up the paper's highest stair."""
+    import stairwright as sw
+
+    plan = sw.plan("single-stair-036", "a1_wheeled_x")
+    model = mujoco.MjModel.from_xml_string(PLAN_FORMATS["mjcf"].write(plan).decode())
+    data = mujoco.MjData(model)
+    for i in range(0, model.nkey, 10):
+        mujoco.mj_resetDataKeyframe(model, data, i)
+        start = data.qpos.copy()
+        for _ in range(2000):
+            mujoco.mj_step(model, data)
+        assert np.linalg.norm(data.qpos[:3] - start[:3]) < 0.01, i
+
+
 def test_mjcf_masses_are_the_robots(plan):
     model = mujoco.MjModel.from_xml_string(PLAN_FORMATS["mjcf"].write(plan).decode())
     assert model.body_mass.sum() == pytest.approx(plan.robot_description.mass)

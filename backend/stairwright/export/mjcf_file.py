@@ -21,8 +21,12 @@ from .columns import FRAMES, UNITS, plan_arrays
 
 Floats = NDArray[np.float64]
 GRAVITY = 9.81  # m/s^2
-WHEEL_STIFFNESS = 60.0  # Nm/rad; the wheels are braked at the keyframe's angle
-WHEEL_DAMPING = 1.0  # Nm s/rad
+# Servos that hold a pose between two faces must hold the force inside it too: at the robot's own
+# feedback gains the wheels creep by centimetres, at three times those by millimetres.
+STIFFER = 3.0
+WHEEL_STIFFNESS = 180.0  # Nm/rad; the wheels are braked at the keyframe's angle
+WHEEL_DAMPING = 2.0  # Nm s/rad
+FRICTION_STIFFNESS = 10.0  # of friction over normal constraints, against creep at rest
 
 
 def plan_mjcf(plan: Plan) -> bytes:
@@ -30,6 +34,7 @@ def plan_mjcf(plan: Plan) -> bytes:
     robot = plan.robot_description
     spec = build_spec(robot, plan.terrain, plan.friction)
     spec.modelname = "stairwright"
+    spec.option.impratio = FRICTION_STIFFNESS
     stiffness = _make_servos(spec, robot)
     arrays = plan_arrays(plan)
     position, quaternion, joints = spatial.lift(
@@ -62,8 +67,8 @@ def _make_servos(spec: Any, robot: Robot) -> Floats:
     for name in JOINTS:
         wheel = name.endswith("wheel")
         motor = robot.actuators.wheel if wheel else robot.actuators.leg
-        kp = WHEEL_STIFFNESS if wheel else robot.gains.joint_stiffness
-        kv = WHEEL_DAMPING if wheel else robot.gains.joint_damping
+        kp = WHEEL_STIFFNESS if wheel else STIFFER * robot.gains.joint_stiffness
+        kv = WHEEL_DAMPING if wheel else STIFFER**0.5 * robot.gains.joint_damping
         actuator = spec.actuator(name)
         actuator.biastype = mujoco.mjtBias.mjBIAS_AFFINE
         actuator.gainprm[0] = kp
