@@ -24,7 +24,7 @@ def problem(random: np.random.Generator, paired: bool, limit: float = 150.0):
     resting = random.normal(0, 20, 8) + np.tile([0.0, 25.0], 4)
     previous = random.normal(0, 20, 8)
     H, g = balance.force_cost(settings, A, desired, resting, previous)
-    return H, g, *balance.force_limits(settings, random.uniform(0.05, 1.2))
+    return H, g, *balance.force_limits(settings, random.uniform(0.05, 1.2, 4))
 
 
 @pytest.mark.parametrize("solver", [s for s in get_args(Solver) if s != "clarabel"])
@@ -58,8 +58,8 @@ def test_native_is_exact() -> None:
 
 def test_forces_stay_in_the_cones() -> None:
     random = np.random.default_rng(5)
-    settings = ControllerSettings(friction_share=0.8, force_limit=60.0)
-    C, d = balance.force_limits(settings, 0.5)
+    settings = ControllerSettings(force_limit=60.0)
+    C, d = balance.force_limits(settings, np.full(4, 0.4))
     for _ in range(100):
         H, g, _, _ = problem(random, paired=False)
         force = qp.solve("native", H, g, C, d, np.zeros(8)).reshape(4, 2)

@@ -66,15 +66,17 @@ def force_cost(
     return hessian, gradient
 
 
-def force_limits(settings: ControllerSettings, friction: float) -> tuple[Floats, Floats]:
+def force_limits(settings: ControllerSettings, friction: Floats) -> tuple[Floats, Floats]:
     """``C F <= d`` (eq 14): friction cones and saturation, C (16, 8) and d (16,).
 
     Four rows a wheel: forward and backward friction, normal force at least 0, at most the limit.
+    `friction` (4,) is what each wheel may use.
     """
-    mu = settings.friction_share * friction
-    block = np.array([[1.0, -mu], [-1.0, -mu], [0.0, -1.0], [0.0, 1.0]])
-    bound = np.array([0.0, 0.0, 0.0, settings.force_limit])
-    return np.kron(np.eye(4), block), np.tile(bound, 4)
+    C = np.zeros((16, 8))
+    for w, mu in enumerate(friction):
+        block = np.array([[1.0, -mu], [-1.0, -mu], [0.0, -1.0], [0.0, 1.0]])
+        C[4 * w : 4 * w + 4, 2 * w : 2 * w + 2] = block
+    return C, np.tile([0.0, 0.0, 0.0, settings.force_limit], 4)
 
 
 def force_torques(state: Measurement, points: Floats, forces: Floats) -> Floats:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from stairwright.robot.description import Robot
 
 from . import balance, rigid_body
-from .contact import face_normal, locate
+from .contact import locate, support, wheel_traction
 from .controller import gains
 from .qp import solve_native
 from .setpoint import RATES
@@ -178,7 +178,8 @@ def contact_control(
 
     # World points (x, z), faces, and the map from contact forces to the body's wrench (eqs 3-8).
     world = np.empty((4, 6))
-    frame = np.empty((4, 2))
+    held = np.empty((4, 8))
+    friction = np.empty(4)
     A = np.empty((3, 8))
     for i in range(4):
         side = p.half_track if i % 2 == 0 else -p.half_track
@@ -188,9 +189,9 @@ def contact_control(
             world[i, 2 * k + 1] = qpos[2] + r20 * px + r21 * side + r22 * pz
         places[i] = locate(pieces, R, world[i, 4], world[i, 5], places[i])
         planned = target[0] if i < 2 else target[1]
-        nx, nz = face_normal(pieces, R, corners, places[i], planned)
-        frame[i, 0], frame[i, 1] = nx, nz
-        lx, lz = world[i, 4] - R * nx - com_x, world[i, 5] - R * nz - com_z
+        support(pieces, R, corners, places[i], planned, p.friction, held[i])
+        nx, nz, friction[i], reach = held[i, 0], held[i, 1], held[i, 2], held[i, 3]
+        lx, lz = world[i, 4] - reach * nx - com_x, world[i, 5] - reach * nz - com_z
         A[0, 2 * i], A[1, 2 * i], A[2, 2 * i] = nz, -nx, lz * nz + lx * nx
         A[0, 2 * i + 1], A[1, 2 * i + 1], A[2, 2 * i + 1] = nx, nz, lz * nx - lx * nz
 
@@ -215,18 +216,18 @@ def contact_control(
         resting = 0.5 * target[_FORCE + 2 * (i // 4) + i % 2]
         g[i] = -A[0, i] * b[0] - A[1, i] * b[1] - A[2, i] * b[2]
         g[i] -= p.alpha * resting + p.beta * forces[i]
-    solve_native(H, g, p.friction, p.force_limit, forces)
+    solve_native(H, g, friction, p.force_limit, forces)
 
     # Torques: J' F and the legs' weight, tracking (eq 27), rolling (eqs 15-17) with feed-forward.
     wanted = yaw_rate - p.heading_stiffness * heading
     difference = p.half_track / R * (wanted + p.yaw_damping * (wanted - turning))
     for i in range(4):
         pair = i // 2
-        nx, nz = frame[i, 0], frame[i, 1]
+        nx, nz, reach = held[i, 0], held[i, 1], held[i, 3]
         t, n = forces[2 * i], forces[2 * i + 1]
         fx, fz = t * nz + n * nx, n * nz - t * nx
         hx, hz, kx, kz, wx, wz = world[i]
-        px, pz = wx - R * nx, wz - R * nz
+        px, pz = wx - reach * nx, wz - reach * nz
         thigh_x = p.thigh_com * (kx - hx)
         calf_x = p.calf_com * (wx - kx)
         carried = p.thigh_mass * thigh_x + p.calf_mass * (kx - hx + calf_x)
@@ -250,4 +251,4 @@ def contact_control(
         speed = target[RATES + pair] + p.wheel_sync * (target[pair] - places[i])
         wheel = speed / R + (-difference if i % 2 == 0 else difference)
         rolled = qvel[6 + j] + qvel[7 + j] + qvel[8 + j] + sy
-        torques[j + 2] = R * t + p.wheel_damping * (wheel - rolled)
+        torques[j + 2] = R * wheel_traction(held[i], fx, fz) + p.wheel_damping * (wheel - rolled)

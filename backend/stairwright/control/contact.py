@@ -1,9 +1,13 @@
-"""Which place and which face of the terrain each wheel is on.
+"""Which place and which face of the terrain each wheel is on, and which forces it can take there.
 
 A wheel's place is the arc length of the nearest point of the wheel-centre curve. At a concave
-corner the curve has a kink and the wheel touches two faces: projection alone keeps pushing on the
-face that the wheel comes from and the robot waits there for ever. So, while the plan is already
-past a corner that the wheel has not passed (or the other way round), the *planned* face counts.
+corner the curve has a kink and the wheel touches two faces, which asks for two rules:
+
+- Projection alone keeps pushing on the face that the wheel comes from, and the robot waits there
+  for ever. While the plan is already past a corner that the wheel has not passed (or the other way
+  round), the *planned* face counts.
+- While plan and wheel are both in the corner, both faces carry. Their friction cones span one
+  wider cone round the bisector of the normals, whose apex is the wheel's centre.
 """
 
 from __future__ import annotations
@@ -20,6 +24,9 @@ Floats = NDArray[np.float64]
 
 WINDOW = 0.15  # m; a wheel is looked for this far from where it was
 CORNER_REACH = 0.04  # m; how far from a corner the planned face may count
+CORNER_PLANNED = 0.0025  # m; a plan this near to a corner counts on both faces
+CORNER_MEASURED = 0.008  # m; a wheel this near to a corner gets there at once
+WIDEST = math.radians(80.0)  # half of the widest cone
 _BESIDE = 1e-6  # m
 
 
@@ -44,3 +51,53 @@ def face_normal(
                 at = corner + _BESIDE if planned > measured else corner - _BESIDE
     _, _, nx, nz = curve_at(pieces, radius, at)
     return nx, nz
+
+
+@nb.njit(cache=True)
+def support(
+    pieces: Floats,
+    radius: float,
+    corners: Floats,
+    measured: float,
+    planned: float,
+    friction: float,
+    out: Floats,
+) -> None:
+    """How the wheel at `measured` is carried, into `out` (8,).
+
+    ``[nx, nz, friction, reach, ax, az, bx, bz]``: normal and friction of the cone of its force, how
+    far the force acts from the wheel's centre [m] (the radius; 0 in a corner), and the normals of
+    the face before and after a corner (both the same elsewhere).
+    """
+    for corner in corners:
+        if abs(planned - corner) < CORNER_PLANNED and abs(measured - corner) < CORNER_MEASURED:
+            _, _, ax, az = curve_at(pieces, radius, corner - _BESIDE)
+            _, _, bx, bz = curve_at(pieces, radius, corner + _BESIDE)
+            length = math.hypot(ax + bx, az + bz)
+            half = 0.5 * math.acos(min(1.0, max(-1.0, ax * bx + az * bz)))
+            wide = math.tan(min(WIDEST, half + math.atan(friction)))
+            out[0], out[1], out[2], out[3] = (ax + bx) / length, (az + bz) / length, wide, 0.0
+            out[4], out[5], out[6], out[7] = ax, az, bx, bz
+            return
+    nx, nz = face_normal(pieces, radius, corners, measured, planned)
+    out[0], out[1], out[2], out[3] = nx, nz, friction, radius
+    out[4], out[5], out[6], out[7] = nx, nz, nx, nz
+
+
+@nb.njit(cache=True)
+def wheel_traction(held: Floats, fx: float, fz: float) -> float:
+    """Tangential force [N] that a wheel must drive when the ground's force on it is (fx, fz).
+
+    On one face it is the force's tangential part. In a corner, normal forces of both faces carry
+    what lies between the normals; only what lies beyond one of them needs traction on that face.
+    """
+    ax, az, bx, bz = held[4], held[5], held[6], held[7]
+    det = ax * bz - az * bx
+    if abs(det) < 1e-9:
+        return float(fx * az - fz * ax)
+    before, after = (fx * bz - fz * bx) / det, (ax * fz - az * fx) / det
+    if after < 0.0:
+        return float(fx * az - fz * ax)
+    if before < 0.0:
+        return float(fx * bz - fz * bx)
+    return 0.0

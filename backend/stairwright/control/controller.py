@@ -20,7 +20,7 @@ from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
 from . import balance, qp, rigid_body, rolling, tracking
-from .contact import face_normal, locate
+from .contact import locate, support, wheel_traction
 from .measurement import Measurement, measure
 from .setpoint import Setpoint
 from .settings import ControllerSettings
@@ -87,14 +87,13 @@ class Controller:
     def _contact(self, state: Measurement, target: Setpoint) -> Floats:
         robot, settings, radius = self.robot, self.settings, self.path.radius
         planned = target.wheel_progress[LEG_PAIR]
-        normals = np.array(
-            [
-                face_normal(self.path.pieces, radius, self.path.corners, here, there)
-                for here, there in zip(self.places, planned, strict=True)
-            ]
-        )
+        usable = settings.friction_share * self.friction
+        held = np.empty((4, 8))
+        for row, here, there in zip(held, self.places, planned, strict=True):
+            support(self.path.pieces, radius, self.path.corners, here, there, usable, row)
+        normals, friction, reach = held[:, :2], held[:, 2], held[:, 3:4]
         frames = rigid_body.contact_frames(normals)
-        points = state.wheels - radius * normals
+        points = state.wheels - reach * normals
         A = rigid_body.force_map(frames, points - state.com)
         self.learnt = balance.learn(settings, self.learnt, state, target.pitch)
         desired = balance.desired_wrench(
@@ -107,13 +106,14 @@ class Controller:
             self.learnt,
         )
         resting = (target.forces / 2)[LEG_PAIR].ravel()
-        self._solve(A, desired, resting)
+        self._solve(A, desired, resting, friction)
         forces = np.einsum("nij,nj->ni", frames, self.forces.reshape(4, 2))
         torques = balance.force_torques(state, points, forces)
         torques += balance.leg_weight_torques(robot, state)
         speeds = target.wheel_speed[LEG_PAIR] + settings.wheel_sync * (planned - self.places)
         rates = rolling.wheel_rates(speeds, radius) + self._yaw(state, target)
-        wheel = radius * self.forces[0::2] + rolling.wheel_torques(
+        driven = np.array([wheel_traction(row, *f) for row, f in zip(held, forces, strict=True)])
+        wheel = radius * driven + rolling.wheel_torques(
             self.gains.wheel_damping, rates, state.rolling_rates
         )
         return self._joined(state, target, torques, wheel)
@@ -137,14 +137,15 @@ class Controller:
             state,
             target,
         )
-        self._solve(to_centres, desired - to_contacts @ driven, np.zeros(8))
+        usable = np.full(4, self.settings.friction_share * self.friction)
+        self._solve(to_centres, desired - to_contacts @ driven, np.zeros(8), usable)
         forces = np.einsum("nij,nj->ni", frames, self.forces.reshape(4, 2))
         torques = balance.force_torques(state, state.wheels, forces)
         return self._joined(state, target, torques, wheel)
 
-    def _solve(self, force_map: Floats, desired: Floats, resting: Floats) -> None:
+    def _solve(self, force_map: Floats, desired: Floats, resting: Floats, friction: Floats) -> None:
         H, g = balance.force_cost(self.settings, force_map, desired, resting, self.forces)
-        C, d = balance.force_limits(self.settings, self.friction)
+        C, d = balance.force_limits(self.settings, friction)
         self.forces = qp.solve(self.settings.solver, H, g, C, d, self.forces)
 
     def _yaw(self, state: Measurement, target: Setpoint) -> Floats:

@@ -39,7 +39,8 @@ def solve(solver: str, H: Floats, g: Floats, C: Floats, d: Floats, start: Floats
     """
     if solver == "native":
         force = start.copy()
-        solve_native(H, g, -float(C[0, 1]), float(d[3]), force)
+        friction = np.array([-C[4 * w, 2 * w + 1] for w in range(4)])
+        solve_native(H, g, friction, float(d[3]), force)
         return force
     import qpsolvers  # imported here: the compiled loop does not need it
     from scipy.sparse import csc_matrix
@@ -66,8 +67,11 @@ _OPTIONS: dict[str, dict[str, Any]] = {
 
 
 @nb.njit(cache=True)
-def solve_native(H: Floats, g: Floats, mu: float, limit: float, x: Floats) -> int:
-    """Minimise into `x` (8,), which holds a guess; returns the interior point's iterations or 0."""
+def solve_native(H: Floats, g: Floats, mu: Floats, limit: float, x: Floats) -> int:
+    """Minimise into `x` (8,), which holds a guess; returns the interior point's iterations or 0.
+
+    `mu` (4,) is the friction that each wheel may use, `limit` the largest normal force.
+    """
     faces = np.empty(4, np.int64)
     work = np.empty(8)
     tolerance = _FACE * limit
@@ -90,7 +94,7 @@ def solve_native(H: Floats, g: Floats, mu: float, limit: float, x: Floats) -> in
 
 
 @nb.njit(cache=True)
-def _faces_of(x: Floats, mu: float, limit: float, near: float, faces: NDArray[np.int64]) -> None:
+def _faces_of(x: Floats, mu: Floats, limit: float, near: float, faces: NDArray[np.int64]) -> None:
     """The faces on which the wheels' forces lie."""
     for w in range(4):
         t, n = x[2 * w], x[2 * w + 1]
@@ -98,9 +102,9 @@ def _faces_of(x: Floats, mu: float, limit: float, near: float, faces: NDArray[np
         if n <= near:
             face = _ZERO
         else:
-            if t >= mu * n - near:
+            if t >= mu[w] * n - near:
                 face = _FORWARD
-            elif t <= near - mu * n:
+            elif t <= near - mu[w] * n:
                 face = _BACKWARD
             if n >= limit - near:
                 face += _FULL
@@ -109,7 +113,7 @@ def _faces_of(x: Floats, mu: float, limit: float, near: float, faces: NDArray[np
 
 @nb.njit(cache=True)
 def _on_faces(
-    H: Floats, g: Floats, mu: float, limit: float, faces: NDArray[np.int64], x: Floats
+    H: Floats, g: Floats, mu: Floats, limit: float, faces: NDArray[np.int64], x: Floats
 ) -> bool:
     """The exact minimiser on the given faces, into `x`; False if the numbers break down."""
     Z = np.zeros((8, 8))
@@ -122,7 +126,7 @@ def _on_faces(
             Z[t, m] = Z[n, m + 1] = 1.0
             m += 2
         elif face in (_FORWARD, _BACKWARD):
-            Z[t, m] = mu if face == _FORWARD else -mu
+            Z[t, m] = mu[w] if face == _FORWARD else -mu[w]
             Z[n, m] = 1.0
             m += 1
         elif face == _FULL:
@@ -131,7 +135,7 @@ def _on_faces(
             m += 1
         elif face != _ZERO:
             x[n] = limit
-            x[t] = mu * limit if face == _FULL_FORWARD else -mu * limit
+            x[t] = mu[w] * limit if face == _FULL_FORWARD else -mu[w] * limit
     if m == 0:
         return True
     gradient, HZ = np.empty(8), np.zeros((8, 8))
@@ -168,7 +172,7 @@ def _on_faces(
 
 @nb.njit(cache=True)
 def _next_faces(
-    H: Floats, g: Floats, mu: float, limit: float, faces: NDArray[np.int64], x: Floats
+    H: Floats, g: Floats, mu: Floats, limit: float, faces: NDArray[np.int64], x: Floats
 ) -> bool:
     """True if `x` is the optimum; else the faces to try next.
 
@@ -187,9 +191,9 @@ def _next_faces(
             gn += H[2 * w + 1, j] * x[j]
         new = face
         if face == _ZERO:
-            if gn < mu * abs(gt) - pull:
+            if gn < mu[w] * abs(gt) - pull:
                 new = _BACKWARD if gt > 0.0 else _FORWARD
-                if abs(gt) < abs(gn) * mu:
+                if abs(gt) < abs(gn) * mu[w]:
                     new = _FREE
         elif n < -slack:
             new = _ZERO
@@ -201,7 +205,7 @@ def _next_faces(
             if (forward or backward) and full:
                 if edge < -pull:
                     forward = backward = False
-                elif mu * edge - gn < -pull:
+                elif mu[w] * edge - gn < -pull:
                     full = False
             elif forward or backward:
                 if edge < -pull:
@@ -209,7 +213,7 @@ def _next_faces(
             elif full and gn > pull:
                 full = False
             if not (forward or backward):
-                forward, backward = t > mu * n + slack, -t > mu * n + slack
+                forward, backward = t > mu[w] * n + slack, -t > mu[w] * n + slack
             full = full or n > limit + slack
             new = _FORWARD if forward else (_BACKWARD if backward else _FREE)
             if full:
@@ -221,25 +225,25 @@ def _next_faces(
 
 
 @nb.njit(cache=True)
-def _slacks(x: Floats, mu: float, limit: float, out: Floats) -> None:
+def _slacks(x: Floats, mu: Floats, limit: float, out: Floats) -> None:
     """D - C x, per wheel: forward and backward friction, pushing, saturation."""
     for w in range(4):
         t, n = x[2 * w], x[2 * w + 1]
-        out[4 * w] = mu * n - t
-        out[4 * w + 1] = mu * n + t
+        out[4 * w] = mu[w] * n - t
+        out[4 * w + 1] = mu[w] * n + t
         out[4 * w + 2] = n
         out[4 * w + 3] = limit - n
 
 
 @nb.njit(cache=True)
-def _pulled(z: Floats, mu: float, w: int) -> tuple[float, float]:
+def _pulled(z: Floats, mu: Floats, w: int) -> tuple[float, float]:
     """Entries of C' z that belong to wheel `w`: tangential and normal."""
     a, b, c, d = z[4 * w], z[4 * w + 1], z[4 * w + 2], z[4 * w + 3]
-    return a - b, d - c - mu * (a + b)
+    return a - b, d - c - mu[w] * (a + b)
 
 
 @nb.njit(cache=True)
-def _interior_point(H: Floats, g: Floats, mu: float, limit: float, x: Floats) -> int:
+def _interior_point(H: Floats, g: Floats, mu: Floats, limit: float, x: Floats) -> int:
     """Minimise into `x` (8,) by Mehrotra's predictor-corrector; returns the iterations taken.
 
     A feasible start is known (no traction, half the load limit), and steps keep it feasible, so
@@ -317,7 +321,7 @@ def _interior_point(H: Floats, g: Floats, mu: float, limit: float, x: Floats) ->
 
 
 @nb.njit(cache=True)
-def _factor(H: Floats, s: Floats, z: Floats, mu: float, K: Floats) -> None:
+def _factor(H: Floats, s: Floats, z: Floats, mu: Floats, K: Floats) -> None:
     """Cholesky factor (lower) of H + C' diag(z / s) C; C couples only a wheel's two forces."""
     for i in range(8):
         for j in range(i + 1):
@@ -326,8 +330,8 @@ def _factor(H: Floats, s: Floats, z: Floats, mu: float, K: Floats) -> None:
         a, b = z[4 * w] / s[4 * w], z[4 * w + 1] / s[4 * w + 1]
         c, d = z[4 * w + 2] / s[4 * w + 2], z[4 * w + 3] / s[4 * w + 3]
         K[2 * w, 2 * w] += a + b
-        K[2 * w + 1, 2 * w] += mu * (b - a)
-        K[2 * w + 1, 2 * w + 1] += mu * mu * (a + b) + c + d
+        K[2 * w + 1, 2 * w] += mu[w] * (b - a)
+        K[2 * w + 1, 2 * w + 1] += mu[w] * mu[w] * (a + b) + c + d
     _cholesky(K, 8)
 
 
