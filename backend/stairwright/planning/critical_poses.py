@@ -19,7 +19,7 @@ from stairwright.terrain.wheel_path import wheel_path
 
 from .assembly import assemble
 from .diagnosis import diagnose, no_stand, statics_problem
-from .path.course import NoStand, Stand, find_stands
+from .path.course import NoStand, Stand, find_stands, stand
 from .plan import Plan, Pose, Problem
 from .pose_locations import Obstacle, find_obstacles, front_places
 from .pose_search import Found, Place, PoseSearch
@@ -30,6 +30,7 @@ from .weights import CriticalWeights
 
 Floats = NDArray[np.float64]
 
+TAIL = 0.15  # m between an obstacle and a standing wheel, for legs of 0.4 m
 CONGRUENT = 1e-6  # m; moved poses of a uniform flight must fit the terrain this well
 
 
@@ -66,7 +67,6 @@ def plan_critical(
     poses = _poses(search, knots, weights.speed)
     if problem is None:
         problem = _unbalanced(search, poses)
-    inner = range(1, len(poses) - (problem is None))
     return assemble(
         "critical",
         terrain,
@@ -75,7 +75,7 @@ def plan_critical(
         weights,
         poses,
         problem,
-        critical=list(inner),
+        critical=[i for i, knot in enumerate(knots) if knot.optimal],
         seconds=now() - started,
     )
 
@@ -85,6 +85,7 @@ class _Knot:
     trunk: tuple[float, float, float]
     joints: Floats
     wheels: tuple[float, float]
+    optimal: bool = False
 
 
 def _standing(search: PoseSearch, stand: Stand) -> _Knot:
@@ -120,14 +121,30 @@ def _solve(
             del knots[-2:]
         pairs.append(pair)
         knots.extend(pair)
-        rear = pair[1].wheels[1]
-        posture = np.array([pair[1].trunk[2], *pair[1].joints])
+        if (rest := _rest(search, obstacles, k)) is not None:
+            knots.append(_standing(search, rest))
+        rear = knots[-1].wheels[1]
+        posture = np.array([knots[-1].trunk[2], *knots[-1].joints])
     return knots, None
+
+
+def _rest(search: PoseSearch, obstacles: list[Obstacle], k: int) -> Stand | None:
+    """The standing pose after obstacle `k`, if there is room for it before the next one.
+
+    A platform on which the robot can stand ends one task of the paper and begins the next.
+    """
+    if k + 1 == len(obstacles):
+        return None
+    hips = search.robot.hips
+    rear = obstacles[k].end + TAIL * search.size
+    front = rear + hips.front[0] - hips.rear[0]
+    room = obstacles[k + 1].begin - TAIL * search.size
+    return stand(search.path, search.robot, front, rear) if front <= room else None
 
 
 def _knot(found: Found) -> _Knot:
     x = found.solution.x
-    return _Knot((float(x[0]), float(x[1]), float(x[2])), x[3:7], (float(x[7]), float(x[8])))
+    return _Knot((float(x[0]), float(x[1]), float(x[2])), x[3:7], (float(x[7]), float(x[8])), True)
 
 
 def _moved_pair(
@@ -146,7 +163,7 @@ def _moved_pair(
         trunk = (knot.trunk[0] + step[0], knot.trunk[1] + step[1], knot.trunk[2])
         if np.abs(after - before - step).max() > CONGRUENT or not search.clear(trunk, knot.joints):
             return None
-        out.append(_Knot((float(trunk[0]), float(trunk[1]), trunk[2]), knot.joints, wheels))
+        out.append(_Knot((float(trunk[0]), float(trunk[1]), trunk[2]), knot.joints, wheels, True))
     return out[0], out[1]
 
 

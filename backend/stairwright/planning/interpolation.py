@@ -70,7 +70,7 @@ def reference(
     time = at([(pose.time,) for pose in plan.poses])[:, 0]
     path = wheel_path(plan.terrain, robot.wheel.radius)
     if mode == "curve":
-        trunk, q = _on_curve(plan, path, progress, trunk, wheel_progress, q)
+        trunk, q = _on_curve(plan, path, knots, progress, trunk, wheel_progress, q)
     com = _com(robot, trunk, q)
     normals = path.normals(wheel_progress.ravel()).reshape(-1, 2, 2)
     contacts = path.contacts(wheel_progress.ravel()).reshape(-1, 2, 2)
@@ -112,7 +112,13 @@ def _grid(knots: Floats, spacing: float) -> Floats:
 
 
 def _on_curve(
-    plan: Plan, path: WheelPath, progress: Floats, trunk: Floats, s: Floats, q: Floats
+    plan: Plan,
+    path: WheelPath,
+    knots: Floats,
+    progress: Floats,
+    trunk: Floats,
+    s: Floats,
+    q: Floats,
 ) -> tuple[Floats, Floats]:
     """Trunk (n, 3) and joints (n, 4) with the wheels on the curve, limits and clearance kept.
 
@@ -123,8 +129,7 @@ def _on_curve(
     robot = plan.robot_description
     solved, good = _legs(robot, path, trunk, s, q)
     com = _com(robot, trunk, np.where(np.isfinite(solved), solved, q))[:, 0]
-    shift = eased_shift(progress, com, *com_ways(path, plan.friction, s))
-    shift[[0, -1]] = 0.0  # the ends are known
+    shift = eased_shift(progress, com, *com_ways(path, plan.friction, s), knots)
     if good.all() and not shift.any():
         return trunk, solved
 
@@ -132,7 +137,7 @@ def _on_curve(
     # First at every few samples, the trunk's change linear between them; then where that fails.
     asked = np.flatnonzero(~good | (shift != 0.0))
     coarse = asked[(np.arange(len(asked)) % _COARSE == 0) | ~np.isin(asked + 1, asked)]
-    knots = np.union1d(coarse, np.flatnonzero(good & (shift == 0.0)))
+    fixed = np.union1d(coarse, np.flatnonzero(good & (shift == 0.0)))
     change = np.zeros_like(trunk)
     start: Floats | None = None
     for i in coarse:
@@ -140,12 +145,12 @@ def _on_curve(
         if found is not None:
             change[i], start = found[:3] - trunk[i], found
     for j in range(3):
-        change[:, j] = np.interp(np.arange(len(trunk)), knots, change[knots, j])
+        change[:, j] = np.interp(np.arange(len(trunk)), fixed, change[fixed, j])
     trunk = trunk + change
     solved, good = _legs(robot, path, trunk, s, q)
     for i in np.flatnonzero(~good):
         start = np.concatenate([trunk[i - 1], solved[i - 1], s[i]]) if i and good[i - 1] else start
-        nearest = search.nearest((s[i, 0], s[i, 1]), trunk[i], q[i], start)
+        nearest = search.nearest((s[i, 0], s[i, 1]), trunk[i], q[i], start, patient=True)
         if nearest.solved:
             trunk[i], solved[i], start = nearest.x[:3], nearest.x[3:7], nearest.x
             good[i] = True

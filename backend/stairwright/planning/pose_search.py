@@ -176,7 +176,13 @@ class PoseSearch:
         return found
 
     def nearest(
-        self, wheels: tuple[float, float], trunk: Floats, q: Floats, start: Floats | None = None
+        self,
+        wheels: tuple[float, float],
+        trunk: Floats,
+        q: Floats,
+        start: Floats | None = None,
+        *,
+        patient: bool = False,
     ) -> Solution:
         """The pose with the wheels at given places that is nearest to a trunk pose.
 
@@ -187,6 +193,7 @@ class PoseSearch:
             trunk: (3,) x, z [m] and pitch [rad] wanted.
             q: (4,) joints wanted, which count little.
             start: (9,) first guess.
+            patient: Go on to slower solvers where the fast one fails.
         """
         lower, upper = self._lower.copy(), self._upper.copy()
         lower[7:] = upper[7:] = wheels
@@ -198,7 +205,9 @@ class PoseSearch:
             starts.insert(0, start)
         for clearance_wanted in (CLEARANCE, BETWEEN):
             bounds = Bounds(lower, upper, clearance_wanted, APART, -np.inf)
-            solution = self._solvers[size].solve(parameters, bounds, starts, patient=False)
+            solution = self._solvers[size].solve(
+                parameters, bounds, starts, patient and clearance_wanted == BETWEEN
+            )
             if solution.solved:
                 break
         return solution
