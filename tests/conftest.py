@@ -42,6 +42,20 @@ CHROMIUM_FLAGS = (
 )
 
 
+def pytest_configure() -> None:
+    """A run that is told to end takes its servers along, as Ctrl-C does."""
+
+    runner = os.getpid()
+
+    def interrupt(number: int, _frame: object) -> None:
+        if os.getpid() == runner:
+            raise KeyboardInterrupt
+        signal.signal(number, signal.SIG_DFL)  # a forked worker ends as it would without us
+        os.kill(os.getpid(), number)
+
+    signal.signal(signal.SIGTERM, interrupt)
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Quick tests first, then the slow ones, then the browser's."""
 
