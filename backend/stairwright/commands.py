@@ -21,6 +21,10 @@ Command = Callable[[Arguments], str | None]
 
 def plan_command(given: Arguments) -> str | None:
     """`stairwright plan`."""
+    if given.output:
+        from .export.formats import PLAN_FORMATS, by_ending
+
+        by_ending(PLAN_FORMATS, given.output, "plan")  # complains before the work, not after it
     plan = _plan(given.terrain, given)
     if given.output:
         plan.save(given.output)
@@ -35,6 +39,10 @@ def rollout_command(given: Arguments) -> str | None:
         raise InputError("must be at least 1", ("trials",))
     if given.trials > 1 and given.output:
         raise InputError("one file holds one rollout: leave out --trials or -o", ("output",))
+    if given.output:
+        from .export.formats import ROLLOUT_FORMATS, by_ending
+
+        by_ending(ROLLOUT_FORMATS, given.output, "rollout")
     plan = _plan_or_file(given)
     if len(plan.poses) < 2:
         return _obstacle(plan) or "the plan has no poses to carry out"

@@ -1,0 +1,152 @@
+"""The command line: its output, its one line of complaint, its exit status."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from stairwright.cli import main
+from stairwright.library import robots, terrains
+
+CURB = '{"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}'
+WALL = '{"points": [[-1.0, 0], [0, 0], [0, 3], [1, 3]]}'
+
+
+def run(*arguments: str | Path, status: int = 0) -> str:
+    """Standard output of one command; on failure, its one line on standard error."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        try:
+            returned = main([str(each) for each in arguments])
+        except SystemExit as exit_:
+            returned = int(exit_.code or 0)
+    assert returned == status, err.getvalue()
+    if status:
+        assert err.getvalue().startswith("stairwright")
+        assert err.getvalue().count("\n") == 1, err.getvalue()
+    return out.getvalue()
+
+
+@pytest.fixture(scope="module")
+def curb(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("terrain") / "curb.json"
+    path.write_text(CURB)
+    return path
+
+
+@pytest.fixture(scope="module")
+def plan(curb: Path) -> Path:
+    path = curb.with_name("plan.json")
+    assert run("plan", curb, "--robot", "a1_wheeled_x", "-o", path) == ""
+    return path
+
+
+def test_lists() -> None:
+    assert [line.split()[0] for line in run("terrains").splitlines()] == terrains()
+    assert [line.split()[0] for line in run("robots").splitlines()] == robots()
+
+
+def test_help_is_quick_because_it_imports_nothing() -> None:
+    code = (
+        "import sys, stairwright.cli as c; c.parser().format_help(); "
+        "print([m for m in ('numpy', 'mujoco', 'casadi', 'numba', 'fastapi') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+    assert "certify" in run("--help")
+
+
+def test_a_plan_is_summed_up_or_written(curb: Path, plan: Path) -> None:
+    text = run("plan", curb, "--robot", "a1_wheeled_x", "--friction", "0.7")
+    assert "feasible" in text
+    assert "friction 0.7" in text
+    document = json.loads(plan.read_text())
+    assert document["schema"] == "stairwright/plan/1"
+    assert document["robot"] == "a1_wheeled_x"
+
+
+def test_a_plan_is_certified_exported_and_rolled_out(plan: Path) -> None:
+    assert "passed" in run("certify", plan)
+    for name in ("csv", "npz", "mcap", "mjcf"):
+        out = plan.with_suffix(f".{name}")
+        run("export", plan, "--format", name, "-o", out)
+        assert out.stat().st_size > 500
+    assert "success" in run("rollout", plan)
+    rollout = plan.with_name("run.json")
+    run("rollout", plan, "--seed", "4", "-o", rollout)
+    assert json.loads(rollout.read_text())["seed"] == 4
+    run("export", rollout, "--format", "html", "-o", plan.with_name("run.html"))
+
+
+def test_trials(plan: Path) -> None:
+    assert "2 of 2 trials succeeded" in run("rollout", plan, "--trials", "2")
+
+
+def test_what_cannot_be_done_is_status_1(tmp_path: Path) -> None:
+    wall = tmp_path / "wall.json"
+    wall.write_text(WALL)
+    assert "infeasible" in run("plan", wall, status=1)
+    out = tmp_path / "plan.json"
+    run("plan", wall, "-o", out, status=1)
+    assert json.loads(out.read_text())["status"] == "infeasible"
+    run("rollout", wall, status=1)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        (),
+        ("dance",),
+        ("plan",),
+        ("plan", "nowhere"),
+        ("plan", "missing.yaml"),
+        ("plan", "missing.stl"),
+        ("plan", "flat", "--robot", "nobody"),
+        ("plan", "flat", "--friction", "nan"),
+        ("plan", "flat", "--friction", "much"),
+        ("plan", "flat", "--method", "magic"),
+        ("plan", "flat", "--weight", "speed"),
+        ("plan", "flat", "--weight", "beauty=1"),
+        ("plan", "flat", "-o", "plan.docx"),
+        ("plan", "flat", "-o", "/nowhere/plan.json"),
+        ("rollout", "missing.json"),
+        ("rollout", "flat", "--trials", "0"),
+        ("certify", "missing.json"),
+        ("export", "missing.json", "-o", "x.csv"),
+        ("serve", "--host", "0.0.0.0"),
+        ("serve", "--port", "99999"),
+        ("bench", "--repeat", "0"),
+    ],
+)
+def test_bad_input_is_status_2_and_one_line(arguments: tuple[str, ...]) -> None:
+    run(*arguments, status=2)
+
+
+def test_a_table_is_a_terrain_too(tmp_path: Path) -> None:
+    table = tmp_path / "curb.csv"
+    table.write_text("x,z\n-1,0\n0,0\n0,0.05\n1,0.05\n")
+    assert "feasible" in run("plan", table, "--method", "critical")
+
+
+def test_as_a_process_of_its_own() -> None:
+    command = f"{sys.executable} -m stairwright terrains | head -1"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
+    assert done.stdout.startswith(terrains()[0])
+    assert done.stderr == ""
+    command = f"{sys.executable} -m stairwright plan nowhere"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith("stairwright: no terrain is called 'nowhere'; there are: ")
+    assert done.stderr.count("\n") == 1
+
+
+def test_bench() -> None:
+    text = run("bench", "flat", "--robot", "a1_wheeled", "--repeat", "1")
+    assert "median ms" in text
+    assert "success" in text
