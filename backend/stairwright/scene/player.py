@@ -60,14 +60,15 @@ class Player:
     ) -> None:
         """Change the clock; what is None stays. A frame follows in any case."""
         with self._change:
-            self._move(self._now() if time is None else time)
+            if time is None:
+                time = self._now() if self._running else self._time
+            self._move(time)
             if duration is not None:
                 self._duration = duration
-                self._move(self._time)
             if speed is not None:
                 self._speed = speed
             if playing is not None:
-                if playing and not self._playing and self._time >= self._duration:
+                if playing and not self._playing and 0.0 < self._duration <= self._now():
                     self._move(0.0)  # play at the end starts again
                 self._playing = playing
             self._dirty = True
@@ -82,24 +83,27 @@ class Player:
             self._thread.join(timeout=5.0)
 
     def _move(self, to: float) -> None:
-        self._time = min(max(0.0, to), self._duration)
+        # Not held inside the motion here: a time may be asked for before its motion is shown.
+        self._time = max(0.0, to)
         self._since = time.monotonic()
 
+    @property
+    def _running(self) -> bool:
+        return self._playing and self._duration > 0.0
+
     def _now(self) -> float:
-        if not self._playing:
-            return self._time
-        ran = self._speed * (time.monotonic() - self._since)
-        return min(max(0.0, self._time + ran), self._duration)
+        ran = self._speed * (time.monotonic() - self._since) if self._running else 0.0
+        return min(self._time + ran, self._duration)
 
     def _run(self) -> None:
         while True:
             with self._change:
-                while not (self._playing or self._dirty or self._closed):
+                while not (self._running or self._dirty or self._closed):
                     self._change.wait()
                 if self._closed:
                     return
                 now = self._now()
-                if self._playing and now >= self._duration:
+                if self._running and now >= self._duration:
                     self._playing = False
                     self._move(self._duration)
                 self._dirty = False
