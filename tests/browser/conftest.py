@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Locator, Page
 
 PLANNED = ".app[data-plan=feasible], .app[data-plan=infeasible]"
+TERRAIN = re.compile(r"^Terrain\s")
 PATIENCE = 60_000  # ms; for a rollout on a busy machine
 
 
@@ -42,7 +44,7 @@ class Product:
 
     def choose_terrain(self, name: str) -> Product:
         """Open a preset or a saved terrain by its name."""
-        self.page.get_by_role("button", name="Terrain:").click()
+        self.page.get_by_role("button", name=TERRAIN).click()
         panel = self.page.get_by_role("dialog")
         panel.locator(".item", has_text=name).first.click()
         return self.planned()

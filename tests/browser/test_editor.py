@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import itertools
+import re
 from typing import TYPE_CHECKING
 
 import pytest
+
+from .conftest import TERRAIN
 
 if TYPE_CHECKING:
     from .conftest import Product
@@ -94,7 +97,7 @@ def test_several_corners_move_together(product: Product) -> None:
 @pytest.mark.parametrize(("key", "corners"), [("s", 2), ("r", 2), ("p", 1)])
 def test_tools_draw_on_an_empty_canvas(product: Product, key: str, corners: int) -> None:
     product.open()
-    product.page.get_by_role("button", name="Terrain:").click()
+    product.page.get_by_role("button", name=TERRAIN).click()
     product.page.get_by_role("button", name="New", exact=True).click()
     assert product.status == "none"
     product.page.get_by_text("Draw a profile or start from a preset").wait_for()
@@ -112,7 +115,7 @@ def test_tools_draw_on_an_empty_canvas(product: Product, key: str, corners: int)
 
 def test_stairs_by_the_code(product: Product) -> None:
     product.open().choose_terrain("flat")
-    product.page.get_by_role("button", name="Snapping").click()
+    product.page.get_by_role("button", name=re.compile("^Snapping")).click()
     product.page.get_by_role("menuitemradio", name="Industrial").click()
     box = product.page.locator(".ed").bounding_box()
     assert box is not None
@@ -140,10 +143,10 @@ def test_files_are_dropped_and_text_is_pasted(product: Product) -> None:
 def test_a_terrain_is_saved_and_deleted(product: Product) -> None:
     product.open()
     product.drag(6, 0, -20).planned()
-    product.page.get_by_role("button", name="Terrain:").click()
+    product.page.get_by_role("button", name=TERRAIN).click()
     product.page.get_by_label("Save as").fill("my stairs")
     product.page.get_by_role("button", name="Save", exact=True).click()
-    product.page.get_by_role("button", name="Terrain: my stairs").click()
+    product.page.get_by_role("button", name=re.compile(r"^Terrain\s+my stairs")).click()
     product.page.get_by_role("button", name="Delete my stairs").click()
     product.page.get_by_role("button", name="Delete my stairs").wait_for(state="detached")
 

@@ -96,7 +96,7 @@ export function Dimensions() {
               <Editable
                 x={middle}
                 y={y + 4}
-                label={`Run ${fixed(b[0] - a[0], 3)} m`}
+                label={`${end && kind === "flat" ? "flat, run" : "Run"} ${fixed(b[0] - a[0], 3)} m`}
                 edit={edit("run")}
               >
                 <rect class="dimbg" x={middle - 20} y={y - 7} width={40} height={14} />

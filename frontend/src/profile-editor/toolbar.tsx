@@ -58,7 +58,6 @@ export function Toolbar() {
           type="button"
           class={tool.value === name ? "t on" : "t"}
           aria-pressed={tool.value === name}
-          aria-label={label}
           aria-keyshortcuts={key}
           title={`${label} (${key}): ${hint}`}
           onClick={() => {
@@ -67,7 +66,7 @@ export function Toolbar() {
         >
           <Icon name={name} />
           <span class="lb">{label}</span>
-          <kbd>{key}</kbd>
+          <kbd aria-hidden="true">{key}</kbd>
         </button>
       ))}
       <div class="sep" />
@@ -100,15 +99,15 @@ function SnapMenu() {
   const button = (
     <>
       <Icon name="snap" />
-      {code.value ? code.value.note : gridName(grid.value)}
+      <span class="sr">Snapping</span> {code.value ? code.value.note : gridName(grid.value)}
       <Icon name="down" />
     </>
   );
   return (
-    <Menu label="Snapping" button={button} buttonClass="t">
+    <Menu label="Snapping" named button={button} buttonClass="t">
       {(close) => (
         <>
-          <h4>Grid (Alt suspends)</h4>
+          <div class="head">Grid (Alt suspends)</div>
           {GRIDS.map((step) => (
             <MenuItem
               key={step}
@@ -121,7 +120,7 @@ function SnapMenu() {
               {gridName(step)}
             </MenuItem>
           ))}
-          <h4>Level and plumb</h4>
+          <div class="head">Level and plumb</div>
           <MenuItem
             checked={toNeighbours.value}
             onChoose={() => {
@@ -130,7 +129,7 @@ function SnapMenu() {
           >
             Other corners' x and z
           </MenuItem>
-          <h4>Stairs by the code</h4>
+          <div class="head">Stairs by the code</div>
           <MenuItem checked={code.value === null} onChoose={() => setCode(null, close)}>
             Free rise and run
           </MenuItem>
@@ -163,7 +162,7 @@ function PresetMenu() {
     </>
   );
   return (
-    <Menu label="Presets" button={button} buttonClass="t" panelClass="tall">
+    <Menu label="Presets" named button={button} buttonClass="t" panelClass="tall">
       {(close) =>
         terrains.value
           .filter((terrain) => terrain.readonly)
@@ -192,14 +191,14 @@ function LayerMenu() {
   const button = (
     <>
       <Icon name="eye" />
-      <span class="wide">Layers</span>
+      <span class="lb">Layers</span>{" "}
       <kbd class="wide">
         {layers.value.size} of {all.length}
       </kbd>
     </>
   );
   return (
-    <Menu label="Layers" button={button} buttonClass="t" align="right">
+    <Menu label="Layers" named button={button} buttonClass="t" align="right">
       {() =>
         all.map((layer) => (
           <button

@@ -59,7 +59,7 @@ export function DownloadMenu() {
               close={close}
             />
           ) : (
-            <p class="note">Run a rollout to download its series and replay.</p>
+            <div class="note">Run a rollout to download its series and replay.</div>
           )}
         </>
       )}
@@ -78,7 +78,7 @@ interface ExportsProps {
 function Exports({ title, kind, id, formats, close }: ExportsProps) {
   return (
     <>
-      <h4>{title}</h4>
+      <div class="head">{title}</div>
       {formats.map(([format, name, note]) => (
         <a
           key={format}

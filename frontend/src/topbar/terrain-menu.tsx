@@ -12,7 +12,8 @@ import { openStored, removeStored, saveAs, takeFile, terrainError } from "./terr
 export function TerrainMenu({ button }: { button: ComponentChildren }) {
   return (
     <Menu
-      label={`Terrain: ${drawing.value.name}`}
+      label="Terrain"
+      named
       button={button}
       buttonClass="fld"
       panelClass="terrains"

@@ -22,8 +22,7 @@ export function TopBar() {
       <TerrainMenu
         button={
           <>
-            <small class="wide">Terrain</small>
-            <b>{drawing.value.name}</b>
+            <small class="quiet">Terrain</small> <b>{drawing.value.name}</b>
             {isEdited.value && <span class="dot" title="Edited, not saved" />}
             <Icon name="down" />
           </>
@@ -54,13 +53,12 @@ export function TopBar() {
 function RobotMenu() {
   const button = (
     <>
-      <small class="wide">Robot</small>
-      <b>{robotName.value}</b>
+      <small class="quiet">Robot</small> <b>{robotName.value}</b>
       <Icon name="down" />
     </>
   );
   return (
-    <Menu label={`Robot: ${robotName.value}`} button={button} buttonClass="fld">
+    <Menu label="Robot" named button={button} buttonClass="fld">
       {(close) =>
         robots.value.map((robot) => (
           <MenuItem

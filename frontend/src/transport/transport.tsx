@@ -230,18 +230,12 @@ function PlotMenu() {
 function SpeedMenu() {
   const button = (
     <>
-      {speed.value}×
+      <span class="sr">Speed</span> {speed.value}×
       <Icon name="down" />
     </>
   );
   return (
-    <Menu
-      label={`Speed ${speed.value}×`}
-      button={button}
-      buttonClass="t"
-      align="right"
-      panelClass="up"
-    >
+    <Menu label="Speed" named button={button} buttonClass="t" align="right" panelClass="up">
       {(close) =>
         SPEEDS.map((each) => (
           <MenuItem

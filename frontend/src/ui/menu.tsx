@@ -4,7 +4,9 @@ import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 
 interface MenuProps {
-  label?: string;
+  /** Names panel and button; with `named` the button's own text is its name. */
+  label: string;
+  named?: boolean;
   button: ComponentChildren;
   buttonClass: string;
   panelClass?: string;
@@ -69,7 +71,7 @@ export function Menu(props: MenuProps) {
         disabled={disabled}
         aria-haspopup={kind}
         aria-expanded={isOpen}
-        aria-label={label}
+        aria-label={props.named ? undefined : label}
         title={label}
         onClick={() => setOpen(!isOpen)}
       >
@@ -77,11 +79,7 @@ export function Menu(props: MenuProps) {
       </button>
       {isOpen && (
         // biome-ignore lint/a11y/useAriaPropsSupportedByRole: the role is a menu or a dialog
-        <div
-          class={`panel ${align} ${panelClass ?? ""}`}
-          role={kind}
-          aria-label={label ?? "Choices"}
-        >
+        <div class={`panel ${align} ${panelClass ?? ""}`} role={kind} aria-label={label}>
           {props.children(close)}
         </div>
       )}
