@@ -12,6 +12,8 @@ from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath
 
+from .legs import make_legs
+
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
@@ -61,6 +63,17 @@ def stretches(path: WheelPath) -> tuple[float, float]:
     return run(count), run(count[::-1])
 
 
+def stand_height(robot: Robot) -> float:
+    """Height of the trunk's centre above the wheel centres in the nominal pose [m].
+
+    Where the legs cannot give the robot's nominal height it is the nearest that they can.
+    """
+    legs = make_legs(robot.planar)
+    low = max(leg.reach_min + 0.1 * (leg.reach_max - leg.reach_min) - leg.hip_z for leg in legs)
+    high = min(leg.reach_max - 0.02 * (leg.reach_max - leg.reach_min) - leg.hip_z for leg in legs)
+    return min(max(robot.nominal_height - robot.wheel.radius, low), max(high, low))
+
+
 def stand(path: WheelPath, robot: Robot, front: float, rear: float) -> Stand:
     """The nominal pose over wheels at arc lengths `front`, `rear`: trunk along their line."""
     a, b = path.centres(np.array([front, rear]))
@@ -68,7 +81,7 @@ def stand(path: WheelPath, robot: Robot, front: float, rear: float) -> Stand:
     # Wheels may stand on unequal heights; the trunk follows half of a slope, all of a small one.
     pitch = -slope if abs(slope) < 0.35 else -0.8 * slope
     up = np.array([math.sin(-pitch) * -1.0, math.cos(pitch)])
-    middle = (a + b) / 2 + (robot.nominal_height - robot.wheel.radius) * up
+    middle = (a + b) / 2 + stand_height(robot) * up
     return Stand((front, rear), np.array([middle[0], middle[1], pitch]))
 
 

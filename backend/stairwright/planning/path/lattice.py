@@ -14,7 +14,7 @@ from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
 from .cells import Cells, World, build_cells, volume_size
-from .course import Stand, sample_course, scale
+from .course import Stand, sample_course, scale, stand_height
 from .ground import Ground
 from .legs import Leg, make_legs
 from .search import FORWARD, MOVES, cheapest, flood, trace
@@ -191,7 +191,7 @@ class Search:
             [
                 self.weights.com_margin,
                 self.weights.pitch,
-                self.robot.nominal_height - p.wheel_radius,
+                stand_height(self.robot),
                 0.09 * scale(self.robot),
             ]
         )

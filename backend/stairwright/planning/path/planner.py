@@ -52,8 +52,9 @@ def plan_path(terrain: Terrain, robot: Robot, friction: float, weights: PathWeig
             terrain, robot, friction, weights, begun, found.poses, found.keys, found.total
         )
         return plan.model_copy(update={"certificate": found.certificate})
-    problem = Problem(kind="reach", at=terrain.points[0], progress=0.0, message="no way found")
-    return make_plan(terrain, robot, friction, weights, begun, problem=problem)
+    from stairwright.planning.obstruction import explain  # it plans again, so it imports us
+
+    return make_plan(terrain, robot, friction, weights, begun, problem=explain(course, found))
 
 
 def _no_stand(

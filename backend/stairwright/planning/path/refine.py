@@ -13,7 +13,7 @@ from stairwright.terrain.wheel_path import WheelPath
 
 from . import polish as po
 from .contacts import path_intervals
-from .course import Stand, scale
+from .course import Stand, scale, stand_height
 from .densify import densify
 from .ground import Ground
 from .lattice import LAG
@@ -129,5 +129,5 @@ def _wishes(robot: Robot, weights: PathWeights, share: float) -> Floats:
     wish[po.H_SLACK] = 30.0 * root
     wish[po.H_PITCH] = 0.05 * root * weights.pitch**0.5
     wish[po.H_HEIGHT] = 0.3 * root
-    wish[po.HEIGHT] = robot.nominal_height - robot.wheel.radius
+    wish[po.HEIGHT] = stand_height(robot)
     return wish
