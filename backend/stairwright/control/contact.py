@@ -24,8 +24,8 @@ Floats = NDArray[np.float64]
 
 WINDOW = 0.15  # m; a wheel is looked for this far from where it was
 CORNER_REACH = 0.04  # m; how far from a corner the planned face may count
-CORNER_PLANNED = 0.0025  # m; a plan this near to a corner counts on both faces
-CORNER_MEASURED = 0.008  # m; a wheel this near to a corner gets there at once
+CORNER_PLANNED = 0.008  # m; a plan this near to a corner counts on both faces
+CORNER_MEASURED = 0.010  # m; a wheel this near to a corner gets there at once
 WIDEST = math.radians(80.0)  # half of the widest cone
 _BESIDE = 1e-6  # m
 
