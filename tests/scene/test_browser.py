@@ -200,6 +200,25 @@ def test_opened_alone_it_has_a_working_panel(site, visit):
     assert page.problems == []
 
 
+def test_the_camera_follows_the_robot_and_keeps_its_angle(site, visit, plan):
+    session = site.open("f")
+    session.show(plan=plan)
+    page = visit("/scene/f/?embedded=1")
+    wait_until(page, seen)
+    (client,) = session._server.get_clients().values()
+    offset = client.camera.position - client.camera.look_at
+    session.playback(speed=8.0, playing=True)
+    end = plan["poses"][-1]
+    for _ in range(600):
+        if abs(client.camera.look_at[0] - end["x_c"] - 0.1) < 0.01:
+            break
+        page.wait_for_timeout(100)
+    page.wait_for_timeout(500)
+    np.testing.assert_allclose(client.camera.look_at[0], end["x_c"] + 0.1, atol=0.01)
+    np.testing.assert_allclose(client.camera.position - client.camera.look_at, offset, atol=0.02)
+    assert seen(pixels(page))
+
+
 def test_two_sessions_do_not_see_each_other(site, visit, plan):
     site.open("d").show(plan=plan)
     site.open("e").show(theme="light")

@@ -151,15 +151,6 @@ def test_playing_may_be_asked_for_before_its_motion(player, frames):
     assert all(time == 0.0 or time >= 2.0 for time in frames.times)
 
 
-def test_resting_does_not_count_as_playing(player, frames):
-    player.set(duration=5.0, time=1.0)
-    frames.wait_for(lambda times: times[-1] == 1.0)
-    threading.Event().wait(0.6)
-    player.set(playing=True, speed=0.25)
-    frames.wait_for(lambda times: times[-1] > 1.0)
-    assert min(time for time in frames.times if time > 1.0) < 1.1
-
-
 def test_playing_runs_to_the_end_and_stops(player, frames):
     player.set(duration=0.3, speed=2.0, playing=True)
     frames.wait_for(lambda times: times[-1] == 0.3)

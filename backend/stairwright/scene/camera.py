@@ -46,18 +46,23 @@ def check(name: str) -> Preset:
 
 def view(name: Preset, robot: Floats) -> View:
     """The view of preset `name` on the robot at `robot` (3,)."""
-    # A little ahead of the robot and below its trunk: the course matters as much as the robot.
-    aim = robot + np.array([0.10, 0.0, -0.12])
-    return View(aim + _DISTANCE.get(name, _NEAREST) * _direction(name), aim)
+    place = aim(robot)
+    return View(place + _DISTANCE.get(name, _NEAREST) * _direction(name), place)
+
+
+def aim(robot: Floats) -> Floats:
+    """Where to look: a little ahead of the trunk and below it, for the course matters too."""
+    place: Floats = robot + np.array([0.10, 0.0, -0.12])
+    return place
 
 
 def course_view(positions: Floats) -> View:
     """The ``iso`` view that holds a whole course of trunk points (n, 3)."""
     low, high = positions.min(axis=0), positions.max(axis=0)
     span = float(np.linalg.norm(high - low))
-    aim = (low + high) / 2 + np.array([0.0, 0.0, -0.12])
+    middle = (low + high) / 2 + np.array([0.0, 0.0, -0.12])
     distance = float(np.clip(1.05 * span + 0.9, _NEAREST, _FARTHEST))
-    return View(aim + distance * _direction("iso"), aim)
+    return View(middle + distance * _direction("iso"), middle)
 
 
 def _direction(name: Preset) -> Floats:

@@ -245,10 +245,10 @@ class SceneSession:
             with self._server.atomic():
                 self._stage.draw_moment(time, moment)
             if moment is not None:
-                moved = moment.position - self._subject
+                moved = float(np.abs(moment.position - self._subject).max()) > 1e-6
                 self._subject = moment.position.copy()
-                if self._follow:
-                    self._shift_cameras(moved)
+                if self._follow and moved:
+                    self._keep_in_view()
             self._panel.tick(time)
 
     def _aim(self, view: cameras.View) -> None:
@@ -264,12 +264,15 @@ class SceneSession:
             if self._follow and not self._closed:
                 _point(client, cameras.view("follow", self._subject))
 
-    def _shift_cameras(self, moved: Any) -> None:
-        if float(np.abs(moved).max()) < 1e-6:
-            return
+    def _keep_in_view(self) -> None:
+        """Aim every camera at the robot from where its user has turned it to."""
+        aim = cameras.aim(self._subject)
         for client in self._server.get_clients().values():
-            # Setting the position carries the point looked at along.
-            client.camera.position = client.camera.position + moved
+            # From the viewer's last report both points are equally old: their difference holds.
+            offset = client.camera.position - client.camera.look_at
+            with client.atomic():
+                client.camera.position = aim + offset
+                client.camera.look_at = aim
 
 
 def _point(client: Any, view: cameras.View) -> None:
