@@ -1,44 +1,36 @@
-"""Compile and load everything that a first question would wait for.
+"""Compile and cache everything that is compiled on first use: ``python -m stairwright.warmup``.
 
-Run once at set-up (``python -m stairwright.warmup``), it fills numba's cache; run in the process
-that workers are forked from, it makes each of them start warm.
+Run once after installation, so that no user waits for a compiler.
 """
 
 from __future__ import annotations
 
+import importlib.util
 import sys
 import time
-from typing import get_args
 
-from stairwright.library import robots
-from stairwright.planning.plan import Method
-from stairwright.planning.planner import plan
-from stairwright.simulation.rollout import rollout
+from .library import load_robot, robots
+from .planning.planner import plan
+from .terrain.profile import Terrain
 
-# Low enough for every robot and method, with a convex and a concave corner.
-TERRAIN = {"name": "warm-up", "points": [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.04], [1.0, 0.04]]}
+_STEP = Terrain(points=[(-1.2, 0.0), (0.0, 0.0), (0.0, 0.1), (1.2, 0.1)])
+_WALL = Terrain(points=[(-1.2, 0.0), (0.0, 0.0), (0.0, 1.3), (1.2, 1.3)])
 
 
-def warm() -> None:
-    """Plan with every robot and method, and roll a plan out; the likeliest question first.
+def warm_up() -> float:
+    """Plan small courses with every robot, one impossible, and roll one out; returns seconds."""
+    begun = time.perf_counter()
+    for name in robots():
+        plan(_STEP, load_robot(name))
+    plan(_WALL, load_robot(robots()[0]))
+    if importlib.util.find_spec("stairwright.simulation.rollout") is not None:
+        from .simulation.rollout import rollout
 
-    Raises:
-        StairwrightError: If a planner refuses ground that it has to manage.
-    """
-    for method in get_args(Method):
-        for robot in robots():
-            made = plan(TERRAIN, robot, method=method)
-            if method == "path" and len(made.poses) >= 2:
-                rollout(made)
-
-
-def main() -> int:
-    """Warm up and say how long it took."""
-    start = time.monotonic()
-    warm()
-    print(f"kernels are compiled ({time.monotonic() - start:.1f} s)", file=sys.stderr)
-    return 0
+        flat = Terrain(points=[(0.0, 0.0), (1.0, 0.0)])
+        rollout(plan(flat, load_robot(robots()[0])))
+    return time.perf_counter() - begun
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    seconds = warm_up()
+    sys.stdout.write(f"compiled code is warm ({seconds:.1f} s)\n")

@@ -117,7 +117,7 @@ def _flatter(robot: Robot, height: float) -> Robot:
 
 
 def _wider(robot: Robot, part: str, extra: float) -> Robot:
-    """The robot with the range of `part` (thigh, calf) wider by `extra` rad, on both sides alike."""
+    """The robot with the range of `part` (thigh, calf) `extra` rad wider, half at each end."""
     legs: dict[str, Any] = {}
     for name in ("front", "rear"):
         leg = getattr(robot.joints, name).model_dump()

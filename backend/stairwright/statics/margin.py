@@ -8,7 +8,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from ..robot.description import Planar
+from stairwright.robot.description import Planar
+
 from .contact import GRAVITY, com_interval
 
 Floats = NDArray[np.float64]

@@ -33,7 +33,7 @@ class Cells(NamedTuple):
 
     Attributes:
         front, rear: (n,) sample indices.
-        index: (samples, samples) cell number, -1 where there is none.
+        number: (samples, samples) cell number, -1 where there is none.
         spans: (n, 6) CoM intervals at friction, at the reserve, with lag [m].
         t0, z0, x0: (n,) lattice index of the window's corner.
         slope: (n,) angle of the line from the rear to the front wheel, upward positive [rad].
@@ -41,7 +41,7 @@ class Cells(NamedTuple):
 
     front: Ints
     rear: Ints
-    index: Ints
+    number: Ints
     spans: Floats
     t0: Ints
     z0: Ints
@@ -98,7 +98,7 @@ def build_cells(
         front[m], rear[m], index[i, j] = i, j, m
         spans[m, 0], spans[m, 1] = lo, hi
         spans[m, 2], spans[m, 3] = pair_interval(pieces, corners, r, s[i], s[j], reserve)
-        lo, hi = lagged_interval(pieces, corners, r, s[i], s[j], friction, lag)
+        lo, hi = lagged_interval(pieces, r, s[i], s[j], friction, lag)
         if lo > hi:
             lo = hi = 0.5 * (spans[m, 0] + spans[m, 1])
         spans[m, 4], spans[m, 5] = lo, hi

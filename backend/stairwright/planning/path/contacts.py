@@ -18,9 +18,9 @@ TOUCH = 0.0018  # m; a wheel this near to a concave corner (by arc length) touch
 def wheel_contacts(
     pieces: Floats, corners: Floats, r: float, s: float, points: Floats, normals: Floats, at: int
 ) -> int:
-    """Write the contacts of a wheel at `s` from row `at` on; returns how many there are (1 or 2)."""
+    """Write the contacts of a wheel at `s` from row `at` on; returns their number (1 or 2)."""
     x, z, nx, nz = curve_at(pieces, r, s)
-    k = np.searchsorted(corners, s)
+    k = int(np.searchsorted(corners, s))
     near = -1
     if k < len(corners) and corners[k] - s <= TOUCH:
         near = k
@@ -51,7 +51,7 @@ def pair_interval(
 
 @nb.njit(cache=True)
 def lagged_interval(
-    pieces: Floats, corners: Floats, r: float, sf: float, sr: float, friction: float, lag: float
+    pieces: Floats, r: float, sf: float, sr: float, friction: float, lag: float
 ) -> tuple[float, float]:
     """CoM interval that also holds if either wheel is still `lag` behind its plan.
 
@@ -62,11 +62,11 @@ def lagged_interval(
     points, normals = np.empty((2, 2)), np.empty((2, 2))
     for a in range(3):
         sa = sf if a == 0 else (sf - lag if a == 1 else sf - 0.3 * lag)
-        xa, za, nax, naz = curve_at(pieces, r, sa)
+        _, _, nax, naz = curve_at(pieces, r, sa)
         xf, zf, _, _ = curve_at(pieces, r, sf)
         for b in range(3):
             sb = sr if b == 0 else (sr - lag if b == 1 else sr - 0.3 * lag)
-            xb, zb, nbx, nbz = curve_at(pieces, r, sb)
+            _, _, nbx, nbz = curve_at(pieces, r, sb)
             xr, zr, _, _ = curve_at(pieces, r, sr)
             # The lagging wheel's normal at the planned centre: the direction decides.
             points[0, 0], points[0, 1] = xf - r * nax, zf - r * naz
@@ -106,7 +106,7 @@ def path_intervals(
         if lo > hi:
             lo, hi = out[k, 0], out[k, 1]
         out[k, 2], out[k, 3] = lo, hi
-        lo, hi = lagged_interval(pieces, corners, r, s[k, 0], s[k, 1], friction, lag)
+        lo, hi = lagged_interval(pieces, r, s[k, 0], s[k, 1], friction, lag)
         if lo > hi:
             lo, hi = out[k, 2], out[k, 3]
         out[k, 4], out[k, 5] = lo, hi

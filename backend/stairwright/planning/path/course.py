@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -164,7 +165,7 @@ def sample_course(path: WheelPath, begin: Stand, end: Stand, step: float, size: 
         else:
             kept.append(mark)
     out: list[float] = []
-    for a, b in zip(kept[:-1], kept[1:], strict=True):
+    for a, b in pairwise(kept):
         n = max(1, math.ceil((b - a) / step - 1e-6))
         out.extend(a + (b - a) * k / n for k in range(n))
     return np.array([*out, kept[-1]])

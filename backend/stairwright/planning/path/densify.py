@@ -76,7 +76,7 @@ def densify(
     s: Floats,
     body: Floats,
 ) -> tuple[Floats, Floats]:
-    """Insert nodes where contacts change, then halve intervals until linear motion fits the terrain.
+    """Insert nodes where contacts change, then halve intervals until linear motion fits.
 
     Args:
         pieces, corners: The wheel-centre curve.

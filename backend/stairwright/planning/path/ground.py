@@ -38,7 +38,7 @@ def first_segment(g: Ground, x: float) -> int:
     k = int((x - g.x[0]) / _BUCKET)
     if x < g.x[0]:
         k = 0
-    return g.first[min(max(k, 0), len(g.first) - 1)]
+    return int(g.first[min(max(k, 0), len(g.first) - 1)])
 
 
 @nb.njit(cache=True)

@@ -155,7 +155,7 @@ class Search:
             self.path.pieces, self.path.corners, p.wheel_radius, self.s, self.centres,
             0, len(self.s) - 1, self.near, self.far, lat, friction, reserve, LAG, com,
         )  # fmt: skip
-        source, goal = int(cells.index[i0, j0]), int(cells.index[i1, j1])
+        source, goal = int(cells.number[i0, j0]), int(cells.number[i1, j1])
         if source < 0 or goal < 0:
             return Finding(None, None, 0, None)
         w = self._world(com)
@@ -245,12 +245,12 @@ class Search:
         return full[2:-2, 2:-2, 2 : 2 + lat.nx]
 
     @staticmethod
-    def _near(volume: NDArray[np.generic], pose: Ints) -> tuple[slice, ...]:
+    def _near(pose: Ints) -> tuple[slice, ...]:
         return tuple(slice(max(0, int(v) - 2), int(v) + 3) for v in pose)
 
     def _best(self, volume: NDArray[np.uint8], target: Ints) -> tuple[int, Ints]:
         """Best quality near the resting pose `target` at the goal, and that pose."""
-        part = self._near(volume, target)
+        part = self._near(target)
         near = volume[part]
         if near.size == 0 or near.max() == 0:
             return 0, target
@@ -259,7 +259,7 @@ class Search:
         return int(near.max()), np.array(pose, np.int32)
 
     def _cheapest_pose(self, volume: NDArray[np.float32], pose: Ints) -> Ints:
-        part = self._near(volume, pose)
+        part = self._near(pose)
         at = np.unravel_index(int(volume[part].argmin()), volume[part].shape)
         return np.array([int(k) + part[m].start for m, k in enumerate(at)], np.int32)
 

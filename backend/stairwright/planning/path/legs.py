@@ -17,8 +17,10 @@ Floats = NDArray[np.float64]
 
 
 class Leg(NamedTuple):
-    """One leg pair: hip in the trunk frame, knee side, thigh range and what the calf's range means
-    for the distance from hip to wheel centre."""
+    """One leg pair: hip in the trunk frame, knee side, joint ranges.
+
+    The calf's range is also given as the distance from hip to wheel centre that it allows.
+    """
 
     hip_x: float
     hip_z: float
@@ -87,7 +89,7 @@ def calf_joint(dx: float, dz: float, thigh: float, calf: float, side: float) -> 
 
 @nb.njit(cache=True)
 def leg_gap(a: Floats, b: Floats, rt: float, rc: float, rw: float) -> float:
-    """Distance between two legs in one plane [m]: thighs, calves and wheels; negative if they touch.
+    """Distance of two legs in one plane [m]: thighs, calves, wheels; negative if they touch.
 
     `a` and `b` are (3, 2): hip, knee, wheel centre.
     """

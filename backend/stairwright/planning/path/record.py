@@ -144,7 +144,6 @@ def evaluate_path(
     s: Floats,
     body: Floats,
     friction: float,
-    reserve: float,
 ) -> Record:
     """Judge the nodes `s` (n, 2), `body` (n, 3) of a path exactly."""
     p = robot.planar

@@ -84,7 +84,7 @@ def refine(
             0.25 * scale(robot), fixed, 40, 0.06 * scale(robot),
         )  # fmt: skip
         dense_s, dense_body = densify(path.pieces, path.corners, p, legs, nodes_s, nodes_body)
-        record = evaluate_path(path, ground, robot, legs, dense_s, dense_body, friction, reserve)
+        record = evaluate_path(path, ground, robot, legs, dense_s, dense_body, friction)
         found = Refined(dense_s, dense_body, record)
         if best is None or record.worst > best.record.worst:
             best = found

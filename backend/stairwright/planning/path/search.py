@@ -39,9 +39,9 @@ def _neighbour(cells: Cells, c: int, m: int, sign: int) -> int:
     """The cell that move `m` comes from (sign -1) or leads to (+1), or -1."""
     i = cells.front[c] + sign * MOVES[m, 0]
     j = cells.rear[c] + sign * MOVES[m, 1]
-    if i < 0 or j < 0 or i >= len(cells.index) or j >= len(cells.index):
+    if i < 0 or j < 0 or i >= len(cells.number) or j >= len(cells.number):
         return -1
-    return cells.index[i, j]
+    return int(cells.number[i, j])
 
 
 @nb.njit(cache=True)
@@ -144,7 +144,7 @@ def step_cost(w: World, cells: Cells, c: int, m: int) -> float:
     """Cost of rolling into cell `c` by move `m`: distance, dearer when one wheel rolls alone."""
     i, j = cells.front[c] - MOVES[m, 0], cells.rear[c] - MOVES[m, 1]
     length = abs(w.s[cells.front[c]] - w.s[i]) + abs(w.s[cells.rear[c]] - w.s[j])
-    return length * (1.0 if m == 0 else (1.25 if m < FORWARD else 2.5)) / (2.0 * w.lat.step)
+    return float(length) * (1.0 if m == 0 else (1.25 if m < FORWARD else 2.5)) / (2.0 * w.lat.step)
 
 
 @nb.njit(cache=True, error_model="numpy", fastmath=True)

@@ -1,0 +1,132 @@
+"""The dense path: plans, their certificates, and input at the edges."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import stairwright as sw
+from stairwright.planning.certificate import certify
+from stairwright.robot import kinematics as kin
+from stairwright.terrain.profile import Terrain
+
+ROBOTS = ("a1_wheeled", "a1_wheeled_x")
+STAIR = [(-1.5, 0.0), (0.0, 0.0), (0.0, 0.36), (1.5, 0.36)]
+
+
+def terrain(points, **more):
+    return Terrain.model_validate({"points": points, **more})
+
+
+@pytest.fixture(scope="module", params=ROBOTS)
+def stair_plan(request):
+    return sw.plan(terrain(STAIR), request.param, friction=0.6)
+
+
+def test_single_stair_is_planned_and_certified(stair_plan):
+    assert stair_plan.feasible
+    assert stair_plan.certificate.passed
+    assert {c.name for c in stair_plan.certificate.checks} >= {
+        "gap between wheels and ground",
+        "clearance of the trunk",
+        "gap between front and rear leg",
+        "samples out of balance",
+    }
+
+
+def test_poses_are_consistent(stair_plan):
+    robot = stair_plan.robot_description
+    progress = np.array([p.progress for p in stair_plan.poses])
+    time = np.array([p.time for p in stair_plan.poses])
+    assert np.all(np.diff(progress) > 0)
+    assert np.all(np.diff(time) > 0)
+    for pose in stair_plan.poses[::20]:
+        frames = kin.forward(robot, pose.x_c, pose.z_c, pose.pitch, np.array(pose.q))
+        assert frames.wheels == pytest.approx(np.array(pose.wheels), abs=1e-9)
+        assert kin.com(robot, pose.x_c, pose.z_c, frames) == pytest.approx(pose.com, abs=1e-9)
+        forces = np.array(pose.forces)
+        assert np.all(forces[:, 1] > 0)
+        assert min(pose.margins.model_dump().values()) > 0
+
+
+def test_starts_and_ends_standing(stair_plan):
+    robot = stair_plan.robot_description
+    for pose, ground in ((stair_plan.poses[0], 0.0), (stair_plan.poses[-1], 0.36)):
+        assert pose.pitch == pytest.approx(0.0, abs=1e-9)
+        assert pose.z_c == pytest.approx(ground + robot.nominal_height, abs=1e-6)
+    assert stair_plan.critical[0] == 0
+    assert stair_plan.critical[-1] == len(stair_plan.poses) - 1
+
+
+def test_joint_rates_stay_below_the_limit(stair_plan):
+    q = np.array([p.q for p in stair_plan.poses])
+    time = np.array([p.time for p in stair_plan.poses])
+    assert np.abs(np.diff(q, axis=0)).max(axis=1).max() < 0.35
+    assert (np.abs(np.diff(q, axis=0)).max(axis=1) / np.diff(time)).max() <= 1.5 + 1e-6
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize(
+    "points",
+    [
+        [(-1.0, 0.0), (2.0, 0.0)],
+        [(-1.5, 0.0), (0.0, 0.0), (0.0, 0.02), (0.3, 0.02), (0.3, 0.0), (1.5, 0.0)],
+        [(-1.5, 0.0), (0.0, 0.0), (0.0, -0.4), (0.015, -0.4), (0.015, 0.0), (1.5, 0.0)],
+        [(-1.5, 0.0), (0.0, 0.0), (0.433, 0.25), (2.0, 0.25)],
+    ],
+    ids=["flat", "low curb", "slit", "ramp"],
+)
+def test_easy_terrain_is_planned(points, robot):
+    plan = sw.plan(terrain(points), robot, friction=0.6)
+    assert plan.feasible
+    assert certify(plan).passed
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_friction_that_is_named_is_enough(robot):
+    ramp = terrain([(-1.5, 0.0), (0.0, 0.0), (1.5, 1.05), (2.7, 1.05)])
+    plan = sw.plan(ramp, robot, friction=0.4)
+    assert not plan.feasible
+    assert plan.poses == []
+    assert plan.problem.kind == "statics"
+    assert plan.problem.limit.needed > 0.7
+    assert plan.problem.limit.available == pytest.approx(0.4)
+    assert sw.plan(ramp, robot, friction=plan.problem.limit.needed).feasible
+
+
+def test_short_first_flat_is_a_start_problem():
+    plan = sw.plan(terrain([(-0.1, 0.0), (0.0, 0.0), (0.0, 0.3), (2.0, 0.3)]), friction=0.6)
+    assert plan.problem.kind == "start"
+    assert plan.problem.limit.needed > plan.problem.limit.available
+
+
+def test_start_and_goal_are_kept():
+    plan = sw.plan(terrain(STAIR, start=-0.8, goal=0.9), friction=0.6)
+    assert plan.feasible
+    assert plan.poses[0].x_c == pytest.approx(-0.8, abs=1e-6)
+    assert plan.poses[-1].x_c == pytest.approx(0.9, abs=1e-6)
+
+
+def test_certificate_refuses_tampered_plans():
+    plan = sw.plan(terrain(STAIR), friction=0.6)
+    k = len(plan.poses) // 2
+    pose = plan.poses[k]
+
+    def with_pose(**change):
+        poses = [*plan.poses[:k], pose.model_copy(update=change), *plan.poses[k + 1 :]]
+        return certify(plan.model_copy(update={"poses": poses}))
+
+    def failed(certificate):
+        return {c.name for c in certificate.checks if not c.passed}
+
+    assert "gap between wheels and ground" in failed(with_pose(z_c=pose.z_c + 0.02))
+    assert "clearance of the trunk" in failed(with_pose(z_c=pose.z_c - 0.4))
+    bent = (pose.q[0], pose.q[1] - 1.5, pose.q[2], pose.q[3])
+    assert "slack of the joint limits" in failed(with_pose(q=bent))
+    assert "samples out of balance" in failed(certify(plan.model_copy(update={"friction": 0.05})))
+
+
+def test_same_question_same_answer():
+    first, second = (sw.plan(terrain(STAIR), friction=0.6) for _ in range(2))
+    assert first.id == second.id
+    assert first.poses == second.poses
