@@ -75,6 +75,10 @@ class Motion:
             forces=None if self.forces is None else mix(self.forces),
         )
 
+    def progress_at(self, time: float) -> float:
+        """Progress [m] at `time`."""
+        return float(np.interp(time, self.time, self.progress))
+
     def time_at(self, progress: float) -> float:
         """The first time at which `progress` [m] is reached."""
         i = int(np.searchsorted(self.progress, progress, side="left"))

@@ -241,9 +241,10 @@ class SceneSession:
         with self._lock:
             if self._closed:
                 return
-            moment = None if self._motion is None else self._motion.at(time)
+            motion = self._motion
+            moment = None if motion is None else motion.at(time)
             with self._server.atomic():
-                self._stage.draw_moment(time, moment)
+                self._stage.draw_moment(0.0 if motion is None else motion.progress_at(time), moment)
             if moment is not None:
                 moved = float(np.abs(moment.position - self._subject).max()) > 1e-6
                 self._subject = moment.position.copy()
