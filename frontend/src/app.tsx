@@ -3,7 +3,7 @@
 import { useEffect } from "preact/hooks";
 import { Inspector } from "./inspector/inspector";
 import { Plots } from "./plots/plots";
-import { onPageKey } from "./profile-editor/commands";
+import { onPageKey, onPageKeyUp } from "./profile-editor/commands";
 import { Editor } from "./profile-editor/editor";
 import { Results } from "./results/results";
 import { Scene } from "./scene/scene";
@@ -34,7 +34,11 @@ function planState(): string {
 export function App() {
   useEffect(() => {
     addEventListener("keydown", onPageKey);
-    return () => removeEventListener("keydown", onPageKey);
+    addEventListener("keyup", onPageKeyUp);
+    return () => {
+      removeEventListener("keydown", onPageKey);
+      removeEventListener("keyup", onPageKeyUp);
+    };
   }, []);
   return (
     <div

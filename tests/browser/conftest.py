@@ -22,6 +22,8 @@ class Product:
     def __init__(self, page: Page, scene: bool = False) -> None:
         self.page = page
         self.errors: list[str] = []
+        # Spinners would keep the software renderer busy.
+        page.emulate_media(reduced_motion="reduce")
         if not scene:
             # Without a graphics card the 3-D frame takes a core of its own; only tests of the
             # scene let it in. The session behind it is opened and steered all the same.

@@ -4,7 +4,7 @@ import { commit, drawing, redo, selection, undo } from "../state/drawing";
 import { togglePlay } from "../state/playback";
 import { type Tool, tool } from "../state/view";
 import { addVertex, moveVertices, removeVertices } from "./edits";
-import { cancelGesture } from "./gestures";
+import { cancelGesture, holdSpace, releaseSpace } from "./gestures";
 
 export const TOOL_KEYS: Record<string, Tool> = {
   v: "select",
@@ -89,8 +89,15 @@ export function onPageKey(event: KeyboardEvent): void {
     selection.value = [];
   } else if (event.key === " " && !isButton(event.target)) {
     event.preventDefault();
-    if (!event.repeat) togglePlay();
+    if (!event.repeat) holdSpace();
+  } else if (event.target === document.body && selection.peek().length > 0) {
+    // A selection by rectangle leaves the focus on the page; its keys work all the same.
+    onVertexKey(event);
   }
+}
+
+export function onPageKeyUp(event: KeyboardEvent): void {
+  if (event.key === " " && releaseSpace()) togglePlay();
 }
 
 const isVertex = (target: EventTarget | null) =>

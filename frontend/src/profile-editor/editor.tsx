@@ -158,18 +158,6 @@ export function Editor() {
     observer.observe(element);
     return () => observer.disconnect();
   }, []);
-  useLayoutEffect(() => {
-    const held = (event: KeyboardEvent) => {
-      if (event.key !== " " || event.target !== document.body) return;
-      spaceHeld.value = event.type === "keydown";
-    };
-    addEventListener("keydown", held);
-    addEventListener("keyup", held);
-    return () => {
-      removeEventListener("keydown", held);
-      removeEventListener("keyup", held);
-    };
-  }, []);
   return (
     <section
       class="edit"

@@ -16,6 +16,19 @@ export const marquee = signal<[number, number, number, number] | null>(null);
 export const dragging = signal<"vertex" | "segment" | "pan" | "tool" | "marquee" | null>(null);
 /** Space is held: the next drag pans. */
 export const spaceHeld = signal(false);
+let spacePanned = false;
+
+export function holdSpace(): void {
+  spaceHeld.value = true;
+  spacePanned = false;
+}
+
+/** True where Space was only tapped, not held for a drag. */
+export function releaseSpace(): boolean {
+  const tapped = spaceHeld.peek() && !spacePanned;
+  spaceHeld.value = false;
+  return tapped;
+}
 
 interface Drag {
   kind: NonNullable<typeof dragging.value>;
@@ -51,6 +64,7 @@ export function press(event: PointerEvent, at: Vec2, target: Target): void {
   if (event.button === 2) return;
   performance.clearMarks();
   const panning = event.button === 1 || spaceHeld.peek();
+  spacePanned ||= spaceHeld.peek();
   const drawn = drawing.peek().points;
   const kind = panning ? "pan" : dragKind(target);
   drag = {

@@ -3,7 +3,7 @@
 import { fixed } from "../geometry/format";
 import { segmentKind } from "../geometry/profile";
 import { commit, draft, drawing, revert, selection } from "../state/drawing";
-import { tool } from "../state/view";
+import { isNarrow, tool } from "../state/view";
 import { NumberField } from "../ui/number-field";
 import { moveVertices } from "./edits";
 import { names } from "./vertices";
@@ -38,8 +38,11 @@ export function Readout() {
   const [x, y] = [px(p[0]), py(p[1])];
   if (x < box.left || x > box.right || y < box.top || y > box.bottom) return null;
   // Below and right of the corner, where the ground is; to the other side at the rim.
-  const left = x + 64 + WIDTH > box.right ? x - WIDTH - 24 : x + 64;
-  const top = Math.min(y + 28, box.bottom - HEIGHT - 40);
+  const beside = x + 64 + WIDTH > box.right ? x - WIDTH - 24 : x + 64;
+  // Narrow pages have one free corner, away from the obstruction's card.
+  const left = isNarrow.value ? box.right - WIDTH - 12 : beside;
+  const lowest = box.bottom - HEIGHT - 40;
+  const top = isNarrow.value ? lowest : Math.min(y + 28, lowest);
   const points = drawing.value.points;
   const set = (axis: 0 | 1) => (value: number) => {
     const by = value - p[axis];

@@ -12,7 +12,7 @@ import { code, GRIDS, grid, toNeighbours } from "./snap";
 import { fit, zoomPercent } from "./viewport";
 
 const TOOLS: [Tool, string, string, string][] = [
-  ["select", "Select", "V", "Drag corners and stretches"],
+  ["select", "Select", "V", "Drag corners and stretches; with Shift, all that follows moves along"],
   ["stair", "Stair", "S", "Drag up for one riser; with a stair code, along for a flight"],
   ["ramp", "Ramp", "R", "Drag from the foot to the top"],
   ["flat", "Flat", "F", "Drag along to level the ground"],
@@ -65,8 +65,7 @@ export function Toolbar() {
           }}
         >
           <Icon name={name} />
-          <span class="lb">{label}</span>
-          <kbd aria-hidden="true">{key}</kbd>
+          <span class="lb">{label}</span> <kbd>{key}</kbd>
         </button>
       ))}
       <div class="sep" />
