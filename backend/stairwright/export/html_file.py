@@ -45,11 +45,18 @@ def rollout_html(rollout: Rollout) -> bytes:
     for name, text in (
         ("__TITLE__", title),
         ("__STYLE__", _part("replay.css")),
-        ("__SCRIPT__", _part("replay.js")),
+        ("__SCRIPT__", _script()),
         ("__RUN__", run),
     ):
         page = page.replace(name, text, 1)
     return page.encode()
+
+
+@cache
+def _script() -> str:
+    """The scripts in the order of their numbers: later ones use what earlier ones define."""
+    files = sorted((Path(__file__).parent / "replay").glob("*.js"))
+    return "\n".join(path.read_text(encoding="utf-8") for path in files)
 
 
 @cache
