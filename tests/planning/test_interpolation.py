@@ -34,9 +34,10 @@ def test_joint_mode_is_equations_23_and_24():
     assert samples.trunk[middle, 2] == pytest.approx((1 - share) * a.pitch + share * b.pitch)
 
 
-@pytest.mark.parametrize("mode", ["joint", "curve"])
-def test_reference_passes_through_the_poses(mode):
-    plan = sw.plan("three-stairs-up", method="critical")
+@pytest.mark.parametrize(("terrain", "mode"), [("three-stairs-up", "joint"), ("ramp-1-8", "curve")])
+def test_reference_passes_through_the_poses(terrain, mode):
+    """Where no pose has to move aside for balance or clearance."""
+    plan = sw.plan(terrain, method="critical")
     samples = reference(plan, mode)
     for pose in plan.poses:
         i = int(np.argmin(np.abs(samples.progress - pose.progress)))

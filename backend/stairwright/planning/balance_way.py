@@ -12,7 +12,6 @@ from .supports import support
 Floats = NDArray[np.float64]
 
 ROOM = 0.03  # m of CoM margin wanted on the way
-STEEPEST = 1.5  # change of the shift over progress next to a pose
 EASE = 0.06  # m of progress over which the CoM moves aside before and after it must
 
 
@@ -33,19 +32,18 @@ def com_ways(path: WheelPath, friction: float, wheels: Floats) -> tuple[Floats, 
     return low, high
 
 
-def eased_shift(progress: Floats, com: Floats, low: Floats, high: Floats, knots: Floats) -> Floats:
+def eased_shift(progress: Floats, com: Floats, low: Floats, high: Floats) -> Floats:
     """Smooth shift (n,) of `com` that brings it between `low` and `high` wherever it can [m].
 
     What is missing is spread to `EASE` before and behind, then averaged over the same window, so
-    the shift is nowhere smaller than what is missing, unless both sides ask. At the `knots` (k,)
-    of progress, where the poses are, it is zero.
+    the shift is nowhere smaller than what is missing, unless both sides ask. It
+    is zero at both ends, where the poses are known.
     """
     ahead = _eased(progress, np.maximum(low - com, 0.0))
     back = _eased(progress, np.maximum(com - high, 0.0))
-    shift = np.clip(ahead - back, low - com, high - com)
-    most = STEEPEST * np.abs(progress[:, None] - knots).min(axis=1)
-    limited: Floats = np.clip(shift, -most, most)
-    return limited
+    shift: Floats = np.clip(ahead - back, low - com, high - com)
+    shift[[0, -1]] = 0.0
+    return shift
 
 
 def _eased(progress: Floats, missing: Floats) -> Floats:

@@ -106,9 +106,10 @@ def _solve(
         if moved is not None and moved[0].wheels[1] >= rear:
             pair = moved
         else:
+            span, up = (rear, end.wheels[1]), obstacle.height > 0
             places = (
-                Place(first, (rear, end.wheels[1]), True, obstacle.steepest, posture),
-                Place(second, (rear, end.wheels[1]), False, obstacle.steepest, posture),
+                Place(first, span, True, obstacle.steepest, up, posture),
+                Place(second, span, False, obstacle.steepest, up, posture),
             )
             both = search.best_pair(*places)
             for place, one in zip(places, both, strict=True):
@@ -162,6 +163,8 @@ def _moved_pair(
         before, after = path.centres(np.array(knot.wheels)), path.centres(np.array(wheels))
         trunk = (knot.trunk[0] + step[0], knot.trunk[1] + step[1], knot.trunk[2])
         if np.abs(after - before - step).max() > CONGRUENT or not search.clear(trunk, knot.joints):
+            return None
+        if search.settled(wheels[1]) != search.settled(knot.wheels[1]):
             return None
         out.append(_Knot((float(trunk[0]), float(trunk[1]), trunk[2]), knot.joints, wheels, True))
     return out[0], out[1]

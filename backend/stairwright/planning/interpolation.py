@@ -70,7 +70,7 @@ def reference(
     time = at([(pose.time,) for pose in plan.poses])[:, 0]
     path = wheel_path(plan.terrain, robot.wheel.radius)
     if mode == "curve":
-        trunk, q = _on_curve(plan, path, knots, progress, trunk, wheel_progress, q)
+        trunk, q = _on_curve(plan, path, progress, trunk, wheel_progress, q)
     com = _com(robot, trunk, q)
     normals = path.normals(wheel_progress.ravel()).reshape(-1, 2, 2)
     contacts = path.contacts(wheel_progress.ravel()).reshape(-1, 2, 2)
@@ -114,7 +114,6 @@ def _grid(knots: Floats, spacing: float) -> Floats:
 def _on_curve(
     plan: Plan,
     path: WheelPath,
-    knots: Floats,
     progress: Floats,
     trunk: Floats,
     s: Floats,
@@ -123,13 +122,14 @@ def _on_curve(
     """Trunk (n, 3) and joints (n, 4) with the wheels on the curve, limits and clearance kept.
 
     Where a linear trunk is out of the legs' reach, touches the terrain or leaves the centre of
-    mass where the friction cones cannot hold it, the nearest pose that does not takes its place.
-    Where there is none, the joints stay at their limits and the wheels leave the curve.
+    mass where the friction cones cannot hold it, the nearest pose that does not takes its place;
+    critical poses beside such places move with them. Where there is none, the joints stay at
+    their limits and the wheels leave the curve.
     """
     robot = plan.robot_description
     solved, good = _legs(robot, path, trunk, s, q)
     com = _com(robot, trunk, np.where(np.isfinite(solved), solved, q))[:, 0]
-    shift = eased_shift(progress, com, *com_ways(path, plan.friction, s), knots)
+    shift = eased_shift(progress, com, *com_ways(path, plan.friction, s))
     if good.all() and not shift.any():
         return trunk, solved
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,7 @@ WANTED = 0.05  # m of CoM margin beyond which other things decide
 GRID = 0.05  # m between the rear wheel places that are tried
 ENOUGH = 3  # poses with the room wanted; then the search ends
 TRIES = 4  # places that the slower solvers are tried at where the fast one finds nothing
+SETTLE = 0.10  # m that a resting rear wheel is past steep ground, for legs of 0.4 m
 GRIP = 0.9  # of the friction angle: steeper ground does not hold a resting wheel alone
 TURN = 0.05  # 1/rad^2; what turning the joints weighs against room for the CoM
 _NEAREST = np.array([100.0, 30.0, 3.0, 0.05, 0.05, 0.05, 0.05])  # 1/m^2, 1/rad^2
@@ -47,6 +48,8 @@ class Place:
         ahead: Whether the front wheel is about to take a face, which alone must carry it next.
         face: Where on the obstacle's face the front wheel is, or was, while the rear wheel is here:
             both must hold the robot together.
+        climbs: Whether the obstacle goes up. Eq 20 keeps the robot from falling backward there; on
+            the way down it does not apply, the robot would fall forward.
         posture: (5,) pitch and joints of the pose before [rad].
     """
 
@@ -54,6 +57,7 @@ class Place:
     rear: tuple[float, float]
     ahead: bool
     face: float
+    climbs: bool
     posture: Floats
 
 
@@ -105,17 +109,23 @@ class PoseSearch:
 
     def best_pair(self, first: Place, second: Place) -> tuple[Found | None, Found | None]:
         """The poses before and after a face; the rear wheel crosses no steep ground between."""
+        best: tuple[float, Found, Found | None] | None = None
         for gentle in (True, False):
-            options = self.search(first, gentle)
-            for one in sorted(options, key=lambda found: -found.score)[:3]:
+            options = sorted(self.search(first, gentle), key=lambda found: -found.score)
+            for one in options[:ENOUGH]:
                 rear = float(one.solution.x[8])
                 stop = self._steep_ahead(rear) if gentle else second.rear[1]
                 stop = min(stop, second.rear[1])
-                place = Place(second.front, (rear, stop), False, second.face, one.solution.x[2:7])
-                later = self.search(place, gentle)
-                if later:
-                    return one, max(later, key=lambda found: found.score)
-        return (max(options, key=lambda found: found.score), None) if options else (None, None)
+                place = replace(second, rear=(rear, stop), posture=one.solution.x[2:7])
+                later = max(self.search(place, gentle), key=lambda found: found.score, default=None)
+                value = one.score + (later.score if later else -10.0)
+                if best is None or value > best[0]:
+                    best = value, one, later
+                if later is not None and later.margin >= 0.99 * WANTED:
+                    return one, later
+            if best is not None and best[2] is not None:
+                break
+        return (best[1], best[2]) if best else (None, None)
 
     def search(self, place: Place, gentle: bool = True) -> list[Found]:
         """All solved poses with the front wheel at a place, one for each rear wheel place tried.
@@ -218,7 +228,7 @@ class PoseSearch:
         lower[7] = upper[7] = place.front
         lower[8] = max(place.rear[0], rear - GRID / 2)
         upper[8] = max(lower[8], min(place.rear[1], rear + GRID / 2))
-        return Bounds(lower, upper, CLEARANCE, APART, 0.0)
+        return Bounds(lower, upper, CLEARANCE, APART, 0.0 if place.climbs else -np.inf)
 
     def clear(self, trunk: tuple[float, float, float], q: Floats) -> bool:
         """Whether a pose with known joints keeps the clearances asked for."""
@@ -235,9 +245,7 @@ class PoseSearch:
         gap = np.hypot(*(self.path.centres(s) - ends).T)
         keep = (gap >= self.span[0]) & (gap <= self.span[1])
         if gentle:
-            normals = self.path.normals(s)
-            slope = np.abs(np.arctan2(normals[:, 0], normals[:, 1]))
-            keep &= slope <= GRIP * math.atan(self.friction)
+            keep &= np.array([self.settled(float(one)) for one in s], dtype=bool)
         for i in np.flatnonzero(keep):
             low_com, high_com = support(self.path, place.face, s[i]).com_interval(self.friction)
             keep[i] = low_com <= high_com
@@ -246,6 +254,17 @@ class PoseSearch:
         order = np.argsort(np.abs(gap[keep] - 1.4 * wheelbase), kind="stable")
         places: Floats = s[keep][order]
         return places
+
+    def settled(self, s: float) -> bool:
+        """Whether a wheel at `s` rests: on ground that holds it, and well past any that does not.
+
+        A wheel that has only just climbed an edge would leave the whole climb to the short way of
+        the other wheel before.
+        """
+        places = s - np.array([0.0, 0.25, 0.5, 0.75, 1.0]) * SETTLE * self.size
+        normals = self.path.normals(np.maximum(places, 0.0))
+        slope = np.abs(np.arctan2(normals[:, 0], normals[:, 1]))
+        return bool(np.all(slope <= GRIP * math.atan(self.friction)))
 
     def _steep_ahead(self, s: float) -> float:
         """Arc length of the next ground ahead of `s` that does not hold a resting wheel alone."""
@@ -292,9 +311,12 @@ class PoseSearch:
         frames = kinematics.forward(self.robot, x_c, z_c, pitch, x[3:7])
         com = float(kinematics.com(self.robot, x_c, z_c, frames)[0])
         low, high = support(self.path, x[7], x[8]).com_interval(self.friction)
-        if place.ahead:
-            a, b = support(self.path, x[7] + _FACE, x[8]).com_interval(self.friction)
-            if a <= b:
+        # Just after the first pose the face alone carries the front wheel; on the way down it still
+        # does just before the second one, and there the CoM has the least time to move on.
+        if place.ahead or not place.climbs:
+            on_face = x[7] + _FACE if place.ahead else place.face
+            a, b = support(self.path, on_face, x[8]).com_interval(self.friction)
+            if max(low, a) <= min(high, b):
                 low, high = max(low, a), min(high, b)
         if low > high:
             return 0.0, -np.inf
