@@ -11,12 +11,11 @@ from starlette.middleware.gzip import GZipMiddleware
 from stairwright import __version__
 
 from . import openapi, problems
-from .middleware import Gate, LimitBody, Observe
+from .middleware import PREFIX, Gate, LimitBody, Observe
 from .routes import health, jobs, page, plans, robots, rollouts, scene, sessions, terrains, tuning
 from .services import Services
 from .settings import Settings
 
-PREFIX = "/api/v1"
 DESCRIPTION = """Plans and simulates how a wheel-legged robot climbs stairs, ramps and any profile.
 SI units and radians; x forward, y left, z up; nose-up pitch is negative."""
 

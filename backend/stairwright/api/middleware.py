@@ -29,7 +29,8 @@ _REQUEST_ID = re.compile(r"[\w.-]{1,64}", re.ASCII)
 _COOKIE = "stairwright_token"
 _OPEN = frozenset({"/healthz", "/api/v1/healthz"})
 _SAFE = frozenset({"GET", "HEAD", "OPTIONS"})
-IMPORT_PATH = "/api/v1/terrains/import"
+PREFIX = "/api/v1"
+IMPORT_PATH = f"{PREFIX}/terrains/import"
 
 
 class Observe:
@@ -59,7 +60,7 @@ class Observe:
             await self.app(scope, receive, send_with_id)
         finally:
             seconds = time.perf_counter() - start
-            route = getattr(scope.get("route"), "path", "") or "other"
+            route = _template(scope)
             self.metrics.observe(scope["method"], route, status, seconds)
             logger.info(
                 "%s %s %d",
@@ -69,6 +70,15 @@ class Observe:
                 extra={"ms": round(seconds * 1e3, 1), "client": owner_of(scope)},
             )
             request_id.reset(token)
+
+
+def _template(scope: Scope) -> str:
+    """The route's template, such as /api/v1/terrains/{name}: as few labels as there are routes."""
+    template: str = getattr(scope.get("route"), "path", "")
+    if not template:
+        return "other"
+    inside = scope["path"].startswith(PREFIX) and not template.startswith(PREFIX)
+    return PREFIX + template if inside else template
 
 
 class LimitBody:

@@ -45,7 +45,7 @@ class ProblemDocument(BaseModel):
     errors: list[FieldError] = []
 
 
-class Problem(Exception):  # noqa: N818 - the word of RFC 9457
+class Problem(Exception):
     """Raised anywhere in the service to answer with a problem document."""
 
     def __init__(

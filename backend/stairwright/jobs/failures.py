@@ -9,7 +9,7 @@ from typing import Any
 from stairwright.errors import Cancelled, InputError, StairwrightError
 
 
-class Failure(StairwrightError):  # noqa: N818 - it reads as what it is
+class Failure(StairwrightError):
     """Base: `status` is the HTTP status that fits, `retry_after` seconds make sense if given."""
 
     status = 503

@@ -15,6 +15,7 @@ for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 # A failure here is no reason to have no workers: it will show again, with a traceback in the log,
 # in the first task that needs what failed.
 with contextlib.suppress(Exception):
-    from stairwright.jobs import work
+    from stairwright.jobs import work, worker
 
+    worker.die_with_parent()
     work.warm()

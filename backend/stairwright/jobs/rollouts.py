@@ -40,6 +40,7 @@ class Run:
     gauge: Gauge
     jobs: list[Job] = field(default_factory=list)
     task: asyncio.Task[None] | None = None
+    started: bool = False
 
 
 class Rollouts:
@@ -80,7 +81,7 @@ class Rollouts:
             run = Run(question, owner, Gauge.create())
             self._runs[question.key] = run
             run.task = asyncio.create_task(self._carry_out(run))
-        elif run.jobs and run.jobs[0].state == "running":
+        elif run.started:
             job.start()
         run.jobs.append(job)
 
@@ -101,6 +102,9 @@ class Rollouts:
                 run.jobs.remove(job)
                 if not run.jobs:
                     del self._runs[key]
+                    if not run.started:
+                        await self._abandon(run)  # its place in the queue is free at once
+                        continue
                     stopping = asyncio.create_task(self._stop(run))
                     self._stopping.add(stopping)
                     stopping.add_done_callback(self._stopping.discard)
@@ -111,6 +115,10 @@ class Rollouts:
         assert run.task is not None
         run.gauge.cancel()
         await asyncio.wait({run.task}, timeout=COURTESY)
+        await self._abandon(run)
+
+    async def _abandon(self, run: Run) -> None:
+        assert run.task is not None
         run.task.cancel()
         await asyncio.wait({run.task})
 
@@ -130,6 +138,7 @@ class Rollouts:
     async def _carry_out(self, run: Run) -> None:
         try:
             async with self.queue.slot(run.owner):
+                run.started = True
                 for job in run.jobs:
                     job.start()
                 watcher = asyncio.create_task(_watch(run))

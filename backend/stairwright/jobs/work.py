@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import orjson
 
 from stairwright.errors import InputError
+from stairwright.library import robots
 from stairwright.storage.artefacts import Artefacts
 
 from .gauge import Gauge
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from stairwright.planning.plan import Plan
 
 Question = Mapping[str, Any]
+GENTLE = {"name": "warm-up", "points": [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.04], [1.0, 0.04]]}
 PLANNING_SHARE = 0.1  # of a rollout's progress, where it has to plan first
 
 
@@ -138,13 +140,16 @@ def export(packed: bytes, kind: str, format_name: str) -> bytes:
 
 
 def warm() -> None:
-    """Import and compile what the first question would otherwise wait for.
+    """Import and load what the first question would otherwise wait for; seconds, not minutes.
 
     What fails here is logged only: it will fail again, and be answered, where it is needed.
     """
     try:
-        from stairwright.warmup import warm as warm_up
+        from stairwright.planning.planner import plan
+        from stairwright.simulation.rollout import rollout
 
-        warm_up()
+        for robot in robots():
+            rollout(plan(GENTLE, robot, method="path"))
+        plan(GENTLE, robots()[0], method="critical")
     except Exception:
         logging.getLogger(__name__).exception("warming up failed")

@@ -30,14 +30,19 @@ class Limits:
 def initialise(limits: Limits) -> None:
     """Set the limits and the signals."""
     signal.signal(signal.SIGTERM, signal.SIG_DFL)  # at once, even inside compiled code
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    die_with_parent()
     if limits.nice:
         os.nice(limits.nice)
     if limits.memory:
         _limit(resource.RLIMIT_AS, _address_space() + limits.memory * 2**20)
     if limits.sealed:
         _seal()
+
+
+def die_with_parent() -> None:
+    """Where the system can (Linux), end at once when the parent is gone, whatever we are at."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 def _seal() -> None:

@@ -21,6 +21,9 @@ class Page(StaticFiles):
         super().__init__(directory=folder, html=True, check_dir=False)
         self.folder = folder
 
+    async def check_config(self) -> None:
+        """A folder that is not there is answered for, see `get_response`."""
+
     async def get_response(self, path: str, scope: Scope) -> Response:
         """One file, or a sentence if the page has not been built."""
         if path == "." and not (self.folder / "index.html").is_file():
