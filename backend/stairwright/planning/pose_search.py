@@ -96,7 +96,8 @@ class PoseSearch:
         self._dimensions = dimensions(robot)
         w = weights
         self._weights = np.array([w.com_x, w.com_z, w.pitch, *[w.posture] * 4])
-        joints = kinematics.limits(robot)
+        # Inside the limits by more than what solvers leave open.
+        joints = kinematics.limits(robot) + np.array([1e-5, -1e-5])
         self._lower = np.array([-1e3, -1e3, -math.pi, *joints[:, 0], 0.0, 0.0])
         self._upper = np.array([1e3, 1e3, math.pi, *joints[:, 1], 0.0, 0.0])
         middle, half = joints.mean(axis=1), np.ptp(joints, axis=1) / 2 - 0.02
