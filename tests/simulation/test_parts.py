@@ -1,0 +1,229 @@
+"""Motors, governor, verdicts, deviations, trials and the flat-ground drive."""
+
+from __future__ import annotations
+
+import math
+
+import mujoco
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import stairwright as sw
+from stairwright.control.setpoint import RATES, WIDTH
+from stairwright.control.settings import ControllerSettings
+from stairwright.errors import InputError
+from stairwright.planning.interpolation import reference
+from stairwright.robot.mujoco_model import build_spec
+from stairwright.simulation.actuators import available
+from stairwright.simulation.disturbance import (
+    Disturbance,
+    Sensors,
+    disturb_trunk,
+    real_terrain,
+)
+from stairwright.simulation.drive import drive
+from stairwright.simulation.governor import advance, track
+from stairwright.simulation.outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
+from stairwright.simulation.trials import (
+    Ranges,
+    clopper_pearson,
+    draw,
+    parse_ranges,
+    trials,
+    wilson,
+)
+
+FLAT = {"name": "short-flat", "points": [[-0.6, 0.0], [0.6, 0.0]], "friction": 0.6}
+WEIGHT = 11.84 * 9.81
+
+
+@given(st.floats(-100, 100), st.floats(-60, 60))
+def test_motor_line(torque: float, speed: float) -> None:
+    got = available(torque, speed, 33.5, 21.0)
+    assert abs(got) <= min(abs(torque), 33.5) + 1e-12
+    assert got * torque >= 0.0
+    if torque * speed > 0.0:
+        assert abs(got) <= 33.5 * max(0.0, 1.0 - abs(speed) / 21.0) + 1e-12
+    elif abs(torque) <= 33.5:
+        assert got == torque  # braking has the full peak
+
+
+def run_governor(lag: float, steps: int = 3000):
+    plan = sw.plan(FLAT, "a1_wheeled", method="nominal")
+    line = track(reference(plan), plan.robot_description, ControllerSettings(speed=0.1))
+    clock, target = np.array([line.start, 0.0, 0.0]), np.empty(WIDTH)
+    rates = []
+    for _ in range(steps):
+        s = np.interp(clock[0], line.start + line.step * np.arange(len(line.rows)), line.rows[:, 0])
+        behind = s - line.rows[0, 0] - lag
+        places = np.repeat(line.rows[0, :2] + behind, 2)
+        course = (line.start, line.step, line.rows, line.speeds, 0.012)
+        advance(*course, places, True, 0.002, clock, target)
+        rates.append(clock[1])
+    return line, clock, target, np.array(rates)
+
+
+def test_governor_keeps_time_with_a_robot_that_follows() -> None:
+    line, clock, target, rates = run_governor(0.0)
+    assert rates.max() == pytest.approx(0.1, rel=1e-6)
+    assert np.abs(np.diff(rates)).max() <= 1.0 * 0.002 + 1e-9
+    assert target[RATES] == pytest.approx(clock[1], rel=1e-6)
+    assert clock[0] < line.end
+
+
+def test_governor_waits_for_a_held_robot_and_retreats_with_a_sliding_one() -> None:
+    _, clock, _, _ = run_governor(0.012)
+    assert clock[1] == pytest.approx(0.0, abs=1e-6)
+    _, clock, _, rates = run_governor(0.02)
+    assert rates.min() <= 0.0
+    _, _, _, rates = run_governor(-0.05)
+    assert rates.max() <= 0.15 + 1e-6  # it hurries, but does not jump
+
+
+def test_track_limits_joint_speed() -> None:
+    plan = sw.plan("curb-015", "a1_wheeled", method="critical")
+    line = track(reference(plan), plan.robot_description, ControllerSettings(joint_speed=0.5))
+    rates = np.abs(line.rows[:, RATES + 2 : RATES + 6]).max(axis=1) * line.speeds
+    assert rates.max() <= 0.5 + 1e-6
+
+
+@pytest.mark.parametrize(
+    ("ending", "load", "outcome"),
+    [
+        (Ending("arrived", 9.0, (1.0, 1.0), 0.001), 0.0, "success"),
+        (Ending("arrived", 9.0, (1.0, 1.0), 0.001), 3.0, "success"),
+        (Ending("arrived", 9.0, (1.0, 1.0), 0.001), 300.0, "collided"),
+        (Ending("arrived", 9.0, (1.0, 1.0), 0.03), 0.0, "stuck"),
+        (Ending("stuck", 9.0, (0.5, 1.0), 0.5), 0.0, "stuck"),
+        (Ending("stuck", 9.0, (0.5, 1.0), 0.5), 300.0, "collided"),
+        (Ending("fell", 9.0, (0.5, 1.0), 0.5, "tipped"), 300.0, "fell"),
+        (Ending("timeout", 9.0, (0.5, 1.0), 0.5), 0.0, "timeout"),
+        (Ending("diverged", 9.0, (0.5, 1.0), math.inf), 0.0, "diverged"),
+    ],
+)
+def test_verdicts(ending: Ending, load: float, outcome: str) -> None:
+    loads = LinkLoads(0.002)
+    for k in range(20):
+        loads.add(0.002 * k, {"FL_calf": load} if load else {})
+    verdict, reason = judge(ending, loads, WEIGHT)
+    assert verdict == outcome
+    assert reason.endswith(".")
+
+
+def test_a_tap_is_a_graze_and_a_push_is_a_load() -> None:
+    tap, push = LinkLoads(0.002), LinkLoads(0.002)
+    tap.add(0.0, {"trunk": 20.0})
+    for k in range(50):
+        tap.add(0.002 * k, {})
+        push.add(0.002 * k, {"trunk": 20.0})
+    assert tap.contacts == 1
+    assert tap.peak == pytest.approx(2.0)
+    assert push.peak == pytest.approx(20.0, rel=0.01)
+    assert push.where[0] == "trunk"
+
+
+def test_falling_and_being_stuck() -> None:
+    assert "backward" in fallen(-1.2, 0.0, 0.3, 0.0)
+    assert "sideways" in fallen(0.0, 1.2, 0.3, 0.0)
+    assert "dropped" in fallen(0.0, 0.0, -0.5, 0.0)
+    assert fallen(0.5, 0.5, 0.3, 0.0) == ""
+    watch = ProgressWatch()
+    assert not any(watch.stuck(0.1 * k, 0.001 * k) for k in range(100))
+    assert watch.stuck(20.0, 0.0)
+
+
+def test_deviations_change_what_they_say() -> None:
+    robot, terrain = sw.load_robot("a1_wheeled"), sw.load_terrain("three-stairs-up")
+    higher = real_terrain(terrain, 0.03)
+    assert np.ptp(higher.vertices[:, 1]) == pytest.approx(0.375 + 0.03)
+    assert real_terrain(terrain, 0.0) is terrain
+    for deviation in (Disturbance(mass=0.1, com_x=0.02), Disturbance(com_z=-0.02)):
+        spec = build_spec(robot, visual=False)
+        disturb_trunk(spec, robot, deviation)
+        model = spec.compile()
+        data = mujoco.MjData(model)
+        data.qpos[:4] = 0.0, 0.0, 0.0, 1.0
+        mujoco.mj_forward(model, data)
+        plain = mujoco.MjData(build_spec(robot, visual=False).compile())
+        plain.qpos[:] = data.qpos
+        mujoco.mj_forward(build_spec(robot, visual=False).compile(), plain)
+        assert model.body_mass.sum() == pytest.approx(11.84 * (1 + deviation.mass))
+        moved = (11.84 * plain.subtree_com[1]) / (11.84 * (1 + deviation.mass))
+        expected = moved + np.array([deviation.com_x, 0.0, deviation.com_z])
+        np.testing.assert_allclose(data.subtree_com[1], expected, atol=1e-9)
+
+
+def test_sensors_are_late_and_noisy() -> None:
+    qpos, qvel = np.zeros(19), np.zeros(18)
+    qpos[3] = 1.0
+    late = Sensors(Disturbance(delay=0.004), 0.002, 0)
+    seen = []
+    for k in range(5):
+        qpos[0] = k
+        seen.append(late.sense(qpos, qvel)[0][0])
+    assert seen == [0, 0, 0, 1, 2]
+    noisy = Sensors(Disturbance(noise=2.0), 0.002, 0)
+    rows = np.array([noisy.sense(qpos, qvel)[1] for _ in range(2000)])
+    assert rows[:, 8].std() == pytest.approx(0.1, rel=0.1)
+    assert Sensors(Disturbance(), 0.002, 0).exact
+
+
+def test_intervals() -> None:
+    low, high = wilson(95, 100)
+    assert (low, high) == pytest.approx((0.8882, 0.9785), abs=1e-3)
+    assert clopper_pearson(95, 100) == pytest.approx((0.8872, 0.9836), abs=1e-3)
+    assert clopper_pearson(0, 10)[0] == 0.0
+    assert clopper_pearson(10, 10)[1] == 1.0
+    assert wilson(10, 10)[1] == pytest.approx(1.0)
+
+
+def test_draws_are_seeded_and_in_range() -> None:
+    ranges = Ranges(friction=(-0.05, 0.0))
+    first, again = draw(ranges, 50, 1), draw(ranges, 50, 1)
+    assert first == again
+    assert first != draw(ranges, 50, 2)
+    assert all(-0.05 <= d.friction <= 0.0 and d.delay == 0.004 for d in first)
+    with pytest.raises(InputError):
+        parse_ranges({"friction": (0.1, -0.1)})
+
+
+def test_trials_report() -> None:
+    plan = sw.plan(FLAT, "a1_wheeled", method="nominal")
+    seen: list[float] = []
+    report = trials(plan, 3, seed=5, progress=seen.append)
+    assert report.count == 3
+    assert report.successes == 3
+    assert report.rate == 1.0
+    assert seen[-1] == 1.0
+    assert report.model_dump(mode="json")["schema"] == "stairwright/trials/1"
+    with pytest.raises(InputError) as caught:
+        trials(plan, 3, ranges={"wind": (0, 1)})
+    assert caught.value.field == ("ranges", "wind")
+
+
+@pytest.mark.slow
+def test_workers_change_nothing() -> None:
+    plan = sw.plan(FLAT, "a1_wheeled", method="nominal")
+    alone, shared = (trials(plan, 4, seed=1, workers=w) for w in (1, 2))
+    assert alone.trials == shared.trials
+
+
+@pytest.mark.parametrize("form", ["contact", "paper"])
+@pytest.mark.parametrize("name", sw.robots())
+def test_drive_tracks_speed_and_yaw_rate(name: str, form: str) -> None:
+    robot = sw.load_robot(name)
+
+    def command(t: float) -> tuple[float, float]:
+        return (0.4, 0.0) if t < 1.5 else (0.4, 0.4)
+
+    settings = ControllerSettings(form=form)  # type: ignore[arg-type]
+    found = drive(robot, command, 5.0, settings=settings)
+    straight = (found.time > 0.9) & (found.time < 1.5)
+    turning = found.time > 4.0
+    assert found.speed[straight].mean() == pytest.approx(0.4, abs=0.07)
+    assert found.yaw_rate[straight].mean() == pytest.approx(0.0, abs=0.02)
+    assert found.speed[turning].mean() == pytest.approx(0.4, abs=0.04)
+    assert found.yaw_rate[turning].mean() == pytest.approx(0.4, abs=0.04)
+    assert np.abs(found.pitch).max() < 0.05

@@ -1,0 +1,175 @@
+"""Rollouts on real plans: outcomes, series, metrics, determinism, cancelling."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import stairwright as sw
+from stairwright.errors import Cancelled, InputError
+from stairwright.planning.plan import Plan
+from stairwright.simulation.result import Rollout
+from stairwright.simulation.rollout import rollout
+
+FLAT = {"name": "short-flat", "points": [[-0.6, 0.0], [0.6, 0.0]], "friction": 0.6}
+STAIR = {
+    "name": "stair",
+    "points": [[-1.2, 0.0], [0.0, 0.0], [0.0, 0.2], [1.2, 0.2]],
+    "friction": 0.6,
+}
+
+
+@pytest.fixture(scope="module")
+def flat() -> Plan:
+    return sw.plan(FLAT, "a1_wheeled", method="nominal")
+
+
+@pytest.fixture(scope="module", params=sw.robots())
+def stair(request: pytest.FixtureRequest) -> Plan:
+    return sw.plan(STAIR, request.param)
+
+
+@pytest.fixture(scope="module")
+def climbed(stair: Plan) -> Rollout:
+    return rollout(stair)
+
+
+def test_climbs_a_stair(climbed: Rollout) -> None:
+    metrics = climbed.metrics
+    assert climbed.outcome == "success", climbed.reason
+    assert metrics.link_contacts == 0
+    assert metrics.self_contacts == 0
+    assert metrics.end_error < 0.02
+    assert metrics.pitch_error_max < math.radians(5)
+    assert 0.0 < metrics.torque_peak < 33.5
+    assert metrics.progress == pytest.approx(1.0)
+
+
+def test_series_are_consistent(climbed: Rollout) -> None:
+    series, robot = climbed.series, climbed.robot_description
+    assert np.allclose(np.diff(series.time), 0.01)
+    np.testing.assert_allclose(np.linalg.norm(series.base_quaternion, axis=1), 1.0, atol=1e-6)
+    # At rest at the end, the ground carries exactly the weight.
+    weight = series.contact_force[-20:, :, 1].sum(axis=1)
+    np.testing.assert_allclose(weight, robot.mass * 9.81, rtol=0.02)
+    np.testing.assert_allclose(series.contact_force[-20:, :, 0].sum(axis=1), 0.0, atol=3.0)
+    # The wheels do not pull at the ground.
+    assert series.contact_force[..., 1].min() > -30.0
+    assert series.progress_desired[-1] == pytest.approx(climbed.plan.poses[-1].progress)
+    assert abs(series.progress[-1] - series.progress_desired[-1]) < 0.02
+    assert (np.diff(series.progress_desired) > -1e-3).all()
+    # Wheels roll without much slip: the angle asked for is the angle turned.
+    assert np.abs(series.q - series.q_desired)[:, 2::3].max() < 1.5
+    assert np.abs(series.q - series.q_desired)[:, 0::3].max() < 0.2
+
+
+def test_document_survives_json(climbed: Rollout) -> None:
+    text = climbed.model_dump_json()
+    data = json.loads(text)
+    assert data["schema"] == "stairwright/rollout/1"
+    assert isinstance(data["series"]["q"][0], list)
+    again = Rollout.model_validate(data)
+    np.testing.assert_allclose(again.series.q, climbed.series.q)
+    assert again.metrics == climbed.metrics
+    assert again.id == climbed.id
+    json.dumps(climbed.model_dump(mode="json"))
+
+
+def test_same_question_same_answer(flat: Plan) -> None:
+    runs = [rollout(flat, seed=3, disturbance={"noise": 1.0}) for _ in range(2)]
+    assert runs[0].id == runs[1].id
+    np.testing.assert_array_equal(runs[0].series.q, runs[1].series.q)
+    other = rollout(flat, seed=4, disturbance={"noise": 1.0})
+    assert other.id != runs[0].id
+    assert not np.array_equal(other.series.q, runs[0].series.q)
+
+
+def test_plan_as_document_and_record_rate(flat: Plan) -> None:
+    run = rollout(flat.model_dump(mode="json"), record_hz=20.0, keep_plan=False)
+    assert run.success, run.reason
+    assert np.allclose(np.diff(run.series.time), 0.05)
+    assert run.plan is None
+    assert run.plan_id == flat.id
+
+
+@pytest.mark.parametrize("form", ["contact", "paper"])
+@pytest.mark.parametrize("solver", ["daqp", "clarabel"])
+def test_forms_and_solvers_drive_on_flat_ground(flat: Plan, form: str, solver: str) -> None:
+    run = rollout(flat, controller={"form": form, "solver": solver, "speed": 0.3})
+    assert run.success, run.reason
+    if form == "contact":
+        native = rollout(flat, controller={"speed": 0.3})
+        n = min(len(native.series), len(run.series))
+        assert np.abs(native.series.pitch[:n] - run.series.pitch[:n]).max() < 1e-3
+
+
+def test_speed_setting_is_kept(flat: Plan) -> None:
+    slow, fast = (rollout(flat, controller={"speed": v}) for v in (0.1, 0.3))
+    speed = np.gradient(fast.series.progress, fast.series.time)
+    assert slow.metrics.duration > 2 * fast.metrics.duration - 2.0
+    assert np.median(speed[len(speed) // 3 : len(speed) // 2]) == pytest.approx(0.3, rel=0.1)
+
+
+def test_progress_rises_to_one_and_may_cancel(flat: Plan) -> None:
+    seen: list[float] = []
+    rollout(flat, progress=seen.append)
+    assert seen == sorted(seen)
+    assert 0.99 < seen[-1] <= 1.0
+
+    def stop(share: float) -> None:
+        if share > 0.3:
+            raise Cancelled("enough")
+
+    with pytest.raises(Cancelled):
+        rollout(flat, progress=stop)
+
+
+def test_nominal_pose_does_not_climb_and_says_so() -> None:
+    plan = sw.plan("single-stair-036", "a1_wheeled", method="nominal")
+    run = rollout(plan)
+    assert run.outcome in ("fell", "stuck", "collided", "timeout")
+    assert run.metrics.progress < 0.9
+    assert run.reason.endswith(".")
+
+
+def test_ice_does_not_let_it_climb(stair: Plan) -> None:
+    run = rollout(stair, friction=0.05)
+    assert run.outcome != "success"
+
+
+def test_a_plan_from_another_world_ends_honestly(flat: Plan) -> None:
+    """Poses that start in the air: the robot drops and the rollout still ends with a verdict."""
+    poses = [pose.model_copy(update={"z_c": pose.z_c + 0.6}) for pose in flat.poses]
+    run = rollout(flat.model_copy(update={"poses": poses}))
+    assert run.outcome in ("success", "fell", "stuck", "collided", "diverged", "timeout")
+
+
+def test_bad_input_is_named(flat: Plan) -> None:
+    with pytest.raises(InputError) as caught:
+        rollout(flat.model_copy(update={"poses": []}))
+    assert caught.value.field == ("plan", "poses")
+    for bad in (0.0, -1.0, 9.0, math.nan, "ice", True):
+        with pytest.raises(InputError) as caught:
+            rollout(flat, friction=bad)  # type: ignore[arg-type]
+        assert caught.value.field == ("friction",)
+    with pytest.raises(InputError) as caught:
+        rollout(flat, disturbance={"mass": 9.0})
+    assert caught.value.field == ("disturbance", "mass")
+    with pytest.raises(InputError):
+        rollout(flat, record_hz=0.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("robot", sw.robots())
+@pytest.mark.parametrize(
+    "terrain",
+    ["ramp-30deg-025", "single-stair-030", "single-stair-036", "three-stairs-up-down"],
+)
+def test_the_papers_cases(terrain: str, robot: str) -> None:
+    run = rollout(sw.plan(terrain, robot))
+    assert run.outcome == "success", run.reason
+    assert run.metrics.link_contacts == 0
+    assert run.metrics.pitch_error_max < math.radians(5)
