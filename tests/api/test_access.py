@@ -38,7 +38,7 @@ def test_with_a_token_nothing_is_open_without_it(start_server: Start, tmp_path: 
         assert httpx.get(f"{server.url}/healthz").status_code == 200
         bearer = {"authorization": f"Bearer {TOKEN}"}
         assert httpx.get(f"{server.url}/api/v1/terrains", headers=bearer).status_code == 200
-        with httpx.Client(base_url=server.url, follow_redirects=True) as browser:
+        with httpx.Client(base_url=server.url, follow_redirects=True, timeout=60) as browser:
             assert browser.get("/", params={"token": "wrong"}).status_code == 401
             opened = browser.get("/", params={"token": TOKEN, "t": "x y"})
             assert opened.text == "<html>the page</html>"

@@ -15,7 +15,7 @@ from stairwright.jobs.worker import Limits
 from stairwright.storage.store import Store
 
 from .metrics import Metrics
-from .sessions import Sessions
+from .sessions import Sessions, load_scenes
 from .settings import Settings
 
 logger = logging.getLogger(__name__)
@@ -65,6 +65,7 @@ class Services:
             logger.warning("%d jobs were interrupted by a restart", interrupted)
         for pool in self.pools:
             await pool.start()
+        load_scenes()
         self._tasks = [
             asyncio.create_task(self._collect()),
             asyncio.create_task(self.sessions.close_idle_forever()),

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import importlib
 import logging
 import secrets
+import threading
 import time
 from typing import TYPE_CHECKING
 
@@ -93,6 +95,12 @@ class Sessions:
         for name, scene in sorted(unwatched, key=lambda item: item[1].last_used)[:1]:
             if scene.last_used < before:
                 await self.close(name)
+
+
+def load_scenes() -> None:
+    """Import viser in the background, before somebody waits for it."""
+    name = "stairwright.scene.session"
+    threading.Thread(target=importlib.import_module, args=(name,), daemon=True).start()
 
 
 def _new_scene(name: str) -> SceneSession:

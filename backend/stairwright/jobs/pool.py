@@ -9,7 +9,7 @@ import multiprocessing
 import threading
 from collections.abc import Callable
 from concurrent.futures.process import BrokenProcessPool
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from pebble import CONSTS, ProcessExpired, ProcessPool
 
@@ -50,10 +50,12 @@ class WorkerPool:
             self._keeper.cancel()
             with contextlib.suppress(asyncio.CancelledError):
                 await self._keeper
-        with self._lock:
-            pool, self._pool = self._pool, None
+        if not self._lock.acquire(timeout=0.1):
+            return  # still starting: what comes of it ends with this process
+        pool, self._pool = self._pool, None
+        self._lock.release()
         if pool is not None:
-            await asyncio.to_thread(_end, pool)
+            await _in_thread(_end, pool)
 
     async def run(self, function: Callable[..., T], *args: Any, deadline: float) -> T:
         """Carry out `function(*args)` in a worker; cancelling the caller kills that worker.
@@ -63,18 +65,19 @@ class WorkerPool:
             WorkerDied: If the process is gone.
             Exception: Whatever the function raises.
         """
-        pool = await asyncio.to_thread(self._healthy_pool)
+        ready = self._pool
+        pool = ready if ready and ready.active else await _in_thread(self._healthy_pool)
         try:
             future = pool.schedule(function, args=list(args), timeout=deadline)
         except RuntimeError:  # broke in the last moment
-            pool = await asyncio.to_thread(self._healthy_pool)
+            pool = await _in_thread(self._healthy_pool)
             future = pool.schedule(function, args=list(args), timeout=deadline)
         try:
             return await asyncio.wait_for(asyncio.wrap_future(future), deadline + GRACE)
         except TimeoutError:
             if not future.done() or future.cancelled():
                 logger.error("the pool %s hangs and is replaced", self.name)
-                await asyncio.to_thread(self._replace, pool)
+                await _in_thread(self._replace, pool)
             raise DeadlineExceeded(f"stopped after {deadline:g} s, the longest allowed") from None
         except (ProcessExpired, BrokenProcessPool) as error:
             self.deaths += 1
@@ -115,10 +118,39 @@ class WorkerPool:
         """An idle worker that dies may take pebble's pool along: replace it before it is needed."""
         while True:
             try:
-                await asyncio.to_thread(self._healthy_pool)
+                await _in_thread(self._healthy_pool)
             except OSError:
                 logger.exception("the pool %s cannot be started", self.name)
             await asyncio.sleep(CHECK_EVERY)
+
+
+async def _in_thread(function: Callable[..., T], *args: Any) -> T:
+    """Like `asyncio.to_thread`, but a server that ends does not wait for the thread.
+
+    Workers cannot be started before everything is imported and compiled, which takes seconds.
+    """
+    loop = asyncio.get_running_loop()
+    answer: asyncio.Future[T] = loop.create_future()
+
+    def settle(result: T | None, error: Exception | None) -> None:
+        if answer.done():
+            return
+        if error is None:
+            answer.set_result(cast(T, result))
+        else:
+            answer.set_exception(error)
+
+    def work() -> None:
+        result, problem = None, None
+        try:
+            result = function(*args)
+        except Exception as error:  # noqa: BLE001 - handed on to the caller
+            problem = error
+        with contextlib.suppress(RuntimeError):  # the loop has ended meanwhile
+            loop.call_soon_threadsafe(settle, result, problem)
+
+    threading.Thread(target=work, daemon=True).start()
+    return await answer
 
 
 def _end(pool: ProcessPool) -> None:

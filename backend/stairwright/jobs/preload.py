@@ -8,14 +8,29 @@ from __future__ import annotations
 
 import contextlib
 import os
+import signal
 
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_variable] = "1"
 
+_PARENT = os.getppid()
+
+
+def _end_if_orphaned(*_: object) -> None:
+    if os.getppid() != _PARENT:
+        os._exit(1)
+
+
+# The fork server notices that its parent has gone only when it is back from here.
+signal.signal(signal.SIGALRM, _end_if_orphaned)
+signal.setitimer(signal.ITIMER_REAL, 0.5, 0.5)
+
 # A failure here is no reason to have no workers: it will show again, with a traceback in the log,
 # in the first task that needs what failed.
 with contextlib.suppress(Exception):
-    from stairwright.jobs import work, worker
+    from stairwright.jobs import work
 
-    worker.die_with_parent()
     work.warm()
+
+signal.setitimer(signal.ITIMER_REAL, 0.0)
+signal.signal(signal.SIGALRM, signal.SIG_DFL)
