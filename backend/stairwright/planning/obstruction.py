@@ -139,26 +139,16 @@ def _stronger(robot: Robot, torque: float) -> Robot:
 
 def _opens(course: Course) -> bool:
     """Whether the quick, strict search comes through: then there is a plan as a rule."""
-    found = course.search(1.0, STRICT).find(
-        course.friction, course.reserve, STRICT.com, cheap=False
-    )
-    return found.quality > 0
+    return course.find(1.0, STRICT, cheap=False).quality > 0
 
 
 def _least(course: Course, candidate: Candidate) -> float | None:
     """Least value of the candidate's quantity that opens the way; None if its limit does not."""
     if candidate.kind == "torque":
         return _least_torque(course, candidate)
-    if candidate.kind == "statics":
-        search = course.search(1.0, STRICT)
 
-        def opens(value: float) -> bool:
-            return search.find(value, 0.9 * value, STRICT.com, cheap=False).quality > 0
-
-    else:
-
-        def opens(value: float) -> bool:
-            return _opens(candidate.change(course, value))
+    def opens(value: float) -> bool:
+        return _opens(candidate.change(course, value))
 
     if not opens(candidate.limit):
         return None

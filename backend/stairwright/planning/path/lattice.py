@@ -138,6 +138,7 @@ class Search:
         com: float,
         cheap: bool = True,
         roll_back: bool = False,
+        open_end: bool = False,
     ) -> Finding:
         """The way from start to goal at `friction`, wide at the `reserve` friction if possible.
 
@@ -146,6 +147,7 @@ class Search:
             reserve: Lower friction that is kept where the terrain allows it.
             com: Least CoM margin [m].
             cheap: Also trace the smoothest way; otherwise only the verdict is given.
+            open_end: Any pose with the front wheels at the last sample will do.
             roll_back: Let wheels roll back where there is no way forward only.
         """
         p, lat = self.planar, self.lattice
@@ -156,6 +158,8 @@ class Search:
             0, len(self.s) - 1, self.near, self.far, lat, friction, reserve, LAG, com,
         )  # fmt: skip
         source, goal = int(cells.number[i0, j0]), int(cells.number[i1, j1])
+        last = np.flatnonzero(cells.front == len(self.s) - 1)
+        goal = int(last[0]) if open_end and len(last) else goal
         if source < 0 or goal < 0:
             return Finding(None, None, 0, None)
         w = self._world(com)
@@ -166,6 +170,10 @@ class Search:
         state, alive = np.zeros(n, np.uint8), np.zeros(n, np.bool_)
         moves = FORWARD
         flood(w, cells, source, seed, moves, False, qual, state, width, alive)
+        if open_end:
+            goal = int(last[int(np.argmax(width[last].max(axis=1)))])
+            inside = self._window(width[goal])
+            target = np.array(np.unravel_index(int(inside.argmax()), inside.shape), np.int32)
         best, pose = self._best(self._window(width[goal]), target)
         if best == 0 and roll_back:
             moves = len(MOVES)

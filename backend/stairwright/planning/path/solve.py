@@ -15,13 +15,14 @@ from stairwright.terrain.wheel_path import WheelPath
 from .assemble import make_plan, make_poses
 from .course import Stand
 from .ground import Ground
-from .lattice import Finding, Search, make_lattice
+from .lattice import Finding
+from .legs import Leg, make_legs
 from .record import LEGS_GAP
 from .refine import Refined, refine
 from .tables import Bounds
+from .windows import find_path
 
 RESERVE = 0.1  # friction that a plan does without where the terrain allows it
-PITCHES = 1.9  # rad; largest pitch searched: the trunk may lean back past vertical
 
 # What lattice poses keep: a little more than the final bounds (strict); as much less as rounding to
 # the lattice may take from a pose that is really possible (bold: the polish must repair it); or so
@@ -87,22 +88,26 @@ class Course:
         """The lower friction at which poses shall still hold where that is possible."""
         return self.friction - min(RESERVE, 0.25 * self.friction)
 
-    def search(self, fine: float, bounds: Bounds) -> Search:
-        """A lattice with its tables."""
-        lattice = make_lattice(self.robot, PITCHES, fine)
-        return Search(
-            self.path, self.ground, self.robot, *self.stands, lattice, self.weights, bounds
-        )
+    @property
+    def legs(self) -> tuple[Leg, Leg]:
+        """Front and rear leg."""
+        return make_legs(self.robot.planar)
+
+    def find(
+        self, fine: float, bounds: Bounds, cheap: bool = True, roll_back: bool = False
+    ) -> Finding:
+        """Search once; see `Search.find`."""
+        return find_path(
+            self.path, self.ground, self.robot, self.stands, self.weights, bounds, fine,
+            self.friction, self.reserve, cheap, roll_back,
+        )  # fmt: skip
 
     def solve(self, ladder: tuple[Rung, ...] = LADDER) -> Solved | Blocked:
         """Climb the ladder until a path passes the certificate."""
         reached: tuple[float, float] | None = None
         opened = False
         for k, rung in enumerate(ladder):
-            search = self.search(rung.fine, rung.bounds)
-            finding = search.find(
-                self.friction, self.reserve, rung.bounds.com, roll_back=rung.roll_back
-            )
+            finding = self.find(rung.fine, rung.bounds, roll_back=rung.roll_back)
             if finding.s is None:
                 if finding.reached and (reached is None or sum(finding.reached) > sum(reached)):
                     reached = finding.reached
@@ -112,24 +117,21 @@ class Course:
                         break
                 continue
             opened = True
-            solved = self.finish(search, finding, k)
+            solved = self.finish(finding, k)
             if solved is not None:
                 return solved
         return Blocked(reached, opened)
 
     def hopeful(self) -> bool:
         """Whether a search that forgives more than rounding can hide comes through."""
-        found = self.search(1.0, HOPE).find(
-            self.friction, self.reserve, HOPE.com, cheap=False, roll_back=True
-        )
-        return found.quality > 0
+        return self.find(1.0, HOPE, cheap=False, roll_back=True).quality > 0
 
-    def finish(self, search: Search, finding: Finding, rung: int) -> Solved | None:
+    def finish(self, finding: Finding, rung: int) -> Solved | None:
         """Polish and certify; None where that fails."""
         assert finding.s is not None
         assert finding.body is not None
         found: Refined = refine(
-            self.path, self.ground, self.robot, search.legs, self.stands, finding.s, finding.body,
+            self.path, self.ground, self.robot, self.legs, self.stands, finding.s, finding.body,
             self.friction, self.reserve, self.weights,
         )  # fmt: skip
         if found.record.worst < 0.0:

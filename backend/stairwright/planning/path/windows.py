@@ -1,0 +1,65 @@
+"""Long courses piece by piece: search a window, keep its first part, go on from there.
+
+The robot spans less than a metre, so what lies farther ahead than a window cannot change what is
+best now. Cost and memory grow with the length of the course, not with its square.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stairwright.planning.weights import PathWeights
+from stairwright.robot.description import Robot
+from stairwright.terrain.wheel_path import WheelPath
+
+from .course import Stand, scale
+from .ground import Ground
+from .lattice import Finding, Search, make_lattice
+from .tables import Bounds
+
+PITCHES = 1.9  # rad; largest pitch searched: the trunk may lean back past vertical
+_WINDOW = 5.0  # m, for legs of 0.4 m
+_AHEAD = 1.8  # m of a window that are searched again by the next
+
+
+def find_path(
+    path: WheelPath,
+    ground: Ground,
+    robot: Robot,
+    stands: tuple[Stand, Stand],
+    weights: PathWeights,
+    bounds: Bounds,
+    fine: float,
+    friction: float,
+    reserve: float,
+    cheap: bool = True,
+    roll_back: bool = False,
+) -> Finding:
+    """The way from the first stand to the second; see `Search.find` for the arguments."""
+    lattice = make_lattice(robot, PITCHES, fine)
+    begin, end = stands
+    size = scale(robot)
+    rows_s, rows_body, quality, back = [], [], 255, False
+    while True:
+        stop = begin.wheels[0] + _WINDOW * size
+        last = stop > end.wheels[0] - 0.5 * size
+        until = end if last else Stand((stop, stop - 0.2 * size), end.body)
+        search = Search(path, ground, robot, begin, until, lattice, weights, bounds)
+        found = search.find(friction, reserve, bounds.com, cheap or not last, roll_back, not last)
+        quality, back = min(quality, found.quality), back or found.back
+        if found.quality == 0:
+            return found
+        if last and not cheap:
+            return Finding(None, None, quality, None, back)
+        assert found.s is not None
+        assert found.body is not None
+        if last:
+            rows_s.append(found.s)
+            rows_body.append(found.body)
+            break
+        keep = int(np.argmax(found.s[:, 0] >= stop - _AHEAD * size))
+        rows_s.append(found.s[:keep])
+        rows_body.append(found.body[:keep])
+        begin = Stand((float(found.s[keep, 0]), float(found.s[keep, 1])), found.body[keep])
+    s, body = np.concatenate(rows_s), np.concatenate(rows_body)
+    return Finding(s, body, quality, (float(s[-1, 0]), float(s[-1, 1])), back)
