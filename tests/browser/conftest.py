@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 PLANNED = ".app[data-plan=feasible], .app[data-plan=infeasible]"
 TERRAIN = re.compile(r"^Terrain\s")
-PATIENCE = 60_000  # ms; for a rollout on a busy machine
+PATIENCE = 120_000  # ms; for a rollout or a proof that there is no way, on a busy machine
 
 
 class Product:

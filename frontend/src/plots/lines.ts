@@ -11,6 +11,8 @@ export interface Line {
   color: Color;
   kind: LineKind;
   values: Float64Array;
+  /** What header and table tell where the line is drawn in percent. */
+  raw?: Float64Array;
   /** Shown as a number in the header: its short name and digits. */
   read?: { name: string; digits: number };
 }

@@ -1,7 +1,7 @@
 /** What each plot shows, from the plan alone or from plan and rollout. */
 
 import type { Plan, Rollout } from "../api/types";
-import { degrees, fixed } from "../geometry/format";
+import { degrees } from "../geometry/format";
 import { interpolate, planar } from "../geometry/frames";
 import { MARGINS, type MarginName } from "../profile-editor/margins";
 import {
@@ -173,24 +173,26 @@ function torquePanel(source: Source, time: Float64Array): Panel {
   };
 }
 
-const MARGIN_LINES: [MarginName, string, Color, (v: number) => string][] = [
-  ["clearance", "clr", "tx", (v) => fixed(v * 1000, 0)],
-  ["com", "CoM", "third", (v) => fixed(v * 1000, 0)],
-  ["friction", "μ", "fourth", (v) => fixed(v, 2)],
+/** Name, letter, colour, and the unit that the header tells it in: factor and digits. */
+const MARGIN_LINES: [MarginName, string, Color, number, number][] = [
+  ["clearance", "clr", "tx", 1000, 0],
+  ["com", "CoM", "third", 1000, 0],
+  ["friction", "μ", "fourth", 1, 2],
 ];
 
 /** Margins in percent of what is plenty, at the progress the robot had at each time. */
 function marginPanel(source: Source, time: Float64Array): Panel {
   const { plan, run } = source;
-  const lines = MARGIN_LINES.map(([name, label, color]): Line => {
+  const lines = MARGIN_LINES.map(([name, label, color, factor, digits]): Line => {
     const full = MARGINS.find((m) => m.name === name)!.full;
-    const share = (v: number) => Math.min(1, Math.max(0, v / full)) * 100;
+    const values = plan ? marginValues(time, plan, run, name) : time.map(() => Number.NaN);
     return {
       label,
       color,
       kind: "line",
-      values: plan ? marginValues(time, plan, run, name).map(share) : time,
-      read: { name: label, digits: 0 },
+      values: values.map((v) => Math.min(1, Math.max(0, v / full)) * 100),
+      raw: values.map((v) => v * factor),
+      read: { name: label, digits },
     };
   });
   return {

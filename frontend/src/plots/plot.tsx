@@ -74,28 +74,17 @@ function Values({ panel }: { panel: Panel }) {
   return (
     <div class="vals" aria-hidden="true">
       {lines.map((line) => {
-        const value =
-          panel.id === "margins"
-            ? marginAt(panel, line.label, t)
-            : interpolate(panel.time, line.values, t);
-        const digits = line.label === "μ" ? 2 : line.read!.digits;
+        const value = interpolate(panel.time, line.raw ?? line.values, t);
         return (
           <span key={line.label} class={`v ${line.color}`}>
             <i />
             {line.read!.name}
-            <b>{fixed(value, digits)}</b>
+            <b>{fixed(value, line.read!.digits)}</b>
           </span>
         );
       })}
     </div>
   );
-}
-
-/** The margins' header tells millimetres and μ, not the percent that the lines are drawn in. */
-function marginAt(panel: Panel, label: string, t: number): number {
-  const line = panel.halves[0]!.find((l) => l.label === label)!;
-  const share = interpolate(panel.time, line.values, t) / 100;
-  return { clr: share * 50, CoM: share * 120, μ: share * 0.6 }[label] ?? Number.NaN;
 }
 
 function TimeCursor() {
@@ -222,7 +211,12 @@ function TableMenu({ panel }: { panel: Panel }) {
                   <tr key={t}>
                     <td>{fixed(t, 2)}</td>
                     {lines.map((line) => (
-                      <td key={line.label}>{fixed(interpolate(panel.time, line.values, t), 1)}</td>
+                      <td key={line.label}>
+                        {fixed(
+                          interpolate(panel.time, line.raw ?? line.values, t),
+                          line.read?.digits ?? 1,
+                        )}
+                      </td>
                     ))}
                   </tr>
                 ))}

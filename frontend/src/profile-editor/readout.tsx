@@ -35,8 +35,9 @@ export function Readout() {
   if (i === undefined || !p || tool.value !== "select") return null;
   const { px, py } = projection.value;
   const box = canvasBox.value;
-  const [x, y] = [px(p[0]), py(p[1])];
-  if (x < box.left || x > box.right || y < box.top || y > box.bottom) return null;
+  // A typed number may take the corner out of view; its fields stay at the rim.
+  const x = Math.min(box.right, Math.max(box.left, px(p[0])));
+  const y = Math.min(box.bottom, Math.max(box.top, py(p[1])));
   // Below and right of the corner, where the ground is; to the other side at the rim.
   const beside = x + 64 + WIDTH > box.right ? x - WIDTH - 24 : x + 64;
   // Narrow pages have one free corner, away from the obstruction's card.

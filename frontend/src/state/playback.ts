@@ -53,6 +53,21 @@ export const poseIndex = computed(() => {
   return f > 0.5 ? k + 1 : k;
 });
 
+/** When the key poses are reached: by the plan, or by the robot where a rollout is shown. */
+export const keyTimes = computed<number[]>(() => {
+  const shown = plan.value;
+  if (!shown) return [];
+  const series = shownRun.value?.series;
+  if (!series) return shown.critical.map((i) => poseTimes(shown)[i] ?? 0);
+  const end = series.progress[series.progress.length - 1] ?? 0;
+  return shown.critical.flatMap((i) => {
+    const at = shown.poses[i]?.progress ?? 0;
+    if (at > end + 0.01) return [];
+    const k = series.progress.findIndex((p) => p >= at);
+    return [series.time[k < 0 ? series.time.length - 1 : k] ?? 0];
+  });
+});
+
 export function seek(to: number): void {
   time.value = Math.min(duration.peek(), Math.max(0, to));
 }
@@ -65,9 +80,7 @@ export function togglePlay(): void {
 
 /** To the next or the previous key pose. */
 export function stepKey(direction: 1 | -1): void {
-  const shown = plan.peek();
-  if (!shown) return;
-  const times = shown.critical.map((i) => poseTimes(shown)[i] ?? 0);
+  const times = keyTimes.peek();
   const now = time.peek();
   const next =
     direction > 0 ? times.find((t) => t > now + 1e-3) : times.findLast((t) => t < now - 1e-3);

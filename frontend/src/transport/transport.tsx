@@ -1,12 +1,12 @@
 /** Play, step, speed, and the timeline with its key poses. */
 
 import { fixed } from "../geometry/format";
-import { poseTimes } from "../geometry/frames";
 import { PANELS, type PanelId } from "../plots/lines";
 import { shownPanels } from "../plots/plots";
 import { plan } from "../state/planning";
 import {
   duration,
+  keyTimes,
   plannedEnd,
   playing,
   SPEEDS,
@@ -95,7 +95,6 @@ const STEP = 0.1;
 const LEAP = 1;
 
 function Timeline() {
-  const shown = plan.value;
   const end = plannedEnd.value;
   const share = (t: number) => `${end > 0 ? Math.min(100, (t / end) * 100) : 0}%`;
   const running = activity.value === "running" && showProgress.value;
@@ -148,12 +147,8 @@ function Timeline() {
         class={running ? "buf" : failed ? "fell" : ""}
         style={{ width: running ? share(progress.value * end) : share(shownTime.value) }}
       />
-      {shown?.critical.map((index, k) => (
-        <i
-          key={index}
-          style={{ left: share(poseTimes(shown)[index] ?? 0) }}
-          title={`Key pose ${k + 1}`}
-        />
+      {keyTimes.value.map((at, k) => (
+        <i key={k} style={{ left: share(at) }} title={`Key pose ${k + 1}`} />
       ))}
       {end > 0 && <em style={{ left: share(shownTime.value) }} />}
     </div>
