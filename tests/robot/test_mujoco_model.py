@@ -168,7 +168,7 @@ PROFILES = {
 
 @pytest.mark.parametrize("name", PROFILES)
 def test_contact_lies_on_the_wheel_curve(name: str) -> None:
-    """Moved along the exact curve, the wheel touches with the curve's own normal, and only there."""
+    """Moved along the exact curve, the wheel touches with the curve's own normal only."""
     terrain = Terrain(points=PROFILES[name])
     model, data, radius = hung_wheel(terrain)
     path = wheel_path(terrain, radius)
