@@ -50,8 +50,12 @@ def parser() -> argparse.ArgumentParser:
     rollout.add_argument(
         "--controller", action="append", default=[], metavar="NAME=VALUE", help="a setting"
     )
-    rollout.add_argument("--noise", type=float, metavar="X", help="sensor noise (0; 1 in trials)")
-    rollout.add_argument("--trials", type=int, default=1, metavar="N", help="with N seeds")
+    rollout.add_argument(
+        "--trials", type=int, metavar="N", help="N times in slightly different worlds"
+    )
+    rollout.add_argument(
+        "--workers", type=int, default=1, metavar="N", help="processes for trials (%(default)s)"
+    )
     rollout.add_argument("-o", "--output", metavar="FILE", help="json, csv, npz, mcap or html")
 
     export = commands.add_parser("export", help="write a plan or rollout in another format")

@@ -35,10 +35,8 @@ def plan_command(given: Arguments) -> str | None:
 
 def rollout_command(given: Arguments) -> str | None:
     """`stairwright rollout`."""
-    if given.trials < 1:
-        raise InputError("must be at least 1", ("trials",))
-    if given.trials > 1 and given.output:
-        raise InputError("one file holds one rollout: leave out --trials or -o", ("output",))
+    if given.trials is not None:
+        return _trials(given)
     if given.output:
         from .export.formats import ROLLOUT_FORMATS, by_ending
 
@@ -48,26 +46,44 @@ def rollout_command(given: Arguments) -> str | None:
         return _obstacle(plan) or "the plan has no poses to carry out"
     from .simulation.rollout import rollout
 
-    noise = given.noise if given.noise is not None else float(given.trials > 1)
-    runs = [
-        rollout(
-            plan,
-            friction=given.friction,
-            controller=_settings(given.controller, "controller"),
-            seed=given.seed + k,
-            disturbance={"noise": noise},
-        )
-        for k in range(given.trials)
-    ]
+    controller = _settings(given.controller, "controller")
+    run = rollout(plan, friction=given.friction, controller=controller, seed=given.seed)
     if given.output:
-        runs[0].save(given.output)
+        run.save(given.output)
     else:
-        print(summary.of_rollouts(runs))
-    failed = [run for run in runs if not run.success]
+        print(summary.of_rollout(run))
+    return None if run.success else f"{run.outcome}: {run.reason}"
+
+
+def _trials(given: Arguments) -> str | None:
+    """`stairwright rollout --trials N`: the same plan in slightly different worlds."""
+    if given.output and Path(given.output).suffix.lower() != ".json":
+        raise InputError("trials can be written as .json only", ("output",))
+    plan = _plan_or_file(given)
+    if len(plan.poses) < 2:
+        return _obstacle(plan) or "the plan has no poses to carry out"
+    from .simulation.trials import trials
+
+    made = trials(
+        plan,
+        n=given.trials,
+        seed=given.seed,
+        workers=given.workers,
+        friction=given.friction,
+        controller=_settings(given.controller, "controller"),
+    )
+    if given.output:
+        try:
+            Path(given.output).write_text(made.model_dump_json(indent=1))
+        except OSError as error:
+            raise InputError(f"cannot write {given.output}: {error.strerror}") from None
+    else:
+        print(summary.of_trials(made))
+    failed = [trial for trial in made.trials if trial.outcome != "success"]
     if not failed:
         return None
-    head = "" if len(runs) == 1 else f"{len(failed)} of {len(runs)} trials failed; the first: "
-    return f"{head}{failed[0].outcome}: {failed[0].reason}"
+    first = f"{failed[0].outcome}: {failed[0].reason}"
+    return f"{len(failed)} of {made.count} trials failed; the first with {first}"
 
 
 def export_command(given: Arguments) -> str | None:

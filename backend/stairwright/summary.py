@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from .benchmark import Figures
     from .planning.plan import Certificate, Plan
     from .simulation.result import Rollout
+    from .simulation.trials import Trials
 
 
 def columns(rows: Iterable[tuple[str, str]]) -> str:
@@ -61,17 +62,22 @@ def _margins(plan: Plan) -> str:
     )
 
 
-def of_rollouts(runs: Sequence[Rollout]) -> str:
-    """One rollout in full; of several, a line each and the share that succeeded."""
-    if len(runs) == 1:
-        return _of_rollout(runs[0])
-    lines = [("seed", "outcome")]
-    lines += [(str(run.seed), f"{run.outcome}  {run.reason}") for run in runs]
-    succeeded = sum(run.success for run in runs)
-    return columns(lines) + f"\n{succeeded} of {len(runs)} trials succeeded"
+def of_trials(made: Trials) -> str:
+    """How many succeeded, how sure that is, and what became of the others."""
+    low, high = made.wilson
+    outcomes = ", ".join(f"{count} {name}" for name, count in sorted(made.outcomes.items()))
+    return columns(
+        [
+            ("trials", f"{made.successes} of {made.count} succeeded ({made.rate:.1%})"),
+            ("95 % interval", f"{low:.1%} to {high:.1%} (Wilson)"),
+            ("outcomes", outcomes),
+            ("worst pitch", _degrees(max(trial.pitch_error_max for trial in made.trials))),
+        ]
+    )
 
 
-def _of_rollout(run: Rollout) -> str:
+def of_rollout(run: Rollout) -> str:
+    """What happened, and how well."""
     m = run.metrics
     return columns(
         [

@@ -85,7 +85,14 @@ def test_a_plan_is_certified_exported_and_rolled_out(plan: Path) -> None:
 
 
 def test_trials(plan: Path) -> None:
-    assert "2 of 2 trials succeeded" in run("rollout", plan, "--trials", "2")
+    out = plan.with_name("trials.json")
+    status = main(["rollout", str(plan), "--trials", "2", "-o", str(out)])
+    made = json.loads(out.read_text())
+    assert made["count"] == 2
+    assert status == (0 if made["successes"] == 2 else 1)
+    text = run("rollout", plan, "--trials", "2", status=status)
+    assert f"{made['successes']} of 2 succeeded" in text
+    run("rollout", plan, "--trials", "2", "-o", "trials.csv", status=2)
 
 
 def test_what_cannot_be_done_is_status_1(tmp_path: Path) -> None:
