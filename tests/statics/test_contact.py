@@ -83,7 +83,7 @@ def test_slope_needs_its_tangent_as_friction():
         points, normals = unpack([(0.3, 0.3 * math.tan(angle), angle), (0.0, 0.0, angle)])
         assert friction_needed(points, normals, 2, 0.12) == pytest.approx(math.tan(angle), abs=1e-5)
         forces = np.empty((2, 2))
-        need = least_friction(points, normals, 0.12, forces)
+        need = least_friction(points, normals, 0.12, 0.0, forces)
         assert need == pytest.approx(math.tan(angle), abs=1e-5)
         assert forces[:, 1].sum() == pytest.approx(math.cos(angle), abs=1e-5)
 
@@ -95,7 +95,7 @@ def test_least_friction_forces_balance_and_agree_with_the_interval(a, b, com):
     if np.hypot(*(points[0] - points[1])) < 0.05:
         return
     forces = np.empty((2, 2))
-    need = least_friction(points, normals, com, forces)
+    need = least_friction(points, normals, com, 0.0, forces)
     if not need < 5.0:
         return
     tangents = np.stack([normals[:, 1], -normals[:, 0]], axis=1)

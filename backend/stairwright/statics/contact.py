@@ -106,13 +106,17 @@ def _squeeze_range(
 
 
 @nb.njit(cache=True)
-def least_friction(points: Floats, normals: Floats, com_x: float, forces: Floats) -> float:
+def least_friction(
+    points: Floats, normals: Floats, com_x: float, ample: float, forces: Floats
+) -> float:
     """Least friction with which two contacts hold a CoM at `com_x`, and the forces that do.
 
     Args:
         points: (2, 2) contact points [m].
         normals: (2, 2) unit normals out of the terrain.
         com_x: Centre of mass [m].
+        ample: Friction that may be used without harm: up to it the forces squeeze the terrain
+            least, beyond it they need the least friction.
         forces: (2, 2) filled with (tangential, normal) per contact, in weights; tangential is
             positive along (n_z, -n_x), forward on the level.
 
@@ -152,7 +156,8 @@ def least_friction(points: Floats, normals: Floats, com_x: float, forces: Floats
             lo = mid
         if hi - lo < 1e-7:
             break
-    # With friction to spare nowhere (level ground) a whole range is left: squeeze least.
+    if ample > hi:
+        a, b = _squeeze_range(base, inner, ample, CAP)
     factor = min(max(0.0, a), b)
     for k in range(2):
         for m in range(2):

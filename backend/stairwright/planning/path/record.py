@@ -108,7 +108,7 @@ def _evaluate_path(
             for j in range(b - 1, -1, -1):
                 pair_at[0], pair_at[1] = at[i], at[a + j]
                 pair_n[0], pair_n[1] = normals[i], normals[a + j]
-                mu = least_friction(pair_at, pair_n, x, pair_f)
+                mu = least_friction(pair_at, pair_n, x, 0.75 * friction, pair_f)
                 if mu < least - 1e-9:
                     least = mu
                     kept[:] = pair_f
