@@ -92,7 +92,7 @@ def test_same_question_same_answer():
 
 
 def test_weights_pull():
-    """A stronger pull to a level trunk gives a leveller trunk; eq 18."""
+    """A stronger pull to a level trunk gives a leveller trunk; eq 17."""
     loose = sw.plan("single-stair-036", method="critical", weights={"pitch": 1e-3})
     stiff = sw.plan("single-stair-036", method="critical", weights={"pitch": 50.0})
     assert abs(stiff.poses[2].pitch) < abs(loose.poses[2].pitch)

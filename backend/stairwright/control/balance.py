@@ -1,4 +1,4 @@
-"""The balance controller: PD on CoM and pitch, forces by a QP, torques by J' F (eqs 9-14)."""
+"""The balance controller: PD on CoM and pitch, forces by a QP, torques by J' F (eqs 8-13)."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def desired_wrench(
     target: Setpoint,
     learnt: float = 0.0,
 ) -> Floats:
-    """(3,) ``b_des`` of eqs 9-10.
+    """(3,) ``b_des`` of eqs 8-9.
 
     `offset` and `drift` (2,) are desired minus measured position [m] and velocity [m/s] of the
     body's centre; `learnt` [rad/s^2] is what the pitch integral adds.
@@ -54,7 +54,7 @@ def force_cost(
     resting: Floats,
     previous: Floats,
 ) -> tuple[Floats, Floats]:
-    """Hessian H (8, 8) and gradient g (8,) of ``F' H F / 2 + g' F``, half the cost of eq 13.
+    """Hessian H (8, 8) and gradient g (8,) of ``F' H F / 2 + g' F``, half the cost of eq 11.
 
     ``D' S D + alpha |F - F_rest|^2 + beta |F - F_prev|^2`` with ``D = A F - b_des``; the paper's
     cost has ``F_rest = 0``.
@@ -67,7 +67,7 @@ def force_cost(
 
 
 def force_limits(settings: ControllerSettings, friction: Floats) -> tuple[Floats, Floats]:
-    """``C F <= d`` (eq 14): friction cones and saturation, C (16, 8) and d (16,).
+    """``C F <= d`` (eq 12): friction cones and saturation, C (16, 8) and d (16,).
 
     Four rows a wheel: forward and backward friction, normal force at least 0, at most the limit.
     `friction` (4,) is what each wheel may use.
@@ -80,7 +80,7 @@ def force_limits(settings: ControllerSettings, friction: Floats) -> tuple[Floats
 
 
 def force_torques(state: Measurement, points: Floats, forces: Floats) -> Floats:
-    """(4, 2) thigh and calf torques that put `forces` on the robot at `points`: J' F of eq 14.
+    """(4, 2) thigh and calf torques that put `forces` on the robot at `points`: J' F of eq 13.
 
     `points` (4, 2) are where the forces act: wheel centres (the paper) or contact points [m];
     `forces` (4, 2) are of the ground on the robot, world x and z [N].

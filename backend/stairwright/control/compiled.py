@@ -176,7 +176,7 @@ def contact_control(
     com_vx = qvel[0] + r00 * bx + r01 * by + r02 * bz
     com_vz = qvel[2] + r20 * bx + r21 * by + r22 * bz
 
-    # World points (x, z), faces, and the map from contact forces to the body's wrench (eqs 3-8).
+    # World points (x, z), faces, and the map from contact forces to the body's wrench (eqs 3-7).
     world = np.empty((4, 6))
     held = np.empty((4, 8))
     friction = np.empty(4)
@@ -195,7 +195,7 @@ def contact_control(
         A[0, 2 * i], A[1, 2 * i], A[2, 2 * i] = nz, -nx, lz * nz + lx * nx
         A[0, 2 * i + 1], A[1, 2 * i + 1], A[2, 2 * i + 1] = nx, nz, lz * nx - lx * nz
 
-    # Desired wrench (eqs 9-10) and the QP (eqs 13-14).
+    # Desired wrench (eqs 8-9) and the QP (eqs 11-12).
     ax = p.com_stiffness * (target[_COM] - com_x)
     ax += p.com_damping * (target[RATES + _COM] - com_vx)
     ax = min(max(ax, -_MAX_ACCELERATION), _MAX_ACCELERATION)
@@ -218,7 +218,7 @@ def contact_control(
         g[i] -= p.alpha * resting + p.beta * forces[i]
     solve_native(H, g, friction, p.force_limit, forces)
 
-    # Torques: J' F and the legs' weight, tracking (eq 27), rolling (eqs 15-17) with feed-forward.
+    # Torques: J' F and the legs' weight, tracking (eq 27), rolling (eqs 14-16) with feed-forward.
     wanted = yaw_rate - p.heading_stiffness * heading
     difference = p.half_track / R * (wanted + p.yaw_damping * (wanted - turning))
     for i in range(4):

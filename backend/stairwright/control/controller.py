@@ -5,7 +5,7 @@ is pulled to the plan's static forces; the wheel motors get the QP's tangential 
 plus feedback on the absolute wheel rate; the legs' own weight is carried by feed-forward.
 
 Form ``paper``: forces act at the wheel centres, the traction comes from the rolling control alone
-and enters the QP as a known wrench (eq 11); the body is the trunk's point with the whole mass; a
+and enters the QP as a known wrench (eq 10); the body is the trunk's point with the whole mass; a
 wheel's frame is that of the terrain under it.
 """
 

@@ -1,4 +1,4 @@
-"""Solvers of the balance QP (eqs 13-14): min F' H F / 2 + g' F subject to C F <= d.
+"""Solvers of the balance QP (eqs 11-12): min F' H F / 2 + g' F subject to C F <= d.
 
 ``native`` is written for exactly this QP's 8 unknowns and 16 constraints and compiled, so that the
 control loop never leaves machine code: a guess of the active faces, started at the last solution's,

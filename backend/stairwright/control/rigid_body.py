@@ -1,4 +1,4 @@
-"""The robot as one rigid body pushed at its wheels, in the x-z plane (eqs 1-8).
+"""The robot as one rigid body pushed at its wheels, in the x-z plane (eqs 1-7).
 
 Each wheel has its own contact frame: x along the terrain (forward), z along its normal; on a
 vertical face the slope is 90 degrees. Rows of the maps: force x, force z, moment about +y. The
@@ -23,7 +23,7 @@ def traction(wheel_torque: Floats, radius: float) -> Floats:
 
 
 def contact_frames(normals: Floats) -> Floats:
-    """(n, 2, 2) contact frames of unit `normals` (n, 2): columns tangent and normal (eq 8)."""
+    """(n, 2, 2) contact frames of unit `normals` (n, 2): columns tangent and normal (eq 7)."""
     tangents = np.stack([normals[:, 1], -normals[:, 0]], axis=-1)
     return np.stack([tangents, normals], axis=-1)
 

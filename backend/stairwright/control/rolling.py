@@ -1,4 +1,4 @@
-"""Rolling control: wheel torque from speed, and yaw from the difference of sides (eqs 15-17)."""
+"""Rolling control: wheel torque from speed, and yaw from the difference of sides (eqs 14-16)."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ SIDES = np.array([-1.0, 1.0, -1.0, 1.0])  # left wheels turn slower for a positi
 
 
 def wheel_rates(speeds: Floats, radius: float) -> Floats:
-    """(4,) wheel rates [rad/s] for centre `speeds` [m/s] along the terrain (eq 16)."""
+    """(4,) wheel rates [rad/s] for centre `speeds` [m/s] along the terrain (eq 15)."""
     rates: Floats = np.asarray(speeds) / radius
     return rates
 
 
 def yaw_difference(damping: float, desired: float, measured: float, scale: float) -> Floats:
-    """(4,) change of the wheel rates [rad/s] that turns the robot (eq 17).
+    """(4,) change of the wheel rates [rad/s] that turns the robot (eq 16).
 
     Args:
-        damping: K_d of eq 17, in units of `scale`.
+        damping: K_d of eq 16, in units of `scale`.
         desired: Yaw rate [rad/s].
         measured: Yaw rate [rad/s].
         scale: Half track per wheel radius: the rate difference that turns without slip.
@@ -29,6 +29,6 @@ def yaw_difference(damping: float, desired: float, measured: float, scale: float
 
 
 def wheel_torques(damping: float, desired: Floats, measured: Floats) -> Floats:
-    """(4,) ``K_d,wheel (qdot_des - qdot)`` (eq 15) [Nm]."""
+    """(4,) ``K_d,wheel (qdot_des - qdot)`` (eq 14) [Nm]."""
     torques: Floats = damping * (desired - measured)
     return torques

@@ -33,12 +33,12 @@ class ControllerSettings(Model):
         title="Form",
         description="contact: forces at the contact points, in each wheel's own frame, wheel "
         "torque fed forward. paper: forces at the wheel centres, wheel torque from the rolling "
-        "control alone (eqs 3-17)",
+        "control alone (eqs 3-16)",
     )
     solver: Solver = Field(
         "native",
         title="QP solver",
-        description="Solves the balance QP (eqs 13-14). native is compiled into the control loop; "
+        description="Solves the balance QP (eqs 11-12). native is compiled into the control loop; "
         "the others go through qpsolvers; clarabel is the reference",
     )
     speed: float | None = _number(
@@ -57,28 +57,28 @@ class ControllerSettings(Model):
         None, 0.0, 100.0, "Nm s/rad", "Joint damping", "K_d of eq 27; the robot's if empty", "log"
     )
     wheel_damping: float | None = _number(
-        None, 0.0, 20.0, "Nm s/rad", "Wheel damping", "K_d of eq 15; the robot's if empty", "log"
+        None, 0.0, 20.0, "Nm s/rad", "Wheel damping", "K_d of eq 14; the robot's if empty", "log"
     )
     wheel_sync: float = _number(
         2.0, 0.0, 20.0, "1/s", "Wheel synchronisation", "Pull of each wheel to its place", "linear"
     )
     yaw_damping: float = _number(
-        1.2, 0.0, 20.0, "1", "Yaw damping", "K_d of eq 17, per wheel radius and track", "linear"
+        1.2, 0.0, 20.0, "1", "Yaw damping", "K_d of eq 16, per wheel radius and track", "linear"
     )
     heading_stiffness: float = _number(
         4.0, 0.0, 40.0, "1/s", "Heading", "Turns the robot back to the course", "linear"
     )
     com_stiffness: float = _number(
-        40.0, 0.0, 400.0, "1/s²", "CoM stiffness", "K_p of eq 9, position", "log"
+        40.0, 0.0, 400.0, "1/s²", "CoM stiffness", "K_p of eq 8, position", "log"
     )
     com_damping: float = _number(
-        8.0, 0.0, 80.0, "1/s", "CoM damping", "K_d of eq 9, position", "log"
+        8.0, 0.0, 80.0, "1/s", "CoM damping", "K_d of eq 8, position", "log"
     )
     pitch_stiffness: float = _number(
-        200.0, 0.0, 1000.0, "1/s²", "Pitch stiffness", "K_p of eq 9, pitch", "log"
+        200.0, 0.0, 1000.0, "1/s²", "Pitch stiffness", "K_p of eq 8, pitch", "log"
     )
     pitch_damping: float = _number(
-        14.0, 0.0, 100.0, "1/s", "Pitch damping", "K_d of eq 9, pitch", "log"
+        14.0, 0.0, 100.0, "1/s", "Pitch damping", "K_d of eq 8, pitch", "log"
     )
     pitch_integral: float = _number(
         300.0,
@@ -90,10 +90,10 @@ class ControllerSettings(Model):
         "linear",
     )
     force_weight: float = _number(
-        1.0, 0.001, 100.0, "1", "Force task", "S of eq 13 for the force rows", "log"
+        1.0, 0.001, 100.0, "1", "Force task", "S of eq 11 for the force rows", "log"
     )
     moment_weight: float = _number(
-        20.0, 0.001, 1000.0, "1/m²", "Moment task", "S of eq 13 for the moment row", "log"
+        20.0, 0.001, 1000.0, "1/m²", "Moment task", "S of eq 11 for the moment row", "log"
     )
     alpha: float = _number(
         1e-3,
@@ -101,17 +101,17 @@ class ControllerSettings(Model):
         1.0,
         "1",
         "Alpha",
-        "Weight of the forces (eq 13); form contact: of their distance from the plan's static ones",
+        "Weight of the forces (eq 11); form contact: of their distance from the plan's static ones",
         "log",
     )
     beta: float = _number(
-        1e-4, 0.0, 1.0, "1", "Beta", "Weight of the change of forces (eq 13)", "linear"
+        1e-4, 0.0, 1.0, "1", "Beta", "Weight of the change of forces (eq 11)", "linear"
     )
     friction_share: float = _number(
         0.9, 0.1, 1.0, "1", "Friction used", "Part of the friction that the QP may use", "linear"
     )
     force_limit: float = _number(
-        150.0, 20.0, 1000.0, "N", "Force limit", "Largest normal force of a wheel (eq 14)", "log"
+        150.0, 20.0, 1000.0, "N", "Force limit", "Largest normal force of a wheel (eq 12)", "log"
     )
 
 

@@ -1,4 +1,4 @@
-"""The paper's planner: optimal poses at critical places only (eqs 18-22), known ends.
+"""The paper's planner: optimal poses at critical places only (eqs 17-22), known ends.
 
 Two poses for each obstacle: the front wheel arriving at its face, and just past it, where the rear
 wheel is still below. The rear wheel's place is found by solving the problem at several places and
@@ -43,7 +43,7 @@ def plan_critical(
         terrain: The profile.
         robot: The robot.
         friction: Between wheels and terrain.
-        weights: Q of eq 18, speed, and whether whole links are kept clear.
+        weights: Q of eq 17, speed, and whether whole links are kept clear.
 
     Returns:
         The plan; infeasible with a problem where a pose has no solution or no equilibrium. The

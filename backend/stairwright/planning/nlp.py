@@ -1,7 +1,7 @@
-"""The paper's pose optimisation (eqs 18-22) as one parametric problem in CasADi.
+"""The paper's pose optimisation (eqs 17-22) as one parametric problem in CasADi.
 
-The variables are those of eq 19, X = [x_c, z_c, pitch, q], and the wheels' arc lengths on the
-wheel-centre curve, which turn "the rim is on the terrain" (eq 19a) into an exact equation. Terrain,
+The variables are those of eq 18, X = [x_c, z_c, pitch, q], and the wheels' arc lengths on the
+wheel-centre curve, which turn "the rim is on the terrain" (eq 19) into an exact equation. Terrain,
 robot and weights are parameters: a problem is built once per process.
 """
 
@@ -89,7 +89,7 @@ def build(layout: Layout, links: bool, cells: int) -> Problem:
     rows.extend((SELF, gap) for gap in _self_gaps(pose, shape))
 
     error = X[:7] - reference
-    cost = ca.dot(weights * error, error)  # eq 18, with the posture terms that make it unique
+    cost = ca.dot(weights * error, error)  # eq 17, with the posture terms that make it unique
     p = ca.vertcat(
         reference,
         weights,

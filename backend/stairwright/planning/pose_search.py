@@ -276,7 +276,7 @@ class PoseSearch:
         return float(places[np.argmax(steep)]) if steep.any() else np.inf
 
     def _reference(self, x: float) -> Floats:
-        """Trunk and joints (7,) that eq 18 pulls to: nominal height over the ground below."""
+        """Trunk and joints (7,) that eq 17 pulls to: nominal height over the ground below."""
         hips = self.robot.hips
         below = np.linspace(x + hips.rear[0], x + hips.front[0], 15)
         ground = float(height_at(self.path.vertices, below).mean())

@@ -35,13 +35,13 @@ _SPEED: Any = Field(
 
 
 class CriticalWeights(Model):
-    """Diagonal of Q (eq 18) and the regularisation that makes the optimum unique."""
+    """Diagonal of Q (eq 17) and the regularisation that makes the optimum unique."""
 
     com_x: float = _weight(
-        100.0, 0.01, 1e4, "m⁻²", "Trunk x", "Pull of the trunk to its place along x (eq 18)"
+        100.0, 0.01, 1e4, "m⁻²", "Trunk x", "Pull of the trunk to its place along x (eq 17)"
     )
     com_z: float = _weight(
-        5.0, 0.01, 1e4, "m⁻²", "Trunk z", "Pull to the nominal height; far below x (eq 18)"
+        5.0, 0.01, 1e4, "m⁻²", "Trunk z", "Pull to the nominal height; far below x (eq 17)"
     )
     pitch: float = _weight(0.2, 1e-4, 100.0, "rad⁻²", "Pitch", "Pull to a level trunk")
     posture: float = _weight(

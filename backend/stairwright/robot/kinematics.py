@@ -92,7 +92,7 @@ def com(robot: Robot, x_c: Floats, z_c: Floats, frames: Frames) -> Floats:
 
 
 def wheel_jacobians(robot: Robot, pitch: Floats, q: Floats) -> Floats:
-    """J of eq 14: d(wheel centre)/d(thigh, calf) (..., 2, 2, 2) by leg, x/z, joint; trunk held."""
+    """J of eq 13: d(wheel centre)/d(thigh, calf) (..., 2, 2, 2) by leg, x/z, joint; trunk held."""
     thigh = np.asarray(pitch)[..., None] + np.asarray(q)[..., 0::2]
     calf = thigh + np.asarray(q)[..., 1::2]
     # d along(a)/da = (-cos a, sin a)

@@ -1,4 +1,4 @@
-"""Driving on flat ground with commanded speed and yaw rate (eqs 15-17).
+"""Driving on flat ground with commanded speed and yaw rate (eqs 14-16).
 
 The controller works in the plane of the robot's heading: yaw is taken out of the measurement, and
 the set point travels with the trunk, so that only speed and yaw rate are commanded.
@@ -35,7 +35,7 @@ CONTROL_STEPS = 2
 HALF_SIZE = 20.0  # m, of the flat ground
 ACCELERATION = 1.0  # m/s^2 of the commanded speed
 TURN_ACCELERATION = 2.0  # rad/s^2 of the commanded yaw rate
-# Wheels that do not steer must slip to turn, which eqs 15-17 alone leave as steady errors.
+# Wheels that do not steer must slip to turn, which eqs 14-16 alone leave as steady errors.
 TURN_INTEGRAL = 10.0  # 1/s
 TURN_LIMIT = 6.0  # rad/s that the integral may add
 SPEED_INTEGRAL = 3.0  # 1/s
@@ -96,7 +96,7 @@ def drive(
         qpos, qvel = _ahead(data.qpos, data.qvel, state.heading)
         pushed += SPEED_INTEGRAL * (speed - float(qvel[0])) * dt
         pushed = min(max(pushed, -SPEED_LIMIT), SPEED_LIMIT)
-        # The damping of eq 17 acts on the true error: what the integral adds must not feed it.
+        # The damping of eq 16 acts on the true error: what the integral adds must not feed it.
         share = added / (1.0 + settings.yaw_damping)
         torques = controller.step(qpos, qvel, _moving(base, speed, pushed, turn + share))
         limit_torques(record, data.qvel[6:], torques, data.ctrl)
