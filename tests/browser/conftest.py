@@ -86,7 +86,9 @@ class Product:
         self.page.get_by_role("button", name="Run rollout").click()
         done = ".app:not([data-run=none]):not([data-run=running])"
         self.page.locator(done).wait_for(timeout=PATIENCE)
-        return self.page.locator(".app").get_attribute("data-run") or ""
+        outcome = self.page.locator(".app").get_attribute("data-run") or ""
+        assert outcome != "failed", self.page.locator(".res").inner_text()
+        return outcome
 
 
 @pytest.fixture

@@ -174,7 +174,7 @@ function Card({ result }: { result: Rollout }) {
   return (
     <div class={runStale.value ? "dim" : ""}>
       <Heading result={result} />
-      <table>
+      <table class={other ? "two" : ""}>
         {other && (
           <thead>
             <tr>

@@ -93,6 +93,7 @@ function Tag() {
   const rollout = shownRun.value;
   const t = fixed(shownTime.value, 2);
   const failed = rollout && rollout.outcome !== "success";
+  if (plan.value?.poses.length === 0) return null;
   if (plan.value?.problem && shownTime.value >= duration.value - 1e-6) {
     return (
       <div class="tag2">

@@ -107,6 +107,7 @@ function show(answer: Plan, question: Question, newest: boolean): void {
       batch(() => {
         plan.value = answer;
         preview.value = true;
+        shownKey.value = "";
       });
     }
     if (newest) askForPath(question);
@@ -170,14 +171,19 @@ function fail(error: unknown, question: Question, newest: boolean): void {
 
 const queue = new NewestWins<Question, Plan>(solve, show, fail);
 
+function forget(): void {
+  clearTimeout(resting);
+  queue.forget();
+  stopWaiting();
+}
+
 /** Follow every change of drawing and set-up from now on. */
 export function startPlanning(): () => void {
   const stopA = effect(() => {
     const question = request.value;
     const key = requestKey.value;
     if (!question) {
-      queue.forget();
-      stopWaiting();
+      forget();
       batch(() => {
         plan.value = null;
         planB.value = null;
@@ -186,7 +192,12 @@ export function startPlanning(): () => void {
       });
       return;
     }
-    if (!connected.value || key === shownKey.peek()) return;
+    if (!connected.value) return;
+    if (key === shownKey.peek()) {
+      // Back to what is shown already (undo, reset): what was asked meanwhile must not replace it.
+      forget();
+      return;
+    }
     startWaiting();
     askForA(question, key);
   });
