@@ -33,5 +33,5 @@ class InputError(StairwrightError, ValueError):
         return f"{self.path}: {self.message}" if self.field else self.message
 
 
-class Cancelled(StairwrightError):  # noqa: N818 - an outcome, not a fault
+class Cancelled(StairwrightError):
     """Work was stopped because its caller asked for it."""
