@@ -56,7 +56,7 @@ class Support:
             for rear in np.flatnonzero(self.owner == 1):
                 pair = np.array([front, rear])
                 local = np.zeros((2, 2))
-                need = least_friction(self.points[pair], self.normals[pair], com_x, local)
+                need = least_friction(self.points[pair], self.normals[pair], com_x, 0.0, local)
                 if np.isfinite(need) and (best is None or need < best[0]):
                     n = self.normals[pair]
                     tangents = np.stack([n[:, 1], -n[:, 0]], axis=1)
@@ -118,7 +118,7 @@ def contact_forces(weight: float, com_x: Floats, contacts: Floats, normals: Floa
     for i in range(len(com_x)):
         local = np.zeros((2, 2))
         points, n = np.ascontiguousarray(contacts[i]), np.ascontiguousarray(normals[i])
-        if not np.isfinite(least_friction(points, n, float(com_x[i]), local)):
+        if not np.isfinite(least_friction(points, n, float(com_x[i]), 0.0, local)):
             gap = max(points[0, 0] - points[1, 0], 1e-6)
             front = float(np.clip((com_x[i] - points[1, 0]) / gap, 0.0, 1.0))
             for k, share in enumerate((front, 1.0 - front)):
