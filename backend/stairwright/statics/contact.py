@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 GRAVITY = 9.81  # m/s^2
-CAP = 3.0  # largest ray strength, in weights: wheels wedged between walls hold no infinite force
+CAP = 1.0  # largest ray strength, in weights: joints hold no larger force of wedged wheels
+SQUEEZE = 3.0  # largest inner force looked at, in weights
 MAX_CONTACTS = 6
 _EPS = 1e-9
 
@@ -139,17 +140,17 @@ def least_friction(
         base[k, 0], base[k, 1] = fx * nz - fz * nx, fx * nx + fz * nz
         inner[k, 0], inner[k, 1] = sign * (ux * nz - uz * nx), sign * (ux * nx + uz * nz)
     lo, hi = 0.0, 1e4
-    a, b = _squeeze_range(base, inner, hi, CAP)
+    a, b = _squeeze_range(base, inner, hi, SQUEEZE)
     if a > b:
         return np.inf
     hi = 8.0
-    a, b = _squeeze_range(base, inner, hi, CAP)
+    a, b = _squeeze_range(base, inner, hi, SQUEEZE)
     while a > b:
         lo, hi = hi, 2.0 * hi
-        a, b = _squeeze_range(base, inner, hi, CAP)
+        a, b = _squeeze_range(base, inner, hi, SQUEEZE)
     for _ in range(40):
         mid = 0.5 * (lo + hi)
-        c, d = _squeeze_range(base, inner, mid, CAP)
+        c, d = _squeeze_range(base, inner, mid, SQUEEZE)
         if c <= d:
             hi, a, b = mid, c, d
         else:
@@ -157,7 +158,7 @@ def least_friction(
         if hi - lo < 1e-7:
             break
     if ample > hi:
-        a, b = _squeeze_range(base, inner, ample, CAP)
+        a, b = _squeeze_range(base, inner, ample, SQUEEZE)
     factor = min(max(0.0, a), b)
     for k in range(2):
         for m in range(2):

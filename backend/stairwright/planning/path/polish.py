@@ -169,7 +169,7 @@ def polish(
                         h[3 * (k - 1 + u) + a, 3 * (u - v)] += even * q * q * second[u] * second[v]
         if cost < least * (1.0 - 1e-12):
             # One bad place counts little in a long course: ask for more where there are more nodes.
-            settled = cost > least * (1.0 - 2e-3 * min(1.0, 100.0 / n))
+            settled = cost > least * (1.0 - 2e-3 * min(1.0, 20.0 / n))
             least = cost
             best[:] = body
             damping = max(damping * 0.4, 1e-6)

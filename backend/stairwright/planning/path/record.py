@@ -30,7 +30,8 @@ class Record:
         poses: (n, RECORD) see `legs.evaluate`.
         com: (n,) CoM margin at the friction there is.
         need: (n,) friction needed.
-        forces: (n, 2, 2) force of each wheel pair, tangential and normal [N].
+        forces: (n, 2, 2) force of each wheel pair, tangential and normal [N]; a wheel between two
+            faces counts them along the bisector of the faces that carry it.
         torque: (n,) largest static leg joint torque [Nm].
         wheel_torque: (n,) largest static wheel torque [Nm].
         friction, leg_limit, wheel_limit: What there is.
@@ -52,23 +53,56 @@ class Record:
         return np.minimum(self.poses[:, TRUNK], self.poses[:, LINKS])
 
     @property
-    def worst(self) -> float:
-        """Least of all margins, each against its bound, in comparable sizes; negative: violated."""
-        return float(
-            min(
-                self.clearance.min(),
-                (self.poses[:, LEGS] - LEGS_GAP).min(),
-                0.2 * self.poses[:, SLACK].min(),
-                self.com.min(),
-                (self.leg_limit - self.torque.max()) * 0.01,
-                (self.wheel_limit - self.wheel_torque.max()) * 0.01,
-            )
+    def room(self) -> Floats:
+        """(n,) least of all margins, each against its bound, in comparable sizes."""
+        margins: Floats = np.min(
+            [
+                self.clearance,
+                self.poses[:, LEGS] - LEGS_GAP,
+                0.2 * self.poses[:, SLACK],
+                self.com,
+                (self.leg_limit - self.torque) * 0.01,
+                (self.wheel_limit - self.wheel_torque) * 0.01,
+            ],
+            axis=0,
         )
+        return margins
+
+    @property
+    def worst(self) -> float:
+        """Least of all margins on the path; negative: a bound is violated."""
+        return float(self.room.min())
 
     @property
     def good(self) -> bool:
         """Whether every bound is kept with a little to spare."""
         return self.worst > 5e-4
+
+
+@nb.njit(cache=True)
+def _with_bisector(
+    at: Floats,
+    normals: Floats,
+    begin: int,
+    count: int,
+    x: float,
+    z: float,
+    r: float,
+    points: Floats,
+    out: Floats,
+) -> int:
+    """Copy a wheel's contacts to `points`, `out` and add their bisector; returns the number."""
+    for k in range(count):
+        points[k], out[k] = at[begin + k], normals[begin + k]
+    if count < 2:
+        return count
+    nx, nz = out[0, 0] + out[1, 0], out[0, 1] + out[1, 1]
+    norm = np.hypot(nx, nz)
+    if norm < 0.2:  # opposite walls: no direction between them
+        return count
+    out[2, 0], out[2, 1] = nx / norm, nz / norm
+    points[2, 0], points[2, 1] = x - r * nx / norm, z - r * nz / norm
+    return 3
 
 
 @nb.njit(cache=True)
@@ -92,6 +126,7 @@ def _evaluate_path(
     at, normals = np.empty((4, 2)), np.empty((4, 2))
     pair_at, pair_n, pair_f = np.empty((2, 2)), np.empty((2, 2)), np.empty((2, 2))
     kept = np.zeros((2, 2))
+    faces, face_n = np.zeros((6, 2)), np.zeros((6, 2))
     weight = p.mass * GRAVITY
     for k in range(n):
         for m in range(2):
@@ -102,34 +137,41 @@ def _evaluate_path(
         b = wheel_contacts(pieces, corners, r, s[k, 1], at, normals, a)
         com[k] = com_margin(at, normals, a + b, friction, x)
         need[k] = friction_needed(at, normals, a + b, x)
-        # Of the faces that a wheel touches take those with the least need; later faces first.
+        # A wheel between two faces may lean on either or on both: their bisector stands for both,
+        # with a cone that is narrower than the true one.
+        a2 = _with_bisector(at, normals, 0, a, wheels[0], wheels[1], r, faces, face_n)
+        b2 = _with_bisector(at, normals, a, b, wheels[2], wheels[3], r, faces[3:], face_n[3:])
         least = np.inf
-        for i in range(a - 1, -1, -1):
-            for j in range(b - 1, -1, -1):
-                pair_at[0], pair_at[1] = at[i], at[a + j]
-                pair_n[0], pair_n[1] = normals[i], normals[a + j]
-                mu = least_friction(pair_at, pair_n, x, 0.75 * friction, pair_f)
-                if mu < least - 1e-9:
-                    least = mu
-                    kept[:] = pair_f
-                    ni, nj = i, a + j
+        for stage in range(2):
+            # Wheels that pinch a curb between them press hard at low friction: use more of it.
+            if stage == 1 and least < 1.6:
+                break
+            ample = (0.75 if stage == 0 else 0.98) * friction
+            for i in range(a2 - 1, -1, -1):
+                for j in range(b2 - 1, -1, -1):
+                    pair_at[0], pair_at[1] = faces[i], faces[3 + j]
+                    pair_n[0], pair_n[1] = face_n[i], face_n[3 + j]
+                    mu = least_friction(pair_at, pair_n, x, ample, pair_f)
+                    score = pair_f[0, 1] + pair_f[1, 1] if mu <= ample else 100.0 + mu
+                    if score < least - 1e-9:
+                        least = score
+                        kept[:] = pair_f
+                        ni, nj = i, 3 + j
         if least < np.inf:
             forces[k] = kept * weight
         elif k > 0:
             forces[k] = forces[k - 1]
-            ni, nj = 0, a
+            ni, nj = 0, 3
         else:
             forces[k, 0, 1] = forces[k, 1, 1] = 0.5 * weight
-            ni, nj = 0, a
+            ni, nj = 0, 3
         torque[k] = 0.0
         wheel_torque[k] = 0.0
         for m in range(2):
-            nx, nz = (
-                (normals[ni, 0], normals[ni, 1]) if m == 0 else (normals[nj, 0], normals[nj, 1])
-            )
+            nx, nz = (face_n[ni, 0], face_n[ni, 1]) if m == 0 else (face_n[nj, 0], face_n[nj, 1])
             t, f = forces[k, m, 0], forces[k, m, 1]
             fx, fz = t * nz + f * nx, -t * nx + f * nz
-            touch = at[ni] if m == 0 else at[nj]
+            touch = faces[ni] if m == 0 else faces[nj]
             thigh, calf = leg_torques(p, points[m, 0], points[m, 1], points[m, 2], touch, fx, fz)
             torque[k] = max(torque[k], thigh, calf)
             wheel_torque[k] = max(wheel_torque[k], 0.5 * abs(t) * r)

@@ -5,6 +5,9 @@ from __future__ import annotations
 import time as clock
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from stairwright.planning.certificate import certify
 from stairwright.planning.plan import Certificate, Plan, Pose
 from stairwright.planning.weights import PathWeights
@@ -21,6 +24,8 @@ from .record import LEGS_GAP
 from .refine import Refined, refine
 from .tables import Bounds
 from .windows import find_path
+
+Floats = NDArray[np.float64]
 
 RESERVE = 0.1  # friction that a plan does without where the terrain allows it
 
@@ -65,7 +70,12 @@ class Solved:
 
 @dataclass(frozen=True)
 class Blocked:
-    """No certified path: how far the boldest search came, and whether it came through at all."""
+    """No certified path.
+
+    Attributes:
+        reached: Arc lengths where the way ends, or where a found way breaks a bound worst.
+        opened: Whether a search came through at all.
+    """
 
     reached: tuple[float, float] | None
     opened: bool
@@ -118,16 +128,17 @@ class Course:
                 continue
             opened = True
             solved = self.finish(finding, k)
-            if solved is not None:
+            if isinstance(solved, Solved):
                 return solved
+            reached = (float(solved[0]), float(solved[1]))
         return Blocked(reached, opened)
 
     def hopeful(self) -> bool:
         """Whether a search that forgives more than rounding can hide comes through."""
         return self.find(1.0, HOPE, cheap=False, roll_back=True).quality > 0
 
-    def finish(self, finding: Finding, rung: int) -> Solved | None:
-        """Polish and certify; None where that fails."""
+    def finish(self, finding: Finding, rung: int) -> Solved | Floats:
+        """Polish and certify; where that fails, the pair of arc lengths at the worst place."""
         assert finding.s is not None
         assert finding.body is not None
         found: Refined = refine(
@@ -135,11 +146,13 @@ class Course:
             self.friction, self.reserve, self.weights,
         )  # fmt: skip
         if found.record.worst < 0.0:
-            return None
+            return found.s[int(found.record.room.argmin())]
         poses, keys, total = make_poses(self.path, self.robot, found, self.weights)
         plan: Plan = make_plan(
             self.terrain, self.robot, self.friction, self.weights, clock.perf_counter(), poses,
             keys, total,
         )  # fmt: skip
         certificate = certify(plan)
-        return Solved(poses, keys, total, certificate, rung) if certificate.passed else None
+        if certificate.passed:
+            return Solved(poses, keys, total, certificate, rung)
+        return found.s[int(found.record.room.argmin())]
