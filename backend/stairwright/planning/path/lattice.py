@@ -158,12 +158,13 @@ class Search:
             0, len(self.s) - 1, self.near, self.far, lat, friction, reserve, LAG, com,
         )  # fmt: skip
         source, goal = int(cells.number[i0, j0]), int(cells.number[i1, j1])
-        last = np.flatnonzero(cells.front == len(self.s) - 1)
-        goal = int(last[0]) if open_end and len(last) else goal
+        exits = np.flatnonzero(cells.front == len(self.s) - 1)
+        goal = int(exits[0]) if open_end and len(exits) else goal
         if source < 0 or goal < 0:
             return Finding(None, None, 0, None)
         w = self._world(com)
-        seed, target = self._seed(cells, source, self.begin), self._seed(cells, goal, self.end)
+        seed: Ints = self._seed(cells, source, self.begin)
+        target: Ints = self._seed(cells, goal, self.end)
         n = len(cells.front)
         shape = (n, volume_size(lat))
         qual, width = np.zeros(shape, np.uint8), np.zeros(shape, np.uint8)
@@ -171,9 +172,10 @@ class Search:
         moves = FORWARD
         flood(w, cells, source, seed, moves, False, qual, state, width, alive)
         if open_end:
-            goal = int(last[int(np.argmax(width[last].max(axis=1)))])
+            goal = int(exits[int(np.argmax(width[exits].max(axis=1)))])
             inside = self._window(width[goal])
-            target = np.array(np.unravel_index(int(inside.argmax()), inside.shape), np.int32)
+            at = np.unravel_index(int(inside.argmax()), inside.shape)
+            target = np.array([int(k) for k in at], np.int32)
         best, pose = self._best(self._window(width[goal]), target)
         if best == 0 and roll_back:
             moves = len(MOVES)

@@ -145,8 +145,9 @@ class Course:
             self.path, self.ground, self.robot, self.legs, self.stands, finding.s, finding.body,
             self.friction, self.reserve, self.weights,
         )  # fmt: skip
+        worst: Floats = found.s[int(found.record.room.argmin())]
         if found.record.worst < 0.0:
-            return found.s[int(found.record.room.argmin())]
+            return worst
         poses, keys, total = make_poses(self.path, self.robot, found, self.weights)
         plan: Plan = make_plan(
             self.terrain, self.robot, self.friction, self.weights, clock.perf_counter(), poses,
@@ -155,4 +156,4 @@ class Course:
         certificate = certify(plan)
         if certificate.passed:
             return Solved(poses, keys, total, certificate, rung)
-        return found.s[int(found.record.room.argmin())]
+        return worst
