@@ -209,7 +209,9 @@ class SceneRequest(Model):
 
     plan_id: Id | None = None
     rollout_id: Id | None = None
-    compare_plan_id: Id | None = Field(None, description="a second plan, as a ghost")
+    compare_plan_id: Id | None = Field(
+        None, description="accepted and not shown: the scene shows one plan"
+    )
     theme: Literal["dark", "light"] | None = None
     layers: Annotated[dict[SettingName, StrictBool], Field(max_length=32)] | None = None
     camera: Literal["side", "iso", "front", "follow"] | None = None

@@ -21,7 +21,8 @@ def _end_if_orphaned(*_: object) -> None:
         os._exit(1)
 
 
-# The fork server notices that its parent has gone only when it is back from here.
+# By itself the fork server ends when the last worker has, and a worker when its task is done. This
+# ends all of them at once when the service is killed: workers go with the fork server.
 signal.signal(signal.SIGALRM, _end_if_orphaned)
 signal.setitimer(signal.ITIMER_REAL, 0.5, 0.5)
 
@@ -31,6 +32,3 @@ with contextlib.suppress(Exception):
     from stairwright.jobs import work
 
     work.warm()
-
-signal.setitimer(signal.ITIMER_REAL, 0.0)
-signal.signal(signal.SIGALRM, signal.SIG_DFL)
