@@ -28,7 +28,7 @@ _EPS = 1e-9
 
 @nb.njit(cache=True)
 def com_interval(
-    points: Floats, normals: Floats, count: int, friction: float
+    points: Floats, normals: Floats, count: int, friction: float, cap: float = CAP
 ) -> tuple[float, float]:
     """Least and largest x of the CoM [m] that the first `count` contacts can hold at rest.
 
@@ -37,6 +37,7 @@ def com_interval(
         normals: (m, 2) unit normals out of the terrain.
         count: Number of contacts used, at most `MAX_CONTACTS`.
         friction: Coulomb friction, alike at all contacts.
+        cap: Largest ray strength, in weights.
 
     Returns:
         (low, high); low > high (+inf, -inf) where nothing can hold the robot.
@@ -60,7 +61,7 @@ def com_interval(
             reach = 0.0
             for j in range(n):
                 reach += max(0.0, ux * dx[j] + uz * dz[j])
-            if uz > CAP * reach + _EPS:
+            if uz > cap * reach + _EPS:
                 return np.inf, -np.inf
     low, high = -np.inf, np.inf
     for i in range(n):
@@ -77,8 +78,8 @@ def com_interval(
                     above += slack
                 else:
                     below += slack
-            high = min(high, yz + CAP * above)
-            low = max(low, yz + CAP * below)
+            high = min(high, yz + cap * above)
+            low = max(low, yz + cap * below)
     if low > high + 1e-7 or not math.isfinite(low + high):
         return np.inf, -np.inf
     return min(low, high), max(low, high)

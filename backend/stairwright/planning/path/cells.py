@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.robot.description import Planar
+from stairwright.statics.contact import CAP
 
-from .contacts import lagged_interval, pair_interval
+from .contacts import GENTLE, lagged_interval, pair_interval
 from .ground import Ground
 from .legs import Leg
 from .tables import INF, Floats32, Lattice, LegTable
@@ -91,13 +92,13 @@ def build_cells(
     m = 0
     for c in range(k):
         i, j = front[c], rear[c]
-        lo, hi = pair_interval(pieces, corners, r, s[i], s[j], friction)
+        lo, hi = pair_interval(pieces, corners, r, s[i], s[j], friction, CAP)
         if hi - lo < 2 * com:
             index[i, j] = -1
             continue
         front[m], rear[m], index[i, j] = i, j, m
         spans[m, 0], spans[m, 1] = lo, hi
-        spans[m, 2], spans[m, 3] = pair_interval(pieces, corners, r, s[i], s[j], reserve)
+        spans[m, 2], spans[m, 3] = pair_interval(pieces, corners, r, s[i], s[j], reserve, GENTLE)
         lo, hi = lagged_interval(pieces, r, s[i], s[j], friction, lag)
         if lo > hi:
             lo = hi = 0.5 * (spans[m, 0] + spans[m, 1])

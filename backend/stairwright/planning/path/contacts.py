@@ -6,11 +6,12 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.statics.contact import com_interval
+from stairwright.statics.contact import CAP, com_interval
 from stairwright.terrain.wheel_path import curve_at
 
 Floats = NDArray[np.float64]
 
+GENTLE = 0.75  # weights; ray strength that poses with reserve do with: no wheels that pinch
 TOUCH = 0.0018  # m; a wheel this near to a concave corner (by arc length) touches both faces
 
 
@@ -40,13 +41,13 @@ def wheel_contacts(
 
 @nb.njit(cache=True)
 def pair_interval(
-    pieces: Floats, corners: Floats, r: float, sf: float, sr: float, friction: float
+    pieces: Floats, corners: Floats, r: float, sf: float, sr: float, friction: float, cap: float
 ) -> tuple[float, float]:
     """CoM interval (low, high) with the front wheels at `sf` and the rear wheels at `sr` [m]."""
     points, normals = np.empty((4, 2)), np.empty((4, 2))
     n = wheel_contacts(pieces, corners, r, sf, points, normals, 0)
     n += wheel_contacts(pieces, corners, r, sr, points, normals, n)
-    return com_interval(points, normals, n, friction)
+    return com_interval(points, normals, n, friction, cap)
 
 
 @nb.njit(cache=True)
@@ -96,13 +97,13 @@ def path_intervals(
     Where one of the stricter two is empty the interval before it stands in.
     """
     for k in range(len(s)):
-        lo, hi = pair_interval(pieces, corners, r, s[k, 0], s[k, 1], friction)
+        lo, hi = pair_interval(pieces, corners, r, s[k, 0], s[k, 1], friction, CAP)
         if lo > hi:
             xf, _, _, _ = curve_at(pieces, r, s[k, 0])
             xr, _, _, _ = curve_at(pieces, r, s[k, 1])
             lo, hi = 0.5 * (xf + xr) + 0.05, 0.5 * (xf + xr) - 0.05
         out[k, 0], out[k, 1] = lo, hi
-        lo, hi = pair_interval(pieces, corners, r, s[k, 0], s[k, 1], reserve)
+        lo, hi = pair_interval(pieces, corners, r, s[k, 0], s[k, 1], reserve, GENTLE)
         if lo > hi:
             lo, hi = out[k, 0], out[k, 1]
         out[k, 2], out[k, 3] = lo, hi
