@@ -77,6 +77,7 @@ def test_metrics_and_request_ids(server: Server) -> None:
     assert mine[-1]["message"] == "GET /api/v1/terrains/flat 200"
 
 
+@pytest.mark.slow
 def test_without_a_page_it_says_so(start_server: Start, tmp_path: Path) -> None:
     with start_server(STAIRWRIGHT_PAGE=str(tmp_path / "none")) as server:
         answer = httpx.get(server.url)
