@@ -175,7 +175,7 @@ def _violations(page: Page) -> list[dict[str, Any]]:
     # The scene's frame is viser's page, not ours.
     found = page.evaluate("() => axe.run({ exclude: [['iframe']] }, { iframes: false })")
     return [
-        {"id": v["id"], "nodes": [n["html"][:160] for n in v["nodes"]]}
+        {"id": v["id"], "nodes": [(n["html"][:160], n["failureSummary"]) for n in v["nodes"]]}
         for v in found["violations"]
         if v["impact"] in SERIOUS
     ]

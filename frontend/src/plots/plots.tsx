@@ -64,7 +64,7 @@ export function Plots() {
   }
   const dim = run.value && !shownRun.value && !running.value;
   return (
-    <div class={dim ? "plots dim" : "plots"} style={{ "--count": panels.value.length }}>
+    <div class={dim ? "plots older" : "plots"} style={{ "--count": panels.value.length }}>
       {panels.value.map((panel) => (
         <Plot key={panel.id} panel={panel} tint={tint.value} />
       ))}

@@ -172,7 +172,7 @@ function Card({ result }: { result: Rollout }) {
     </td>
   );
   return (
-    <div class={runStale.value ? "dim" : ""}>
+    <div class={runStale.value ? "older" : ""}>
       <Heading result={result} />
       <table class={other ? "two" : ""}>
         {other && (
