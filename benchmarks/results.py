@@ -94,13 +94,14 @@ def row(case: Case) -> str:
     return (
         f"{head}{planned}| {run.outcome} | {m.duration:.1f} s "
         f"| {math.degrees(m.pitch_error_max):.1f} deg | {m.link_contacts} "
-        f"| {m.torque_peak:.1f} Nm | {1e3 * margin(plan):.0f} mm |"
+        f"| {m.torque_peak:.1f} Nm | {margin(plan)} |"
     )
 
 
-def margin(plan: Plan) -> float:
-    """Thinnest CoM margin of a plan [m]."""
-    return min(pose.margins.com for pose in plan.poses)
+def margin(plan: Plan) -> str:
+    """Thinnest CoM margin of a plan."""
+    thinnest = min(pose.margins.com for pose in plan.poses)
+    return f"{1e3 * thinnest:.0f} mm" if thinnest > -1.0 else "no equilibrium"
 
 
 def trial_rows(n: int) -> Iterator[str]:
