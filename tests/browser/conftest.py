@@ -70,6 +70,11 @@ class Product:
         """How many corners are drawn."""
         return self.page.locator("[data-vertex]").count()
 
+    def focused(self) -> int | None:
+        """The corner that has the focus."""
+        index = self.page.evaluate("document.activeElement?.dataset.vertex")
+        return None if index is None else int(index)
+
     def drag(self, index: int, dx: float, dy: float, steps: int = 8) -> Product:
         """Drag a corner by pixels with the mouse."""
         box = self.vertex(index).locator("rect").bounding_box()

@@ -31,6 +31,13 @@ PASTE = """text => {
     new ClipboardEvent("paste", { clipboardData: data, bubbles: true }));
 }"""
 
+# Keys faster than the page can draw; returns the corner with the focus after each.
+PRESS_AT_ONCE = """keys => keys.map(key => {
+  document.activeElement.dispatchEvent(
+    new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }));
+  return document.activeElement.dataset.vertex;
+})"""
+
 
 def test_a_drag_is_one_undo_step_and_snaps_to_the_grid(product: Product) -> None:
     product.open()
@@ -60,11 +67,24 @@ def test_keyboard_alone_moves_adds_and_deletes(product: Product) -> None:
     assert product.corner(6) == (pytest.approx(x + 0.01), pytest.approx(z + 0.1))
     count = product.corners()
     product.page.keyboard.press("Insert")
+    assert product.focused() == 7
     assert product.corners() == count + 1
     product.page.keyboard.press("Delete")
+    assert product.focused() == 6
     assert product.corners() == count
     product.page.keyboard.press("Tab")
-    assert product.page.evaluate("document.activeElement.dataset.vertex !== undefined")
+    assert product.focused() == 7
+    product.page.keyboard.press("Delete")  # the last corner: its element goes away
+    assert product.focused() == 6
+
+
+def test_keys_in_one_task_find_the_corner_that_has_the_focus(product: Product) -> None:
+    product.open()
+    count = product.corners()
+    product.vertex(count - 2).focus()
+    found = product.page.evaluate(PRESS_AT_ONCE, ["Insert", "Delete", "Delete", "ArrowUp"])
+    assert found == [str(count - 1), str(count - 2), str(count - 3), str(count - 3)]
+    assert product.corners() == count - 1
 
 
 def test_numbers_can_be_typed(product: Product) -> None:

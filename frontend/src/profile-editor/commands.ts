@@ -47,10 +47,12 @@ export function selectAll(): void {
   selection.value = drawing.peek().points.map((_, i) => i);
 }
 
-export function focusVertex(i: number): void {
-  requestAnimationFrame(() => {
-    document.querySelector<SVGElement>(`[data-vertex="${i}"]`)?.focus();
-  });
+/**
+ * At once, not after the next drawing: corners keep their elements by index, so that of a corner
+ * beside a removed or added one is there already, and the next key must find the focus on it.
+ */
+function focusVertex(i: number): void {
+  document.querySelector<SVGElement>(`[data-vertex="${i}"]`)?.focus();
 }
 
 const isField = (target: EventTarget | null) =>

@@ -1,6 +1,7 @@
 /** The corners as controls, the stretches as handles, guides and the selection rectangle. */
 
 import { computed } from "@preact/signals";
+import type { Vec2 } from "../api/types";
 import { fixed } from "../geometry/format";
 import { cornerNames } from "../geometry/profile";
 import { drawing, selection } from "../state/drawing";
@@ -29,23 +30,31 @@ export function Stretches() {
   );
 }
 
+/** A corner that takes the focus is selected, and comes into view. */
+function onFocus(i: number): void {
+  // Read at this moment: the drawing may have changed since it was last rendered.
+  const p = drawing.peek().points[i];
+  if (dragging.peek() || !p) return;
+  if (!selection.peek().includes(i)) selection.value = [i];
+  if (isHidden(p)) centreOn(p);
+}
+
+function isHidden(p: Vec2): boolean {
+  const { left, right, top, bottom } = canvasBox.peek();
+  const [x, y] = [projection.peek().px(p[0]), projection.peek().py(p[1])];
+  return x < left - 4 || x > right + 4 || y < top - 4 || y > bottom + 4;
+}
+
 export function Vertices() {
   const { px, py } = projection.value;
   const chosen = selection.value;
   const words = names.value;
-  const { left, right, top, bottom } = canvasBox.value;
   return (
     <g>
       {drawing.value.points.map((p, i) => {
         const [x, y] = [px(p[0]), py(p[1])];
         const selected = chosen.includes(i);
         const half = selected ? 4.5 : 3.5;
-        const hidden = x < left - 4 || x > right + 4 || y < top - 4 || y > bottom + 4;
-        const focus = () => {
-          if (dragging.peek()) return;
-          if (!selection.peek().includes(i)) selection.value = [i];
-          if (hidden) centreOn(p);
-        };
         return (
           <g
             key={i}
@@ -57,7 +66,7 @@ export function Vertices() {
             data-vertex={i}
             transform={`translate(${x.toFixed(1)} ${y.toFixed(1)})`}
             onKeyDown={onVertexKey}
-            onFocus={focus}
+            onFocus={() => onFocus(i)}
           >
             <circle class="hit" r={11} />
             <circle class={selected ? "vsel-h" : "vhalo"} r={10} />
