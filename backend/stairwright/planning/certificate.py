@@ -8,7 +8,6 @@ between two of them, and clearances count less half of that: what is certified h
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import combinations
 from typing import Literal
 
 import numpy as np
@@ -18,6 +17,7 @@ from numpy.typing import NDArray
 from stairwright.robot import kinematics as kin
 from stairwright.robot.description import Robot
 
+from .equilibrium import balanced
 from .plan import Certificate, Check, Plan
 
 Floats = NDArray[np.float64]
@@ -27,7 +27,6 @@ WHEEL_SINK = 0.001  # m
 LEGS_GAP = 0.005  # m between front and rear leg
 _STRIDE = 0.006  # m
 _CHUNK = 64  # samples that share one piece of terrain
-_STRONGEST = 8.0  # robot weights; larger contact forces are not taken as equilibrium
 _JOINT_STEP = 0.35  # rad between two poses
 
 Scope = Literal["motion", "poses"]
@@ -76,10 +75,10 @@ class _Checker:
         stride = np.max(moved, axis=0)
         parts = np.maximum(1, np.ceil(stride / _STRIDE)).astype(int)
         self.slack = float(0.5 * np.max(stride / parts))
-        at = np.concatenate(
-            [k + np.arange(n) / n for k, n in enumerate(parts)] + [[float(len(parts))]]
-        )
         knots = np.arange(len(x), dtype=float)
+        first = np.cumsum(parts) - parts
+        share = (np.arange(parts.sum()) - np.repeat(first, parts)) / np.repeat(parts, parts)
+        at = np.append(np.repeat(knots[:-1], parts) + share, knots[-1])
         self.body = np.stack([np.interp(at, knots, c) for c in self.body.T], axis=1)
         self.joints = np.stack([np.interp(at, knots, c) for c in self.joints.T], axis=1)
         self.progress = np.interp(at, knots, self.progress)
@@ -210,37 +209,15 @@ class _Checker:
 
     def _balance(self) -> Check:
         """Whether forces inside the friction cones of all touching faces balance the weight."""
-        failed = np.zeros(len(self.body))
-        groups: dict[int, list[tuple[int, Floats]]] = {}
-        for k in range(len(self.body)):
-            rays = self._rays(k)
-            groups.setdefault(len(rays), []).append((k, rays))
-        for count, members in groups.items():
-            index = np.array([k for k, _ in members])
-            target = np.stack(
-                [np.zeros(len(index)), np.ones(len(index)), self.com[index, 0]], axis=1
-            )
-            # Moments about the CoM's neighbourhood keep the numbers small far from the origin.
-            rays = np.stack([r for _, r in members]) if count else np.zeros((len(index), 0, 3))
-            failed[index] = ~_in_cone(rays, target)
+        failed = ~balanced(
+            self.vertices, self.frames.wheels, self.com[:, 0],
+            self.robot.wheel.radius + WHEEL_GAP, self.plan.friction,
+        )  # fmt: skip
         k = int(np.argmax(failed))
         return Check(
             name="samples out of balance", value=float(failed.sum()), bound=0.0, unit="1",
             passed=not failed.any(), progress=float(self.progress[k]) if failed.any() else None,
         )  # fmt: skip
-
-    def _rays(self, k: int) -> Floats:
-        """Edges (m, 3) of the friction cones at sample `k`: force x, force z, moment per weight."""
-        mu, radius = self.plan.friction, self.robot.wheel.radius
-        rays = []
-        for leg in range(2):
-            centre = self.frames.wheels[k, leg]
-            for point, normal in _touching(self.vertices, centre, radius + WHEEL_GAP):
-                for side in (mu, -mu):
-                    fx = normal[0] + side * normal[1]
-                    fz = normal[1] - side * normal[0]
-                    rays.append((fx, fz, point[0] * fz - point[1] * fx))
-        return np.array(rays, float).reshape(-1, 3)
 
     def _order(self) -> list[Check]:
         """Progress and time rise; joints do not jump between poses."""
@@ -261,52 +238,3 @@ class _Checker:
             ),
         ]  # fmt: skip
         return checks
-
-
-def _touching(vertices: Floats, centre: Floats, reach: float) -> list[tuple[Floats, Floats]]:
-    """Points of the profile within `reach` of a wheel centre, with normals; one per face."""
-    x = vertices[:, 0]
-    a = max(0, int(np.searchsorted(x, centre[0] - reach, side="left")) - 1)
-    b = min(len(x) - 1, int(np.searchsorted(x, centre[0] + reach, side="right")) + 1)
-    p, d = vertices[a:b], np.diff(vertices[a : b + 1], axis=0)
-    t = np.clip(np.sum((centre - p) * d, axis=1) / np.sum(d * d, axis=1), 0.0, 1.0)
-    near = p + t[:, None] * d
-    away = centre - near
-    distance = np.hypot(away[:, 0], away[:, 1])
-    found: list[tuple[Floats, Floats]] = []
-    for k in np.argsort(distance):
-        if distance[k] > reach or distance[k] < 1e-9:
-            break
-        normal = away[k] / distance[k]
-        if all(normal @ other < 0.9999 for _, other in found):
-            found.append((near[k], normal))
-    return found[:3]
-
-
-def _in_cone(rays: Floats, target: Floats) -> NDArray[np.bool_]:
-    """Whether `target` (n, 3) is a sum of `rays` (n, m, 3) with bounded non-negative factors.
-
-    By Caratheodory's theorem three rays are enough: every triple is solved by Cramer's rule.
-    """
-    inside = np.zeros(len(target), bool)
-    # Shift the moments' reference to the CoM: conditioning does not depend on the place.
-    shift = target[:, None, 2:3]
-    r = np.concatenate([rays[..., :2], rays[..., 2:] - shift * rays[..., 1:2]], axis=2)
-    b = np.stack([target[:, 0], target[:, 1], np.zeros(len(target))], axis=1)
-    for triple in combinations(range(rays.shape[1]), 3):
-        u, v, w = (r[:, k] for k in triple)
-        det = np.sum(u * np.cross(v, w), axis=1)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            factors = (
-                np.stack(
-                    [
-                        np.sum(b * np.cross(v, w), axis=1),
-                        np.sum(u * np.cross(b, w), axis=1),
-                        np.sum(u * np.cross(v, b), axis=1),
-                    ]
-                )
-                / det
-            )
-        fits = np.all((factors >= -1e-7) & (factors <= _STRONGEST), axis=0)
-        inside |= fits & (np.abs(det) > 1e-12)
-    return inside

@@ -37,7 +37,7 @@ def make_poses(
     margins = np.stack([r.clearance, r.com, r.friction - r.need, r.leg_limit - r.torque], axis=1)
     columns = (
         progress.tolist(), time.tolist(), body.tolist(), q.tolist(), wheels.tolist(), s.tolist(),
-        contacts.tolist(), com.tolist(), points.tolist(), r.forces.tolist(), margins.tolist(),
+        contacts.tolist(), com.tolist(), _pairs(points), r.forces.tolist(), margins.tolist(),
     )  # fmt: skip
     poses = [
         # The values are ours: validating thousands of floats would cost more than planning them.
@@ -52,13 +52,20 @@ def make_poses(
             wheel_progress=tuple(sw),
             contacts=(tuple(c[0]), tuple(c[1])),
             com=tuple(m),
-            collision_points=[tuple(v) for v in cp],
+            collision_points=cp,
             forces=(tuple(f[0]), tuple(f[1])),
             margins=Margins.model_construct(clearance=g[0], com=g[1], friction=g[2], torque=g[3]),
         )
         for u, t, b, j, w, sw, c, m, cp, f, g in zip(*columns, strict=True)
     ]
     return poses, key_poses(path, s), float(time[-1])
+
+
+def _pairs(points: Floats) -> list[list[tuple[float, float]]]:
+    """(n, m, 2) points as n lists of pairs, without a list a point: the collector walks them."""
+    n, m = points.shape[:2]
+    flat = list(zip(*points.reshape(n * m, 2).T.tolist(), strict=True))
+    return [flat[k * m : (k + 1) * m] for k in range(n)]
 
 
 def key_poses(path: WheelPath, s: Floats) -> list[int]:
