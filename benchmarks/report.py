@@ -83,7 +83,10 @@ def _processor() -> str:
 
 def table(rows: Iterable[Row]) -> str:
     """The rows as a Markdown table."""
-    lines = ["| work | by | median | p95 | ratio | solved | note |", "|---|---|---|---|---|---|---|"]
+    lines = [
+        "| work | by | median | p95 | ratio | solved | note |",
+        "|---|---|---|---|---|---|---|",
+    ]
     for r in rows:
         cells = (r.work, r.name, _figure(r.median, r.unit), _figure(r.p95, r.unit))
         ratio = "" if r.ratio is None else f"{r.ratio:.3g}"
@@ -92,7 +95,9 @@ def table(rows: Iterable[Row]) -> str:
 
 
 def _figure(value: float | None, unit: str) -> str:
-    return "" if value is None else f"{value:.3g} {unit}"
+    if value is None:
+        return ""
+    return f"{value:.0f} {unit}" if abs(value) >= 100 else f"{value:.3g} {unit}"
 
 
 def publish(rows: Sequence[Row], path: str | None = None) -> None:

@@ -1,0 +1,121 @@
+"""How long a certified path takes: stairs by number, long courses, random profiles, verdicts.
+
+    python benchmarks/paths.py [--quick] [--json FILE]
+
+The peer is one sparse problem over the whole course in IPOPT (`dense_nlp.py`), which solves fewer
+of them; a row says so. Stairwright's figures include terrain preparation and the certificate.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+from dataclasses import replace
+
+from dense_nlp import DensePath
+from profiles import random_profile
+from report import Row, percentile, publish, row, times
+
+import stairwright as sw
+from stairwright.library import load_robot, load_terrain
+from stairwright.terrain.profile import Terrain
+
+ROBOT = "a1_wheeled"
+FRICTION = 0.6
+KNOTS = 80
+
+
+def stairs(count: int, rise: float = 0.18, run: float = 0.28) -> Terrain:
+    """A flight going up."""
+    points = [(-1.0, 0.0), (0.0, 0.0)]
+    for k in range(count):
+        points += [(k * run, (k + 1) * rise), ((k + 1) * run, (k + 1) * rise)]
+    points.append((count * run + 1.0, count * rise))
+    return Terrain(name=f"stairs-{count}", points=points, friction=FRICTION)
+
+
+def hills(length: float) -> Terrain:
+    """A long course of curbs, ramps and flats."""
+    points, x, z = [(-1.0, 0.0), (0.0, 0.0)], 0.0, 0.0
+    while x < length:
+        points += [(x, z + 0.12), (x + 2.0, z + 0.12), (x + 3.0, z), (x + 5.0, z)]
+        x += 5.0
+    return Terrain(name=f"course-{length:g}", points=points, friction=FRICTION)
+
+
+def wall(height: float) -> Terrain:
+    """A wall that nobody climbs."""
+    points = [(-1.0, 0.0), (0.0, 0.0), (0.0, height), (1.5, height)]
+    return Terrain(name=f"wall-{height:g}", points=points, friction=FRICTION)
+
+
+def ours(work: str, terrain: Terrain, repeat: int) -> Row:
+    """Stairwright on one terrain."""
+    plan = sw.plan(terrain, ROBOT)
+    measured = times(lambda: sw.plan(terrain, ROBOT), repeat)
+    said = plan.status if plan.problem is None else f"infeasible: {plan.problem.kind}"
+    return replace(row(work, "stairwright, certified", measured), note=said)
+
+
+def dense(work: str, terrain: Terrain, against: Row) -> list[Row]:
+    """The peer, from nominal poses and from our path."""
+    robot = load_robot(ROBOT)
+    problem = DensePath(terrain, robot, FRICTION, KNOTS)
+    rows = []
+    for name, known in (("nominal poses", None), ("our path", sw.plan(terrain, ROBOT))):
+        answer = problem.solve(known)
+        took = 1e3 * answer.seconds
+        ratio = took / against.median if against.median else None
+        note = f"{answer.iterations} iterations, {KNOTS} knots"
+        solved = "yes" if answer.solved else "no"
+        rows.append(Row(work, f"IPOPT from {name}", took, ratio=ratio, solved=solved, note=note))
+    return rows
+
+
+def profiles(count: int) -> Row:
+    """Random profiles, both robots."""
+    measured, feasible = [], 0
+    for seed in range(count):
+        _, terrain = random_profile(seed)
+        for robot in ("a1_wheeled", "a1_wheeled_x"):
+            plan = sw.plan(terrain, robot)
+            measured += times(lambda t=terrain, r=robot: sw.plan(t, r), 1)
+            feasible += plan.feasible
+    share = f"{feasible} of {len(measured)}"
+    return Row(
+        f"{count} random profiles, both robots", "stairwright, certified",
+        statistics.median(measured), percentile(measured, 0.95), ratio=1.0, solved=share,
+    )  # fmt: skip
+
+
+def run(quick: bool = False) -> list[Row]:
+    """All rows."""
+    repeat = 3 if quick else 15
+    rows: list[Row] = []
+    single = load_terrain("single-stair-036")
+    compared = [("0.36 m stair", single), ("five stairs", load_terrain("stairs-building"))]
+    if quick:
+        compared = compared[:1]
+    for work, terrain in [("curb 0.15 m", load_terrain("curb-015")), *compared]:
+        rows.append(ours(work, terrain, repeat))
+        rows += dense(work, terrain, rows[-1])
+    for count in (5, 20) if quick else (5, 20, 100):
+        rows.append(ours(f"{count} stairs 0.18/0.28", stairs(count), min(repeat, 3)))
+    for length in (10.0,) if quick else (10.0, 90.0):
+        rows.append(ours(f"course of {length:g} m", hills(length), min(repeat, 3)))
+    for height in (0.9, 1.5):
+        rows.append(ours(f"verdict on a wall of {height:g} m", wall(height), min(repeat, 5)))
+    rows.append(profiles(5 if quick else 150))
+    return rows
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--json")
+    given = parser.parse_args()
+    publish(run(given.quick), given.json)
+
+
+if __name__ == "__main__":
+    main()
