@@ -22,7 +22,7 @@ from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).resolve().parents[1]
 LOCKS = [ROOT / name for name in ("requirements.lock", "requirements-dev.lock")]
-ALL_LOCKS = [*LOCKS, ROOT / "requirements-node.lock"]
+ALL_LOCKS = [*LOCKS, ROOT / "requirements-node.lock", ROOT / "requirements-bench.lock"]
 # put together here, so that this file does not contain what it looks for
 REGISTRY_HOSTS = [
     "pypi" + ".org",
