@@ -174,6 +174,7 @@ def test_compiled_equals_plain(name: str) -> None:
                 qpos[[0, 2]] + random.normal(0, 0.05, 2),
                 random.normal(0, 0.2, 11),
                 [3.0, 29.0, -2.0, 27.0],
+                random.normal(0, 0.5, 3),
             ]
         )
         assert len(row) == WIDTH

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stairwright as sw
-from stairwright.control.setpoint import RATES, WIDTH
+from stairwright.control.setpoint import RATES, SURGES, WIDTH
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
 from stairwright.planning.interpolation import reference
@@ -34,6 +34,7 @@ from stairwright.simulation.trials import (
     trials,
     wilson,
 )
+from stairwright.terrain.wheel_path import wheel_path
 
 FLAT = {"name": "short-flat", "points": [[-0.6, 0.0], [0.6, 0.0]], "friction": 0.6}
 WEIGHT = 11.84 * 9.81
@@ -50,9 +51,14 @@ def test_motor_line(torque: float, speed: float) -> None:
         assert got == torque  # braking has the full peak
 
 
+def track_of(plan, **settings: float):
+    robot = plan.robot_description
+    path = wheel_path(plan.terrain, robot.wheel.radius)
+    return track(reference(plan), robot, path, plan.friction, ControllerSettings(**settings))
+
+
 def run_governor(lag: float, steps: int = 3000):
-    plan = sw.plan(FLAT, "a1_wheeled", method="nominal")
-    line = track(reference(plan), plan.robot_description, ControllerSettings(speed=0.1))
+    line = track_of(sw.plan(FLAT, "a1_wheeled", method="nominal"), speed=0.1)
     clock, target = np.array([line.start, 0.0, 0.0]), np.empty(WIDTH)
     rates = []
     for _ in range(steps):
@@ -84,9 +90,28 @@ def test_governor_waits_for_a_held_robot_and_retreats_with_a_sliding_one() -> No
 
 def test_track_limits_joint_speed() -> None:
     plan = sw.plan("curb-015", "a1_wheeled", method="critical")
-    line = track(reference(plan), plan.robot_description, ControllerSettings(joint_speed=0.5))
+    line = track_of(plan, joint_speed=0.5)
     rates = np.abs(line.rows[:, RATES + 2 : RATES + 6]).max(axis=1) * line.speeds
     assert rates.max() <= 0.5 + 1e-6
+
+
+def test_accelerations_belong_to_the_speeds() -> None:
+    """What is fed forward is the time derivative of the CoM velocity that is asked for."""
+    line = track_of(sw.plan("curb-015", "a1_wheeled", method="critical"))
+    clock, target, dt = np.array([line.start, 0.0, 0.0]), np.empty(WIDTH), 0.002
+    places, rows = np.full(4, np.nan), []
+    while clock[0] < line.end - 1e-9:
+        course = (line.start, line.step, line.rows, line.speeds, 0.01, places)
+        advance(*course, True, dt, clock, target)
+        rows.append(target.copy())
+    velocity, surge = np.array(rows)[:, RATES + 7], np.array(rows)[:, SURGES + 1]
+    window = 25  # control steps: the table's rows are coarser than one
+    change = (velocity[window:] - velocity[:-window]) / (window * dt)
+    mean = np.convolve(surge, np.full(window, 1 / window), "valid")[: len(change)]
+    inside = slice(500, -500)  # at both ends the plan stands still by rules of its own
+    assert np.abs(change[inside]).max() > 0.1
+    assert np.corrcoef(change[inside], mean[inside])[0, 1] > 0.95
+    assert np.abs(change - mean)[inside].mean() < 0.15 * np.abs(change[inside]).max()
 
 
 @pytest.mark.parametrize(

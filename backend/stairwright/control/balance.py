@@ -34,9 +34,11 @@ def desired_wrench(
     `offset` and `drift` (2,) are desired minus measured position [m] and velocity [m/s] of the
     body's centre; `learnt` [rad/s^2] is what the pitch integral adds.
     """
-    acceleration = settings.com_stiffness * offset + settings.com_damping * drift
+    acceleration = target.com_acceleration + settings.com_stiffness * offset
+    acceleration += settings.com_damping * drift
     acceleration[0] = np.clip(acceleration[0], -MAX_ACCELERATION, MAX_ACCELERATION)
-    spin = learnt + settings.pitch_stiffness * (target.pitch - state.pitch)
+    spin = learnt + target.pitch_acceleration
+    spin += settings.pitch_stiffness * (target.pitch - state.pitch)
     spin += settings.pitch_damping * (target.pitch_rate - state.pitch_rate)
     return wrench(robot.mass, state.inertia, acceleration, spin)
 

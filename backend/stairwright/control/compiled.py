@@ -18,7 +18,7 @@ from . import balance, rigid_body
 from .contact import locate, support, wheel_traction
 from .controller import gains
 from .qp import solve_native
-from .setpoint import RATES
+from .setpoint import RATES, SURGES
 from .settings import ControllerSettings
 
 Floats = NDArray[np.float64]
@@ -125,7 +125,7 @@ def contact_control(
     """Torques (12,) before the motors' limits; updates the memory in place.
 
     `record` is of `parameters`, `pieces` and `corners` of the `WheelPath`, `qpos` (19,) and `qvel`
-    (18,) are measured, `target` (26,) is a row in the order of `setpoint`, `yaw_rate` is commanded.
+    (18,) are measured, `target` (29,) is a row in the order of `setpoint`, `yaw_rate` is commanded.
     The memory is `places` (4,), `forces` (8,) and `learnt` (1,).
     """
     p = record[0]
@@ -196,14 +196,14 @@ def contact_control(
         A[0, 2 * i + 1], A[1, 2 * i + 1], A[2, 2 * i + 1] = nx, nz, lz * nx - lx * nz
 
     # Desired wrench (eqs 8-9) and the QP (eqs 11-12).
-    ax = p.com_stiffness * (target[_COM] - com_x)
+    ax = target[SURGES + 1] + p.com_stiffness * (target[_COM] - com_x)
     ax += p.com_damping * (target[RATES + _COM] - com_vx)
     ax = min(max(ax, -_MAX_ACCELERATION), _MAX_ACCELERATION)
-    az = p.com_stiffness * (target[_COM + 1] - com_z)
+    az = target[SURGES + 2] + p.com_stiffness * (target[_COM + 1] - com_z)
     az += p.com_damping * (target[RATES + _COM + 1] - com_vz)
     learnt[0] += _PERIOD * p.pitch_integral * (target[_PITCH] - pitch)
     learnt[0] = min(max(learnt[0], -_MAX_LEARNT), _MAX_LEARNT)
-    spin = learnt[0] + p.pitch_stiffness * (target[_PITCH] - pitch)
+    spin = learnt[0] + target[SURGES] + p.pitch_stiffness * (target[_PITCH] - pitch)
     spin += p.pitch_damping * (target[RATES + _PITCH] - sy)
     S = (p.force_weight, p.force_weight, p.moment_weight)
     b = (S[0] * p.mass * ax, S[1] * p.mass * (az + _GRAVITY), S[2] * inertia * spin)
@@ -213,7 +213,9 @@ def contact_control(
             H[i, j] = S[0] * A[0, i] * A[0, j] + S[1] * A[1, i] * A[1, j] + S[2] * A[2, i] * A[2, j]
             H[j, i] = H[i, j]
         H[i, i] += p.alpha + p.beta
-        resting = 0.5 * target[_FORCE + 2 * (i // 4) + i % 2]
+        fx, fz = 0.5 * target[_FORCE + 2 * (i // 4)], 0.5 * target[_FORCE + 2 * (i // 4) + 1]
+        nx, nz = held[i // 2, 0], held[i // 2, 1]
+        resting = fx * nz - fz * nx if i % 2 == 0 else fx * nx + fz * nz
         g[i] = -A[0, i] * b[0] - A[1, i] * b[1] - A[2, i] * b[2]
         g[i] -= p.alpha * resting + p.beta * forces[i]
     solve_native(H, g, friction, p.force_limit, forces)

@@ -105,7 +105,7 @@ class Controller:
             target,
             self.learnt,
         )
-        resting = (target.forces / 2)[LEG_PAIR].ravel()
+        resting = np.einsum("nji,nj->ni", frames, (target.forces / 2)[LEG_PAIR]).ravel()
         self._solve(A, desired, resting, friction)
         forces = np.einsum("nij,nj->ni", frames, self.forces.reshape(4, 2))
         torques = balance.force_torques(state, points, forces)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-# Columns of a set point's row: values, their rates of change, static forces. Compiled code and
-# reference tables use the same order.
+# Columns of a set point's row: values, their rates of change, static forces, accelerations.
+# Compiled code and reference tables use the same order.
 WHEELS = slice(0, 2)
 JOINTS = slice(2, 6)
 PITCH = 6
@@ -18,7 +18,8 @@ COM = slice(7, 9)
 TRUNK = slice(9, 11)
 RATES = 11  # the rate of column k is column RATES + k
 FORCES = slice(22, 26)
-WIDTH = 26
+SURGES = 26  # accelerations of pitch and CoM, the columns from `PITCH` on
+WIDTH = 29
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,9 @@ class Setpoint:
         pitch_rate: [rad/s].
         com_velocity: (2,) [m/s].
         trunk_velocity: (2,) [m/s].
-        forces: (2, 2) static force of each wheel pair, tangential and normal [N].
+        forces: (2, 2) static force of each wheel pair, world x and z [N].
+        pitch_acceleration: [rad/s^2].
+        com_acceleration: (2,) [m/s^2].
         yaw_rate: commanded [rad/s].
     """
 
@@ -51,11 +54,13 @@ class Setpoint:
     com_velocity: Floats
     trunk_velocity: Floats
     forces: Floats
+    pitch_acceleration: float
+    com_acceleration: Floats
     yaw_rate: float = 0.0
 
     @classmethod
     def from_row(cls, row: Floats, yaw_rate: float = 0.0) -> Setpoint:
-        """The set point held by a row (26,) in the module's order."""
+        """The set point held by a row (29,) in the module's order."""
         rates = row[RATES : 2 * RATES]
         return cls(
             wheel_progress=row[WHEELS],
@@ -69,5 +74,7 @@ class Setpoint:
             com_velocity=rates[COM],
             trunk_velocity=rates[TRUNK],
             forces=row[FORCES].reshape(2, 2),
+            pitch_acceleration=float(row[SURGES]),
+            com_acceleration=row[SURGES + 1 : SURGES + 3],
             yaw_rate=yaw_rate,
         )

@@ -162,6 +162,8 @@ def _standing(robot: Robot, controller: Controller, q: Floats) -> Setpoint:
         com_velocity=still,
         trunk_velocity=still,
         forces=forces,
+        pitch_acceleration=0.0,
+        com_acceleration=still,
     )
 
 

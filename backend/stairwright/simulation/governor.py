@@ -15,12 +15,15 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.control.resting import resting_forces
+from stairwright.control.rigid_body import GRAVITY
 from stairwright.control.setpoint import (
     COM,
     FORCES,
     JOINTS,
     PITCH,
     RATES,
+    SURGES,
     TRUNK,
     WHEELS,
     WIDTH,
@@ -28,6 +31,7 @@ from stairwright.control.setpoint import (
 from stairwright.control.settings import ControllerSettings
 from stairwright.planning.reference import Reference
 from stairwright.robot.description import Robot
+from stairwright.terrain.wheel_path import WheelPath
 
 Floats = NDArray[np.float64]
 
@@ -47,7 +51,7 @@ class Track:
     Attributes:
         start: Progress of the first row [m].
         step: Progress between rows [m].
-        rows: (n, 26) set points; their rates are per metre of progress.
+        rows: (n, 29) set points; rates are per metre of progress, accelerations per its square.
         speeds: (n,) allowed speed of the progress [m/s].
     """
 
@@ -67,8 +71,22 @@ class Track:
         return float(np.sum(self.step / np.maximum(self.speeds[:-1], MIN_SPEED)))
 
 
-def track(reference: Reference, robot: Robot, settings: ControllerSettings) -> Track:
-    """Resample `reference` and find the allowed speed along it."""
+def track(
+    reference: Reference,
+    robot: Robot,
+    path: WheelPath,
+    friction: float,
+    settings: ControllerSettings,
+) -> Track:
+    """Resample `reference` and find the static forces and the allowed speed along it.
+
+    Args:
+        reference: The plan's trajectory.
+        robot: Who carries it out.
+        path: Its wheel-centre curve.
+        friction: The plan's Coulomb friction.
+        settings: Speed and joint speed are limited by them.
+    """
     first, last = float(reference.progress[0]), float(reference.progress[-1])
     count = max(3, math.ceil((last - first) / STEP) + 1)
     grid = np.linspace(first, last, count)
@@ -98,9 +116,14 @@ def track(reference: Reference, robot: Robot, settings: ControllerSettings) -> T
             low, reference.progress, column
         )
         rows[:, RATES + k] = rise / (high - low)
-    forces = reference.forces.reshape(-1, 4)
-    for k in range(4):
-        rows[:, FORCES.start + k] = np.interp(grid, reference.progress, forces[:, k])
+    for k in range(SURGES, WIDTH):
+        rate = rows[:, RATES + PITCH + k - SURGES]
+        low, high = np.maximum(grid - RATE_REACH, first), np.minimum(grid + RATE_REACH, last)
+        rows[:, k] = (np.interp(high, grid, rate) - np.interp(low, grid, rate)) / (high - low)
+    places, com = np.ascontiguousarray(rows[:, WHEELS]), np.ascontiguousarray(rows[:, COM])
+    ground = (path.pieces, path.corners, path.radius)
+    weight = robot.mass * GRAVITY
+    resting_forces(*ground, weight, friction, places, com, rows[:, FORCES])
     speeds = _speeds(reference, grid, rows, robot, settings)
     return Track(first, grid[1] - grid[0], rows, speeds)
 
@@ -155,7 +178,7 @@ def advance(
     clock: Floats,
     target: Floats,
 ) -> None:
-    """Advance the plan by one control step and write the set point into `target` (26,).
+    """Advance the plan by one control step and write the set point into `target` (29,).
 
     `start`, `step`, `rows` and `speeds` are of the `Track`; `leash` is how far the plan may run
     ahead [m]; `places` (4,) are where the wheels are, NaN before the first measurement; `moving`
@@ -193,5 +216,10 @@ def advance(
     share = spot - k
     for j in range(rows.shape[1]):
         target[j] = rows[k, j] + share * (rows[k + 1, j] - rows[k, j])
+    # Speeding up or slowing down as the plan wants it, not as the leash does: that is noise.
+    allowed = speeds[k] + share * (speeds[k + 1] - speeds[k])
+    gain = rate * rate / allowed * (speeds[k + 1] - speeds[k]) / step if rate > 0.0 else 0.0
+    for j in range(SURGES, WIDTH):
+        target[j] = target[j] * rate * rate + target[RATES + PITCH + j - SURGES] * gain
     for j in range(RATES, 2 * RATES):
         target[j] *= rate

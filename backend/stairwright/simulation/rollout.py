@@ -106,7 +106,9 @@ class _Run:
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
         self.dt = CONTROL_STEPS * self.model.opt.timestep
-        self.track: Track = track(reference(plan, joint_rate=None), robot, settings)
+        self.track: Track = track(
+            reference(plan, joint_rate=None), robot, self.path, plan.friction, settings
+        )
         self.limit = 2.5 * self.track.duration + 5.0
         self.sensors = Sensors(disturbance, self.dt, seed)
         self.record = parameters(robot, plan.friction, settings)

@@ -1,0 +1,71 @@
+"""Static forces along a plan: they hold the robot, inside the cones, and no larger than needed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from stairwright.control.resting import resting_forces
+from stairwright.terrain.profile import Terrain
+from stairwright.terrain.wheel_path import WheelPath, wheel_path
+
+WEIGHT, RADIUS = 116.0, 0.05
+
+
+def resting(path: WheelPath, places, com, friction: float = 0.6):
+    out = np.zeros((len(places), 4))
+    ground = (path.pieces, path.corners, path.radius)
+    resting_forces(*ground, WEIGHT, friction, np.array(places), np.array(com), out)
+    return out.reshape(-1, 2, 2)
+
+
+def path_of(*points: tuple[float, float]) -> WheelPath:
+    return wheel_path(Terrain(points=list(points)), RADIUS)
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.9])
+def test_level_ground_carries_by_levers_without_traction(share: float) -> None:
+    path = path_of((-1.0, 0.0), (1.0, 0.0))
+    front, rear = path.at_x(0.2), path.at_x(-0.2)
+    found = resting(path, [(front, rear)], [(-0.2 + 0.4 * share, 0.3)])[0]
+    np.testing.assert_allclose(found[:, 1], [share * WEIGHT, (1 - share) * WEIGHT], rtol=0.01)
+    np.testing.assert_allclose(found[:, 0], 0.0, atol=0.5)
+
+
+@pytest.mark.parametrize("front_z", [0.08, 0.15, 0.25])
+def test_climbing_forces_hold_the_weight_inside_the_cones(front_z: float) -> None:
+    path = path_of((-1.0, 0.0), (0.0, 0.0), (0.0, 0.36), (1.0, 0.36))
+    corner = float(path.corners[0])
+    front, rear = corner + front_z - RADIUS, corner - 0.35
+    com = np.array([-0.25, front_z + 0.15])
+    found = resting(path, [(front, rear)], [com])[0]
+    np.testing.assert_allclose(found.sum(axis=0), [0.0, WEIGHT], atol=0.02 * WEIGHT)
+    points = path.contacts(np.array([front, rear]))
+    lever = points - com
+    moment = lever[:, 1] * found[:, 0] - lever[:, 0] * found[:, 1]
+    assert abs(moment.sum()) < 0.01 * WEIGHT
+    normals = path.normals(np.array([front, rear]))
+    tangents = np.stack([normals[:, 1], -normals[:, 0]], axis=1)
+    along, across = (found * tangents).sum(axis=1), (found * normals).sum(axis=1)
+    assert (np.abs(along) <= 0.6 * across + 1e-6).all()
+
+
+def test_wheels_on_a_curbs_two_faces_do_not_pinch() -> None:
+    """Front wheels hang on the far face, rear wheels on the near one: friction must carry all."""
+    path = path_of((-1.0, 0.0), (0.0, 0.0), (0.0, 0.4), (0.3, 0.4), (0.3, 0.0), (1.3, 0.0))
+    near, far = path.corners
+    found = resting(path, [(far - 0.2, near + 0.2)], [(0.15, 0.45)])[0]
+    np.testing.assert_allclose(found.sum(axis=0), [0.0, WEIGHT], atol=0.02 * WEIGHT)
+    # Half the weight hangs on each face: with 3/4 of the friction, pushed no harder than that asks.
+    assert np.hypot(*found[0]) < 1.05 * math.hypot(1.0, 1 / 0.45) * WEIGHT / 2
+
+
+def test_forces_are_continuous_through_a_corner() -> None:
+    path = path_of((-1.0, 0.0), (0.0, 0.0), (0.0, 0.36), (1.0, 0.36))
+    corner = float(path.corners[0])
+    way = np.linspace(-0.007, 0.007, 29)
+    places = [(corner + d, corner - 0.35) for d in way]
+    found = resting(path, places, [(-0.25, 0.3)] * len(places))
+    assert np.abs(np.diff(found, axis=0)).max() < 0.05 * WEIGHT
