@@ -35,7 +35,11 @@ CONGRUENT = 1e-6  # m; moved poses of a uniform flight must fit the terrain this
 
 
 def plan_critical(
-    terrain: Terrain, robot: Robot, friction: float, weights: CriticalWeights
+    terrain: Terrain,
+    robot: Robot,
+    friction: float,
+    weights: CriticalWeights,
+    solver: type[PoseSearch] = PoseSearch,
 ) -> Plan:
     """Initial pose, two optimal poses per obstacle, final pose.
 
@@ -44,6 +48,7 @@ def plan_critical(
         robot: The robot.
         friction: Between wheels and terrain.
         weights: Q of eq 17, speed, and whether whole links are kept clear.
+        solver: `PoseSearch`, or the reference `casadi_search.CasadiSearch`.
 
     Returns:
         The plan; infeasible with a problem where a pose has no solution or no equilibrium. The
@@ -58,7 +63,7 @@ def plan_critical(
         return assemble(
             "critical", terrain, robot, friction, weights, [], stop, seconds=now() - started
         )
-    search = PoseSearch(robot, path, friction, weights)
+    search = solver(robot, path, friction, weights)
     obstacles = find_obstacles(path, begin.wheels[1], end.wheels[0])
     found, problem = _solve(search, obstacles, begin, end)
     knots = [_standing(search, begin), *found]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +14,8 @@ from stairwright.terrain.profile import Terrain
 from .path.course import NoStand
 from .plan import Limit, Pose, Problem
 from .pose_search import APART, CLEARANCE, Place, PoseSearch
-from .solver import Bounds
-from .supports import support
+from .sqp.places import rooms
+from .sqp.search import Rules
 
 Floats = NDArray[np.float64]
 
@@ -71,10 +70,10 @@ def diagnose(search: PoseSearch, place: Place) -> Problem:
     rears = search.rear_places(place)
     if len(rears) == 0:
         return _no_rear_place(search, place, at)
-    trials: list[tuple[str, float, Callable[[Bounds, float], Bounds]]] = [
-        ("clearance", 0.2, lambda b, d: replace(b, clearance=CLEARANCE - d, apart=APART - d)),
+    trials: list[tuple[str, float, Callable[[Rules, float], Rules]]] = [
+        ("clearance", 0.2, lambda r, d: r._replace(clearance=CLEARANCE - d, apart=APART - d)),
         ("joint_limit", 1.5, _widen),
-        ("reach", 0.5, lambda b, d: replace(b, hip=-d)),
+        ("reach", 0.5, lambda r, d: r._replace(hip=-d)),
     ]
     found: list[tuple[float, str, float]] = []
     for kind, most, relax in trials:
@@ -117,8 +116,9 @@ def _no_rear_place(search: PoseSearch, place: Place, at: tuple[float, float]) ->
     near = gap <= search.span[1]
 
     def holds(mu: float) -> NDArray[np.bool_]:
-        spans = [support(path, place.face, float(one)).com_interval(mu) for one in s]
-        return np.array([low <= high for low, high in spans])
+        spans = rooms(search.course, np.stack([np.full(len(s), place.face), s], axis=1), mu)
+        held: NDArray[np.bool_] = spans[:, 0] <= spans[:, 1]
+        return held
 
     slope = _slope(search, place.face)
     if slope < math.pi / 3 and near.any() and not holds(friction)[near].any():
@@ -157,18 +157,18 @@ def _slope(search: PoseSearch, s: float) -> float:
     return abs(math.atan2(normal[0], normal[1]))
 
 
-def _widen(bounds: Bounds, amount: float) -> Bounds:
-    lower, upper = bounds.lower.copy(), bounds.upper.copy()
+def _widen(rules: Rules, amount: float) -> Rules:
+    lower, upper = rules.lower.copy(), rules.upper.copy()
     lower[3:7] -= amount
     upper[3:7] += amount
-    return replace(bounds, lower=lower, upper=upper)
+    return rules._replace(lower=lower, upper=upper)
 
 
 def _least(
     search: PoseSearch,
     place: Place,
     rears: Floats,
-    relax: Callable[[Bounds, float], Bounds],
+    relax: Callable[[Rules, float], Rules],
     most: float,
 ) -> float | None:
     """Least relaxation with which some rear wheel place has a pose; None if `most` has none."""
@@ -176,8 +176,8 @@ def _least(
     def works(amount: float) -> bool:
         nonlocal rears
         for i, rear in enumerate(rears):
-            bounds = relax(search.bounds(place, float(rear)), amount)
-            if search.solve(place, float(rear), bounds=bounds).solution.solved:
+            rules = relax(search.rules, amount)
+            if search.solve(place, float(rear), rules=rules, patient=True).solution.solved:
                 rears = np.concatenate([rears[i : i + 1], np.delete(rears, i)])
                 return True
         return False

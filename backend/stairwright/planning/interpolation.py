@@ -150,7 +150,7 @@ def _on_curve(
     solved, good = _legs(robot, path, trunk, s, q)
     for i in np.flatnonzero(~good):
         start = np.concatenate([trunk[i - 1], solved[i - 1], s[i]]) if i and good[i - 1] else start
-        nearest = search.nearest((s[i, 0], s[i, 1]), trunk[i], q[i], start, patient=True)
+        nearest = search.nearest(s[i], trunk[i], q[i], start)
         if nearest.solved:
             trunk[i], solved[i], start = nearest.x[:3], nearest.x[3:7], nearest.x
             good[i] = True
@@ -178,7 +178,7 @@ def _balanced(
     target[0] += shift
     best: Floats | None = None
     for _ in range(_ROUNDS):
-        found = search.nearest((wheels[0], wheels[1]), target, q, start)
+        found = search.nearest(wheels, target, q, start)
         if not found.solved:
             break
         best = start = found.x

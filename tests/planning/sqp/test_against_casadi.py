@@ -1,0 +1,81 @@
+"""The compiled solver and the plain CasADi form find the same optimum of the same problem."""
+
+import numpy as np
+import pytest
+
+import stairwright as sw
+from stairwright.planning.casadi_search import CasadiSearch
+from stairwright.planning.clearance import clearance, legs_apart
+from stairwright.planning.critical_poses import plan_critical
+from stairwright.planning.nlp import Layout
+from stairwright.planning.solver import Bounds, pose_solver
+from stairwright.planning.sqp.rows import Task
+from stairwright.planning.sqp.solve import solve_pose
+from stairwright.planning.weights import CriticalWeights
+from stairwright.robot.symbolic import dimensions
+from stairwright.terrain.wheel_path import wheel_path
+from tests.planning.drawn import random_profile
+
+
+def both(seed, links, count=6):
+    """Pairs of solutions (compiled x, cost, violation; CasADi's) of random problems."""
+    random = np.random.default_rng(seed)
+    robot = sw.load_robot(sw.robots()[seed % 2])
+    path = wheel_path(random_profile(seed), robot.wheel.radius)
+    search = CasadiSearch(robot, path, 0.6, CriticalWeights())
+    points = robot.collision_points
+    layout = Layout(tuple(points.trunk), tuple(points.thigh), tuple(points.calf))
+    rules = search.rules
+    for _ in range(count):
+        front = random.uniform(0.8, path.length - 0.1)
+        rear = front - random.uniform(0.2, 0.45)
+        lower, upper = rules.lower.copy(), rules.upper.copy()
+        lower[7] = upper[7] = front
+        lower[8], upper[8] = rear - 0.025, rear + 0.025
+        wanted = search.reference(float(path.centres(np.array([front, rear]))[:, 0].mean()))
+        window, cells = search.window(front, rear)
+        bounds = Bounds(lower, upper, 0.012, 0.006, 0.0)
+        start = np.concatenate([wanted, [front, rear]])
+        numbers = np.concatenate([wanted, rules.weights, dimensions(robot), window])
+        theirs = pose_solver(layout, links, cells).solve(numbers, bounds, [start])
+        task = Task(wanted, rules.weights, lower, upper, 0.012, 0.006, 0.0, links)
+        x = np.empty(9)
+        cost, violation, _ = solve_pose(search.body, search.course, task, start[[0, 1, 2, 7, 8]], x)
+        yield search, (x, cost, violation), theirs
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_whole_links(seed):
+    for search, (x, _, violation), theirs in both(seed, links=True):
+        assert (violation <= 1e-6) >= theirs.solved
+        if violation > 1e-6:
+            continue
+        trunk, q = (float(x[0]), float(x[1]), float(x[2])), x[3:7]
+        gap, _ = clearance(search.robot, search.path.vertices, trunk, q)
+        assert gap >= 0.012 - 1e-6
+        assert legs_apart(search.robot, trunk, q) >= 0.006 - 1e-6
+
+
+@pytest.mark.parametrize("links", [True, False])
+def test_same_optimum(links):
+    """Nearly always: hard maxima make several optima."""
+    same = []
+    for seed in range(20, 30):
+        for _, (x, cost, violation), theirs in both(seed, links, count=4):
+            if violation <= 1e-6 and theirs.solved:
+                same.append(abs(cost - theirs.cost) < 1e-6 + 1e-5 * cost)
+                if same[-1]:
+                    assert np.allclose(x, theirs.x, atol=2e-3)
+    assert len(same) > 25
+    assert np.mean(same) > 0.9
+
+
+def test_same_plan():
+    terrain, robot = sw.load_terrain("single-stair-030"), sw.load_robot("a1_wheeled")
+    weights = CriticalWeights()
+    ours = plan_critical(terrain, robot, 0.6, weights)
+    theirs = plan_critical(terrain, robot, 0.6, weights, CasadiSearch)
+    assert ours.status == theirs.status == "feasible"
+    for a, b in zip(ours.poses, theirs.poses, strict=True):
+        assert a.q == pytest.approx(b.q, abs=1e-3)
+        assert [a.x_c, a.z_c, a.pitch] == pytest.approx([b.x_c, b.z_c, b.pitch], abs=1e-3)
