@@ -158,3 +158,15 @@ def test_a_sealed_worker_opens_nothing() -> None:
             assert (await pool.run(import_terrain, content, name, {}, deadline=30))["points"]
 
     tell(story, limits=Limits(sealed=True))
+
+
+def test_no_task_is_lost_when_the_one_before_it_is_given_up() -> None:
+    async def story(pool: WorkerPool) -> None:
+        for k in range(40):
+            given_up = asyncio.create_task(pool.run(time.sleep, 0.01, deadline=10))
+            following = asyncio.create_task(pool.run(abs, -k, deadline=10))
+            await asyncio.sleep(0.0005 * k)  # before, while and after the first one runs
+            given_up.cancel()
+            assert await following == k
+
+    tell(story)

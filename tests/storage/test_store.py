@@ -23,14 +23,14 @@ STAIR = Terrain(name="mine", points=[(0, 0), (1, 0), (1, 0.2), (3, 0.2)])
 
 
 def put_document(store: Store, name: str, content: bytes, question: str = "q") -> None:
-    digest, packed = store.artefacts.put(content)
-    store.documents.put(
+    digest = store.artefacts.put(content)
+    store.shelve(
         "plan",
         name,
         question=question,
         engine="e",
         digest=digest,
-        size=len(packed),
+        size=len(content),
         summary={"status": "feasible"},
     )
 
@@ -119,14 +119,43 @@ def test_what_is_too_old_or_too_much_is_collected(tmp_path: Path) -> None:
 
 def test_artefacts_are_written_once_and_whole(tmp_path: Path) -> None:
     artefacts = Artefacts(tmp_path / "a")
-    digest, packed = artefacts.put(b"content")
-    assert artefacts.put(b"content") == (digest, packed)
+    digest = artefacts.put(b"content")
+    assert artefacts.put(b"content") == digest
+    assert artefacts.unsettled() == [digest]
+    packed = artefacts.packed(digest)
+    assert artefacts.settle(digest) == len(packed)
+    assert artefacts.settle(digest) == len(packed)
+    assert artefacts.put(b"content") == digest
+    assert artefacts.unsettled() == []
     assert artefacts.packed(digest) == packed
     assert artefacts.content(digest) == b"content"
     assert [path.suffix for path in (tmp_path / "a").glob("*/*")] == [".gz"]
     artefacts.remove(digest)
+    assert artefacts.settle(digest) is None
     with pytest.raises(FileNotFoundError):
         artefacts.packed(digest)
+
+
+def test_an_artefact_cut_short_by_a_power_cut_is_missing(tmp_path: Path) -> None:
+    artefacts = Artefacts(tmp_path / "a")
+    digest = artefacts.put(b"content")
+    (plain,) = (tmp_path / "a").glob("*/*")
+    plain.write_bytes(b"cont")
+    with pytest.raises(FileNotFoundError):
+        artefacts.content(digest)
+    assert artefacts.put(b"content") == digest
+    assert artefacts.content(digest) == b"content"
+
+
+def test_what_was_left_unsettled_is_settled_after_a_restart(tmp_path: Path) -> None:
+    put_document(Store(tmp_path), "p-1", b"{}" * 500)
+    store = Store(tmp_path)
+    assert store.settle() == 1
+    assert store.settle() == 0
+    entry = store.documents.get("plan", "p-1")
+    assert entry is not None
+    assert entry.size == store.artefacts.path(entry.digest).stat().st_size < 500
+    assert store.artefacts.content(entry.digest) == b"{}" * 500
 
 
 def test_the_database_is_migrated_and_logs_ahead(tmp_path: Path) -> None:
@@ -152,9 +181,10 @@ k = int(sys.argv[2])
 while True:
     name = f"t{k}"
     store.terrains.put(Terrain(name=name, points=[(0, 0), (1 + k * 1e-3, 0)]))
-    digest, packed = store.artefacts.put(f'{{"k": {k}}}'.encode() * 200)
-    store.documents.put("plan", f"p-{k}", question=str(k), engine="e", digest=digest,
-                        size=len(packed), summary={})
+    digest = store.artefacts.put(f'{{"k": {k}}}'.encode() * 200)
+    store.shelve("plan", f"p-{k}", question=str(k), engine="e", digest=digest, size=9, summary={})
+    if k % 3 == 0:
+        store.settle()
     print(k, flush=True)
     k += 1
 """

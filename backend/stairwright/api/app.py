@@ -6,12 +6,11 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
 from fastapi import APIRouter, FastAPI
-from starlette.middleware.gzip import GZipMiddleware
 
 from stairwright import __version__
 
 from . import openapi, problems
-from .middleware import PREFIX, Gate, LimitBody, Observe
+from .middleware import PREFIX, Compress, Gate, LimitBody, Observe
 from .routes import health, jobs, page, plans, robots, rollouts, scene, sessions, terrains, tuning
 from .services import Services
 from .settings import Settings
@@ -50,7 +49,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     problems.install(app)
     openapi.install(app, token=bool(settings.token))
     # The last one added is the outermost.
-    app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=4)
+    app.add_middleware(Compress)
     app.add_middleware(
         LimitBody, limit=settings.body_limit, upload_limit=settings.upload_limit + 65536
     )

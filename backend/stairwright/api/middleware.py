@@ -15,11 +15,13 @@ from urllib.parse import parse_qsl, urlencode, urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.exceptions import HTTPException
+from starlette.middleware.gzip import GZipMiddleware
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from .metrics import Metrics
 from .problems import Problem
+from .responses import WORTH_PACKING
 from .settings import LOOPBACK
 
 logger = logging.getLogger("stairwright.access")
@@ -30,6 +32,7 @@ _COOKIE = "stairwright_token"
 _OPEN = frozenset({"/healthz", "/api/v1/healthz"})
 _SAFE = frozenset({"GET", "HEAD", "OPTIONS"})
 PREFIX = "/api/v1"
+PLANS_PATH = f"{PREFIX}/plans"
 IMPORT_PATH = f"{PREFIX}/terrains/import"
 
 
@@ -111,6 +114,20 @@ class LimitBody:
             return message
 
         await self.app(scope, receive_limited, send)
+
+
+class Compress:
+    """Gzips answers, except those of the routes that decide about it themselves."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+        self.gzip = GZipMiddleware(app, minimum_size=WORTH_PACKING, compresslevel=4)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        itself = scope["type"] == "http" and scope["path"] == PLANS_PATH
+        await (self.app if itself and scope["method"] == "POST" else self.gzip)(
+            scope, receive, send
+        )
 
 
 def _too_large(limit: int) -> Problem:

@@ -11,6 +11,10 @@ from fastapi import Request, Response
 from pydantic import BaseModel
 from starlette.concurrency import run_in_threadpool
 
+from .settings import LOOPBACK
+
+WORTH_PACKING = 1000  # bytes
+
 
 def not_modified(request: Request, etag: str) -> bool:
     """Whether the client has this version already."""
@@ -33,6 +37,28 @@ async def stored_json(
         return Response(packed, headers=common, media_type="application/json")
     content = await run_in_threadpool(gzip.decompress, packed)
     return Response(content, headers=common, media_type="application/json")
+
+
+async def fresh_json(
+    request: Request, content: bytes, digest: str, headers: Mapping[str, str] | None = None
+) -> Response:
+    """A JSON document that was made this moment, so somebody waits for it.
+
+    On this machine compressing takes longer than sending.
+    """
+    common = {"etag": f'"{digest[:32]}"', "vary": "Accept-Encoding", "cache-control": "no-cache"}
+    common.update(headers or {})
+    if _takes_gzip(request) and len(content) >= WORTH_PACKING and not _is_local(request):
+        common["content-encoding"] = "gzip"
+        content = await run_in_threadpool(gzip.compress, content, 1)
+    return Response(content, headers=common, media_type="application/json")
+
+
+def _is_local(request: Request) -> bool:
+    """Whether the client is on this machine and no proxy on the way to another one."""
+    client = request.client
+    forwarded = {"forwarded", "x-forwarded-for", "via"} & set(request.headers.keys())
+    return client is not None and client.host in LOOPBACK and not forwarded
 
 
 def _takes_gzip(request: Request) -> bool:

@@ -21,6 +21,7 @@ from .settings import Settings
 logger = logging.getLogger(__name__)
 
 COLLECT_EVERY = 3600.0  # s
+SETTLE_EVERY = 2.0  # s
 UPLOAD_MEMORY = 2048  # MiB
 UPLOAD_DEADLINE = 20.0  # s
 EXPORT_DEADLINE = 60.0  # s
@@ -35,10 +36,9 @@ class Services:
         self.metrics = Metrics()
         self.store = Store(settings.data)
         memory = settings.worker_memory
-        self.plan_pool = WorkerPool("plans", settings.plan_workers, Limits(memory=memory))
-        self.rollout_pool = WorkerPool(
-            "rollouts", settings.rollout_workers, Limits(memory=memory, nice=ROLLOUT_NICENESS)
-        )
+        self.plan_pool = WorkerPool("plans", settings.plan_workers, Limits(memory=memory), spares=1)
+        idle = Limits(memory=memory, nice=ROLLOUT_NICENESS)
+        self.rollout_pool = WorkerPool("rollouts", settings.rollout_workers, idle, spares=1)
         self.upload_pool = WorkerPool("uploads", 1, Limits(memory=UPLOAD_MEMORY, sealed=True))
         self.planning = Planning(
             self.store, self.plan_pool, settings.plan_queue_limit, settings.plan_deadline
@@ -68,6 +68,7 @@ class Services:
         load_scenes()
         self._tasks = [
             asyncio.create_task(self._collect()),
+            asyncio.create_task(self._settle()),
             asyncio.create_task(self.sessions.close_idle_forever()),
         ]
 
@@ -93,6 +94,14 @@ class Services:
             except Exception:
                 logger.exception("old results could not be removed")
             await asyncio.sleep(COLLECT_EVERY)
+
+    async def _settle(self) -> None:
+        while True:
+            await asyncio.sleep(SETTLE_EVERY)
+            try:
+                await asyncio.to_thread(self.store.settle)
+            except Exception:
+                logger.exception("new results could not be compressed; they are kept as they are")
 
     def _show_gauges(self) -> None:
         show = self.metrics.gauge

@@ -9,10 +9,12 @@ import multiprocessing
 import threading
 from collections.abc import Callable
 from concurrent.futures.process import BrokenProcessPool
+from functools import partial
 from typing import Any, TypeVar, cast
 
 from pebble import CONSTS, ProcessExpired, ProcessPool
 
+from .board import Board, carry_out
 from .failures import DeadlineExceeded, WorkerDied
 from .worker import Limits, initialise
 
@@ -28,14 +30,17 @@ class WorkerPool:
     """Some processes of one kind. Callers must not run more at once than there are workers.
 
     Workers are forked from a server process that has imported and compiled everything
-    (`preload`), so one that died is replaced within milliseconds.
+    (`preload`), so one that died is replaced within milliseconds. `spares` are further processes
+    that take over while one that was given up is still being replaced.
     """
 
-    def __init__(self, name: str, workers: int, limits: Limits) -> None:
+    def __init__(self, name: str, workers: int, limits: Limits, spares: int = 0) -> None:
         self.name = name
         self.workers = workers
+        self._spares = spares
         self.deaths = 0
         self._limits = limits
+        self._board = Board()
         self._lock = threading.Lock()
         self._pool: ProcessPool | None = None
         self._keeper: asyncio.Task[None] | None = None
@@ -67,15 +72,22 @@ class WorkerPool:
         """
         ready = self._pool
         pool = ready if ready and ready.active else await _in_thread(self._healthy_pool)
+        line = self._board.take()
+        task = [line, function, *args]
         try:
-            future = pool.schedule(function, args=list(args), timeout=deadline)
+            future = pool.schedule(carry_out, args=task, timeout=deadline)
         except RuntimeError:  # broke in the last moment
             pool = await _in_thread(self._healthy_pool)
-            future = pool.schedule(function, args=list(args), timeout=deadline)
+            future = pool.schedule(carry_out, args=task, timeout=deadline)
+        outcome: asyncio.Future[T] = asyncio.wrap_future(future)
+        outcome.add_done_callback(partial(self._over, line))
         try:
-            return await asyncio.wait_for(asyncio.wrap_future(future), deadline + GRACE)
+            return await asyncio.wait_for(asyncio.shield(outcome), deadline + GRACE)
+        except asyncio.CancelledError:
+            self._board.give_up(line)
+            raise
         except TimeoutError:
-            if not future.done() or future.cancelled():
+            if not outcome.done():
                 logger.error("the pool %s hangs and is replaced", self.name)
                 await _in_thread(self._replace, pool)
             raise DeadlineExceeded(f"stopped after {deadline:g} s, the longest allowed") from None
@@ -83,6 +95,11 @@ class WorkerPool:
             self.deaths += 1
             logger.error("a worker of the pool %s died: %s", self.name, error)
             raise WorkerDied("the process that did the work died (out of memory?)") from None
+
+    def _over(self, line: int, outcome: asyncio.Future[Any]) -> None:
+        self._board.give_back(line)
+        if not outcome.cancelled():
+            outcome.exception()  # the caller may have gone
 
     def _healthy_pool(self) -> ProcessPool:
         with self._lock:
@@ -101,14 +118,14 @@ class WorkerPool:
         _end(broken)
 
     def _new_pool(self) -> ProcessPool:
-        CONSTS.sleep_unit = 0.05  # s between looks at deadlines and dead workers
+        CONSTS.sleep_unit = 0.02  # s between looks at deadlines and dead workers
         CONSTS.term_timeout = 0.5  # s from SIGTERM to SIGKILL
         context = multiprocessing.get_context("forkserver")
         context.set_forkserver_preload([PRELOAD])
         pool = ProcessPool(
-            max_workers=self.workers,
+            max_workers=self.workers + self._spares,
             initializer=initialise,
-            initargs=[self._limits],
+            initargs=[self._limits, self._board.path],
             context=context,
         )
         assert pool.active  # asking starts the workers

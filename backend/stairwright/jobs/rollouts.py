@@ -26,7 +26,7 @@ from .queue import FairQueue
 logger = logging.getLogger(__name__)
 
 LOOK_EVERY = 0.1  # s between looks at a worker's progress
-COURTESY = 0.15  # s that a worker has to stop by itself before it is killed
+COURTESY = 0.1  # s that a worker has to stop by itself before it is killed
 REMEMBERED = 1000  # finished jobs in memory; older ones are read from the database
 RESULT = "/api/v1/rollouts/{}"
 
@@ -166,7 +166,7 @@ class Rollouts:
     def _shelve(self, question: RolloutQuestion, product: work.Product) -> Entry:
         if product.plan is not None and isinstance(question.source, PlanQuestion):
             shelve_plan(self._store, question.source, product.plan)
-        return self._store.documents.put(
+        return self._store.shelve(
             "rollout",
             product.id,
             question=question.key,

@@ -5,14 +5,17 @@ from __future__ import annotations
 import gzip
 import logging
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import orjson
 
+from stairwright.documents import parse
 from stairwright.errors import InputError
 from stairwright.library import robots
+from stairwright.robot.description import Robot
 from stairwright.storage.artefacts import Artefacts
 
 from .gauge import Gauge
@@ -33,7 +36,7 @@ class Product:
     digest: str
     size: int
     summary: Mapping[str, Any]
-    packed: bytes = b""
+    content: bytes = b""  # a plan's JSON, for who waits for it
     plan: Product | None = None  # that a rollout made for itself
 
 
@@ -49,19 +52,27 @@ def solve(question: Question, artefacts: str) -> Product:
 def _plan(question: Question) -> Plan:
     from stairwright.planning.planner import plan
 
-    keys = ("terrain", "robot", "friction", "method", "weights")
-    return plan(**{key: question[key] for key in keys})
+    keys = ("terrain", "friction", "method", "weights")
+    machine = _robot(orjson.dumps(question["robot"]))
+    return plan(robot=machine, **{key: question[key] for key in keys})
+
+
+@lru_cache(maxsize=16)
+def _robot(document: bytes) -> Robot:
+    """The same object for the same document: what is derived from it is derived once."""
+    return parse(Robot, orjson.loads(document))
 
 
 def _keep_plan(plan: Plan, artefacts: str) -> Product:
-    digest, packed = Artefacts(Path(artefacts)).put(plan.model_dump_json().encode())
+    content = plan.model_dump_json().encode()
+    digest = Artefacts(Path(artefacts)).put(content)
     summary = {
         "terrain": plan.terrain.name,
         "robot": plan.robot,
         "method": plan.method,
         "status": plan.status,
     }
-    return Product(plan.id, digest, len(packed), summary, packed)
+    return Product(plan.id, digest, len(content), summary, content)
 
 
 def simulate(question: Question, artefacts: str, gauge_path: str) -> Product:
@@ -91,7 +102,8 @@ def simulate(question: Question, artefacts: str, gauge_path: str) -> Product:
         seed=question["seed"],
         progress=progress,
     )
-    digest, packed = Artefacts(Path(artefacts)).put(run.model_dump_json().encode())
+    content = run.model_dump_json().encode()
+    digest = Artefacts(Path(artefacts)).put(content)
     summary = {
         "terrain": plan.terrain.name,
         "robot": plan.robot,
@@ -99,8 +111,8 @@ def simulate(question: Question, artefacts: str, gauge_path: str) -> Product:
         "outcome": run.outcome,
         "metrics": run.metrics.model_dump(mode="json"),
     }
-    made = _keep_plan(plan, artefacts) if question.get("ask") else None
-    return Product(run.id, digest, len(packed), summary, plan=made)
+    made = replace(_keep_plan(plan, artefacts), content=b"") if question.get("ask") else None
+    return Product(run.id, digest, len(content), summary, plan=made)
 
 
 def _plan_of(question: Question, artefacts: str) -> Plan:

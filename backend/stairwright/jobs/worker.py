@@ -9,6 +9,8 @@ import signal
 import sys
 from dataclasses import dataclass
 
+from .board import read_board
+
 _PR_SET_PDEATHSIG = 1
 
 
@@ -27,8 +29,9 @@ class Limits:
     sealed: bool = False
 
 
-def initialise(limits: Limits) -> None:
-    """Set the limits and the signals."""
+def initialise(limits: Limits, board: str) -> None:
+    """Set the limits and the signals; `board` is the path of the pool's board."""
+    read_board(board)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)  # at once, even inside compiled code
     die_with_parent()
     if limits.nice:

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from sqlalchemy import func, select
+from sqlalchemy import func, select, update
 from sqlalchemy.dialects.sqlite import insert
 from sqlalchemy.orm import Session, sessionmaker
 
@@ -58,7 +58,7 @@ class Documents:
     def _find(self, *condition: Any) -> Entry | None:
         with self._sessions.begin() as session:
             row = session.scalars(select(StoredDocument).where(*condition).limit(1)).first()
-            if row is None or not self._artefacts.path(row.digest).is_file():
+            if row is None or not self._artefacts.has(row.digest):
                 return None
             if time.time() - row.used > _FRESH:
                 row.used = time.time()
@@ -91,6 +91,13 @@ class Documents:
         with self._sessions.begin() as session:
             session.execute(statement.on_conflict_do_update(index_elements=["id"], set_=values))
         return Entry(document_id, kind, digest, size, dict(summary), now)
+
+    def resize(self, sizes: Mapping[str, int]) -> None:
+        """Correct what artefacts take on disk [bytes], by digest."""
+        with self._sessions.begin() as session:
+            for digest, size in sizes.items():
+                mine = StoredDocument.digest == digest
+                session.execute(update(StoredDocument).where(mine).values(size=size))
 
     def page(self, kind: Kind, limit: int, offset: int) -> tuple[Sequence[Entry], int]:
         """Newest first: `limit` entries after `offset`, and how many there are in all."""

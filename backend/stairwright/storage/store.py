@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
+from typing import Any
 
 from sqlalchemy import Engine, text
 from sqlalchemy.orm import sessionmaker
 
 from .artefacts import Artefacts
 from .database import open_database
-from .documents import Documents
+from .documents import Documents, Entry, Kind
 from .idempotency import IdempotencyKeys
 from .jobs import JobLog
 from .terrains import SavedTerrains
@@ -32,6 +33,7 @@ class Store:
         self.artefacts = Artefacts(folder / "artefacts")
         self.terrains = SavedTerrains(sessions)
         self.documents = Documents(sessions, self.artefacts)
+        self._unsettled = set(self.artefacts.unsettled())  # a process that died may leave some
         self.jobs = JobLog(sessions)
         self.idempotency = IdempotencyKeys(sessions)
 
@@ -48,6 +50,31 @@ class Store:
         removed = self.documents.forget(before, keep_bytes)
         self.artefacts.sweep(self.documents.digests())
         return removed
+
+    def shelve(self, kind: Kind, document_id: str, **values: Any) -> Entry:
+        """Write down a document whose content was put among the artefacts; it will be settled.
+
+        Keywords as in `Documents.put`.
+        """
+        entry = self.documents.put(kind, document_id, **values)
+        self._unsettled.add(entry.digest)
+        return entry
+
+    def settle(self) -> int:
+        """Compress new artefacts and force them to the disk; how many there were."""
+        sizes: dict[str, int] = {}
+        while self._unsettled:
+            digest = self._unsettled.pop()
+            try:
+                size = self.artefacts.settle(digest)
+            except OSError:
+                self._unsettled.add(digest)  # next time
+                raise
+            if size is not None:
+                sizes[digest] = size
+        if sizes:
+            self.documents.resize(sizes)
+        return len(sizes)
 
     def close(self) -> None:
         """Close all connections; SQLite folds its log into the file."""

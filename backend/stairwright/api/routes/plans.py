@@ -18,9 +18,11 @@ from stairwright.api.deps import (
     resolve_robot,
     resolve_terrain,
 )
+from stairwright.api.disconnect import CLIENT_GONE, unless_gone
 from stairwright.api.problems import describe
-from stairwright.api.responses import stored_json
+from stairwright.api.responses import fresh_json, stored_json
 from stairwright.api.services import Services
+from stairwright.jobs.planning import Answer
 from stairwright.jobs.questions import PlanQuestion
 from stairwright.planning.plan import Plan
 
@@ -55,12 +57,21 @@ async def post_plan(
     request: Request, services: Service, owner: Owner, body: PlanRequest, once: Idempotent
 ) -> Response:
     """Plan; the answer is the plan, an infeasible one too. The same question has the same id."""
-    question = await asyncio.to_thread(plan_question, services, body)
-    answer = await services.planning.solve(question, owner)
+    question, answer = await asyncio.to_thread(_look_up, services, body)
+    if answer is None:
+        answer = await unless_gone(request, services.planning.solve(question, owner))
+    if answer is None:
+        return Response(status_code=CLIENT_GONE)
     services.metrics.plans.labels(str(answer.cached).lower()).inc()
     once.result = answer.entry.id
     headers = {"content-location": f"/api/v1/plans/{answer.entry.id}"}
-    return await stored_json(request, answer.packed, answer.entry.digest, headers)
+    send = stored_json if answer.cached else fresh_json
+    return await send(request, answer.content, answer.entry.digest, headers)
+
+
+def _look_up(services: Services, body: PlanRequest) -> tuple[PlanQuestion, Answer | None]:
+    question = plan_question(services, body)
+    return question, services.planning.stored(question)
 
 
 @router.get("", response_model=list[StoredEntry])
