@@ -1,12 +1,12 @@
 """How long the poses take to follow a dragged corner, in real Chromium on the real server.
 
-    python benchmarks/drag.py [--url http://localhost:8000] [--seconds 6] [--browser PATH]
+    python benchmarks/drag.py [--url http://localhost:8000] [--seconds 6] [--json FILE]
 
-Drags the upper corner of the 0.36 m stair and of five stairs at 60 moves a second. Prints, per
-terrain, from the pointer's move to the frame with its poses (median, 95th percentile), the longest
-frame of the drag, how many plans were shown, and the time until the page was interactive. Without
-`--url` it starts a server of its own. The 3-D frame is left out: without a graphics card it would
-take a core of its own.
+Drags the upper corner of the 0.36 m stair and of five stairs at 60 moves a second. Per terrain:
+from the pointer's move to the end of the frame that shows its poses (median, 95th percentile), the
+frames of the drag (median, 95th percentile, the longest), and the time until the page was
+interactive. Without `--url` it starts a server of its own. The 3-D frame is left out: without a
+graphics card it would take a core of its own.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import os
 import re
 import shutil
 import socket
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -26,11 +27,13 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import httpx
+from report import Row, percentile, publish
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 CASES = (("single-stair-036", 2), ("stairs-us-7-11", 6))
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 RATE = 60.0  # moves a second
 REACH = 24.0  # pixels to either side
 WATCH = """() => {
@@ -44,12 +47,6 @@ COLLECT = """() => ({
   moves: performance.getEntriesByName("stairwright:move").map(m => m.startTime),
   shown: performance.getEntriesByName("stairwright:poses").map(m => [m.startTime, m.detail]),
 })"""
-
-
-def percentile(values: list[float], share: float) -> float:
-    """The value that `share` of all do not exceed (nearest rank); NaN for none."""
-    ordered = sorted(values)
-    return ordered[max(0, math.ceil(share * len(ordered)) - 1)] if ordered else math.nan
 
 
 def delays(found: dict[str, Any]) -> list[float]:
@@ -81,8 +78,8 @@ def drag(page: Page, vertex: int, seconds: float) -> dict[str, Any]:
     return found
 
 
-def measure(browser: Browser, url: str, terrain: str, vertex: int, seconds: float) -> None:
-    """Print the figures of one terrain."""
+def measure(browser: Browser, url: str, terrain: str, vertex: int, seconds: float) -> list[Row]:
+    """The figures of one terrain."""
     with browser.new_context(viewport={"width": 1440, "height": 900}) as context:
         page = context.new_page()
         page.route("**/scene/**", lambda route: route.fulfill(content_type="text/html", body=""))
@@ -94,13 +91,19 @@ def measure(browser: Browser, url: str, terrain: str, vertex: int, seconds: floa
         page.locator(".app[data-plan=feasible], .app[data-plan=infeasible]").wait_for()
         drag(page, vertex, 1.0)  # both sides warm
         found = drag(page, vertex, seconds)
-    times = delays(found)
-    print(
-        f"{terrain}: move to poses p50 {percentile(times, 0.5):.0f} ms, "
-        f"p95 {percentile(times, 0.95):.0f} ms ({len(times)} plans in {seconds:g} s); "
-        f"frames p95 {percentile(found['frames'], 0.95):.0f} ms, "
-        f"longest {max(found['frames']):.0f} ms; interactive after {ready:.0f} ms"
-    )
+    shown, frames = delays(found), found["frames"]
+    answers = f"{len(shown)} answers in {seconds:g} s"
+    return [
+        _row(f"move to poses, {terrain}", shown, answers),
+        _row(f"frames of the drag, {terrain}", frames, f"longest {max(frames):.0f} ms"),
+        Row(f"page interactive, {terrain}", "stairwright", ready),
+    ]
+
+
+def _row(work: str, measured: list[float], note: str) -> Row:
+    median = statistics.median(measured) if measured else None
+    p95 = percentile(measured, 0.95) if measured else None
+    return Row(work, "stairwright", median, p95, note=note)
 
 
 @contextlib.contextmanager
@@ -127,23 +130,34 @@ def own_server() -> Iterator[str]:
             process.wait(15)
 
 
+def run(url: str | None = None, seconds: float = 6.0, browser: str | None = None) -> list[Row]:
+    """All terrains, on the server at `url` or on one of its own."""
+    from playwright.sync_api import sync_playwright
+
+    executable = browser or next(filter(None, map(shutil.which, BROWSERS)), None)
+    server = contextlib.nullcontext(url) if url else own_server()
+    with server as address, sync_playwright() as playwright:
+        launched = playwright.chromium.launch(
+            executable_path=executable, args=["--no-sandbox", "--disable-dev-shm-usage"]
+        )
+        rows = [
+            row
+            for terrain, vertex in CASES
+            for row in measure(launched, address, terrain, vertex, seconds)
+        ]
+        launched.close()
+    return rows
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--url", help="a running server; its own otherwise")
     parser.add_argument("--seconds", type=float, default=6.0)
-    parser.add_argument("--browser", default=shutil.which("chromium"))
+    parser.add_argument("--browser", help="where Chromium is; searched for otherwise")
+    parser.add_argument("--json", help="write machine and rows to this file too")
     arguments = parser.parse_args()
-    from playwright.sync_api import sync_playwright
-
-    server = contextlib.nullcontext(arguments.url) if arguments.url else own_server()
-    with server as url, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(
-            executable_path=arguments.browser, args=["--no-sandbox", "--disable-dev-shm-usage"]
-        )
-        for terrain, vertex in CASES:
-            measure(browser, url, terrain, vertex, arguments.seconds)
-        browser.close()
+    publish(run(arguments.url, arguments.seconds, arguments.browser), arguments.json)
 
 
 if __name__ == "__main__":

@@ -59,15 +59,26 @@ export interface Series {
   base_quaternion: number[][];
   q: number[][];
   q_desired: number[][];
-  dq: number[][];
-  torque: number[][];
+  /** Speeds, torques and forces come with the end of a rollout. */
+  dq?: number[][];
+  torque?: number[][];
   pitch: number[];
   pitch_desired: number[];
   progress: number[];
-  contact_force: number[][][];
+  contact_force?: number[][][];
 }
 
-export interface Rollout {
+/** What can be played: a rollout, or as much of it as there is yet. */
+export interface Drive {
+  outcome: Outcome | "running";
+  series: Series;
+}
+
+/** It is over, and not at its goal. */
+export const hasFailed = (drive: Drive | null): boolean =>
+  drive !== null && drive.outcome !== "success" && drive.outcome !== "running";
+
+export interface Rollout extends Drive {
   schema: string;
   id: string;
   plan_id?: string;

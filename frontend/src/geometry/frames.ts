@@ -1,6 +1,6 @@
 /** The robot at a time: between the poses of a plan or the samples of a rollout. */
 
-import type { Plan, Rollout } from "../api/types";
+import type { Drive, Plan } from "../api/types";
 import type { Frame } from "./robot";
 
 /** Index of the last entry that is not above `value`. */
@@ -69,7 +69,7 @@ export function planar(q: readonly number[]): number[] {
   return [0, 1, 6, 7].map((k) => (q[k]! + q[k + 3]!) / 2);
 }
 
-export function runFrame(run: Rollout, t: number): Frame | null {
+export function runFrame(run: Drive, t: number): Frame | null {
   const s = run.series;
   const [i, f] = locate(s.time, t);
   const a = s.base_position[i];

@@ -1,6 +1,6 @@
 /** What plots are made of: lines on one time axis, from plan and rollout. */
 
-import type { Plan, Rollout } from "../api/types";
+import type { Drive, Plan, Rollout } from "../api/types";
 import { interpolate, poseTimes } from "../geometry/frames";
 
 export type LineKind = "band" | "line" | "dash";
@@ -35,7 +35,7 @@ export interface Panel {
 
 export interface Source {
   plan: Plan | null;
-  run: Rollout | null;
+  run: Drive | null;
   runB: Rollout | null;
   legLimit: number;
   wheelLimit: number;
@@ -64,7 +64,7 @@ export function timeAxis({ plan, run }: Source): Float64Array {
 /** Values at the rollout's samples, NaN where it has none. */
 export function sampled(
   time: Float64Array,
-  run: Rollout,
+  run: Drive,
   value: (i: number) => number,
 ): Float64Array {
   const n = run.series.time.length;
@@ -86,7 +86,7 @@ export function planned(
 export function desired(
   time: Float64Array,
   source: Source,
-  ofRun: (run: Rollout, i: number) => number,
+  ofRun: (run: Drive, i: number) => number,
   ofPlan: (plan: Plan, i: number) => number,
 ): Float64Array {
   const { plan, run } = source;

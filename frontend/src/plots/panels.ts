@@ -1,6 +1,6 @@
 /** What each plot shows, from the plan alone or from plan and rollout. */
 
-import type { Plan, Rollout } from "../api/types";
+import type { Drive, Plan } from "../api/types";
 import { degrees } from "../geometry/format";
 import { interpolate, planar } from "../geometry/frames";
 import { MARGINS, type MarginName } from "../profile-editor/margins";
@@ -124,8 +124,8 @@ const largest = (row: readonly number[], columns: readonly number[]) =>
 function torquePanel(source: Source, time: Float64Array): Panel {
   const { plan, run } = source;
   const lines: Line[] = [];
-  if (run) {
-    const { torque } = run.series;
+  const torque = run?.series.torque;
+  if (run && torque) {
     const of = (columns: number[]) => sampled(time, run, (i) => largest(torque[i]!, columns));
     lines.push(
       {
@@ -209,7 +209,7 @@ function marginPanel(source: Source, time: Float64Array): Panel {
 function marginValues(
   time: Float64Array,
   plan: Plan,
-  run: Rollout | null,
+  run: Drive | null,
   name: MarginName,
 ): Float64Array {
   const values = plan.poses.map((p) => p.margins[name]);
@@ -220,10 +220,11 @@ function marginValues(
 
 function forcePanel(source: Source, time: Float64Array): Panel {
   const { run } = source;
+  const force = run?.series.contact_force;
   const pair = (a: number, axis: number) =>
-    run
+    run && force
       ? sampled(time, run, (i) => {
-          const f = run.series.contact_force[i]!;
+          const f = force[i]!;
           return f[a]![axis]! + f[a + 1]![axis]!;
         })
       : time.map(() => Number.NaN);
@@ -240,7 +241,7 @@ function forcePanel(source: Source, time: Float64Array): Panel {
     title: PANELS.force,
     unit: "N",
     time,
-    halves: run ? [half(1, true), half(0, false)] : [[], []],
+    halves: force ? [half(1, true), half(0, false)] : [[], []],
     spans: [40, 20],
     caption: "tangential",
   };
@@ -249,8 +250,8 @@ function forcePanel(source: Source, time: Float64Array): Panel {
 function wheelPanel(source: Source, time: Float64Array): Panel {
   const { run } = source;
   const lines: Line[] = [];
-  if (run) {
-    const { torque } = run.series;
+  const torque = run?.series.torque;
+  if (run && torque) {
     const mean = (a: number, b: number) =>
       sampled(time, run, (i) => (torque[i]![a]! + torque[i]![b]!) / 2);
     lines.push(

@@ -1,6 +1,8 @@
 /** The row of plots, all on one clock. */
 
 import { computed, signal } from "@preact/signals";
+import { hasFailed } from "../api/types";
+import { live, livePlan } from "../state/live";
 import { plan } from "../state/planning";
 import { shownRun } from "../state/playback";
 import { activity, progress, run, runB, runPlan, showProgress } from "../state/rollouts";
@@ -22,15 +24,17 @@ export const shownPanels = signal<readonly PanelId[]>([
 
 const MOST_NARROW = 4;
 
-/** While a rollout runs, the plots wait for it with the plan's bands. */
+/** While a rollout runs, its lines grow on the plan's bands. */
 const running = computed(() => activity.value === "running" && showProgress.value);
 
 const source = computed<Source>(() => {
   const limit = robot.value?.limit;
   const result = running.value ? null : run.value;
+  const driven = running.value ? livePlan.value : runPlan.value;
+  const drive = running.value ? live.value : run.value;
   return {
-    plan: result ? (runPlan.value ?? plan.value) : plan.value,
-    run: result,
+    plan: (drive && driven) ?? plan.value,
+    run: drive,
     runB: compare.value && result ? runB.value : null,
     legLimit: limit?.leg ?? Number.NaN,
     wheelLimit: limit?.wheel ?? Number.NaN,
@@ -49,8 +53,7 @@ const tint = computed<Tint | null>(() => {
   if (running.value) return { from: 0, to: progress.value * total, kind: "done" };
   const result = source.value.run;
   const end = result?.series.time[result.series.time.length - 1] ?? 0;
-  if (result && result.outcome !== "success")
-    return { from: end, to: Math.max(end, total), kind: "failed" };
+  if (hasFailed(result)) return { from: end, to: Math.max(end, total), kind: "failed" };
   if (shown?.problem) {
     const stop = shown.poses[shown.poses.length - 1]?.time ?? 0;
     return { from: stop, to: total, kind: "unplanned" };

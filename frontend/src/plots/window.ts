@@ -1,13 +1,16 @@
 /** The stretch of time that all plots show. */
 
 import { computed, effect, signal } from "@preact/signals";
+import type { Drive } from "../api/types";
+import { live, livePlan } from "../state/live";
 import { plannedEnd } from "../state/playback";
 import { activity, run, runPlan } from "../state/rollouts";
 
 const chosen = signal<[number, number] | null>(null);
 /** A rollout of the previous plan keeps its own axis. */
 const end = computed(() => {
-  const times = activity.value === "running" ? undefined : run.value?.series.time;
+  if (activity.value === "running") return runningEnd();
+  const times = run.value?.series.time;
   if (!times) return plannedEnd.value;
   const planned = run.value?.outcome === "success" ? 0 : (runPlan.value?.timing.total ?? 0);
   return Math.max(times[times.length - 1] ?? 0, planned);
@@ -25,6 +28,14 @@ export const timeWindow = {
     return chosen.peek() ?? whole.peek();
   },
 };
+
+/** Room for all that is planned, so that the axis stands while the lines grow. */
+function runningEnd(): number {
+  const planned = livePlan.value?.timing.total;
+  return planned === undefined ? plannedEnd.value : Math.max(planned, lastTime(live.value));
+}
+
+const lastTime = (drive: Drive | null) => drive?.series.time[drive.series.time.length - 1] ?? 0;
 
 /** Zoom by `factor` around a time; beyond the whole it shows all. */
 export function zoomTime(around: number, factor: number): void {

@@ -163,6 +163,7 @@ export function Editor() {
       class="edit"
       aria-label="Profile editor"
       data-faded={slow.value && !preview.value && connected.value ? "" : undefined}
+      data-preview={preview.value ? "" : undefined}
     >
       <Toolbar />
       <div class="canvas" ref={holder}>

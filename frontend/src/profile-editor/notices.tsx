@@ -57,7 +57,7 @@ export function Banner() {
 
 function veilText(): string {
   if (!plan.value) return "Planning";
-  if (preview.value) return "Quick poses shown; the full path follows";
+  if (preview.value) return "Key poses shown; the full path follows";
   return "Planning the latest edit; the last plan is shown";
 }
 

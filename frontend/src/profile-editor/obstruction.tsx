@@ -3,7 +3,7 @@
 import type { Plan } from "../api/types";
 import { fixed } from "../geometry/format";
 import { canUndo, drawing, previous, undo } from "../state/drawing";
-import { plan } from "../state/planning";
+import { plan, preview } from "../state/planning";
 import { isNarrow } from "../state/view";
 import { Icon } from "../ui/icon";
 import { canvasBox, centreOn, projection, size } from "./viewport";
@@ -45,7 +45,8 @@ function lastEdit(): string | null {
 export function Obstruction() {
   const shown = plan.value;
   const problem = shown?.problem;
-  if (!shown || !problem) return null;
+  // Poses that were found since are newer than the problem.
+  if (!shown || !problem || preview.value) return null;
   const { px, py } = projection.value;
   const box = canvasBox.value;
   const [x, y] = [px(problem.at[0]), py(problem.at[1])];

@@ -1,7 +1,7 @@
 /** The robot on the canvas: ghosts of the plan, key poses, the pose at the clock, B dashed. */
 
 import { computed } from "@preact/signals";
-import type { Plan, Vec2 } from "../api/types";
+import { hasFailed, type Plan, type Vec2 } from "../api/types";
 import { planFrame, runFrame } from "../geometry/frames";
 import {
   type Frame,
@@ -11,7 +11,7 @@ import {
   type Skeleton,
   skeleton,
 } from "../geometry/robot";
-import { plan, planB } from "../state/planning";
+import { plan, planB, planKept, preview } from "../state/planning";
 import { duration, frame, poseIndex, shownRun, shownTime } from "../state/playback";
 import { runB } from "../state/rollouts";
 import { robot } from "../state/setup";
@@ -138,12 +138,17 @@ function Details({
   );
 }
 
+/** Whose key poses are drawn: those for what is on screen now, before a path through them. */
+const keyed = computed(() => preview.value ?? plan.value);
+
 /** Key poses that stand apart; of a cluster the first is drawn. */
 const keyIndices = computed<number[]>(() => {
-  const shown = plan.value;
+  const shown = keyed.value;
   if (!shown) return [];
   const out: number[] = [];
-  for (const i of shown.critical) {
+  // Of the paper's plan also the pose it starts and the one it ends with.
+  const all = shown.method === "critical" ? shown.poses.map((_, i) => i) : shown.critical;
+  for (const i of all) {
     const last = out[out.length - 1];
     const here = shown.poses[i];
     const there = last === undefined ? undefined : shown.poses[last];
@@ -154,29 +159,61 @@ const keyIndices = computed<number[]>(() => {
 });
 
 export function Ghosts() {
-  const shown = plan.value;
-  const shape = robot.value;
-  if (!shown || !shape) return null;
-  const to = projection.value;
-  const figures = (indices: number[], kind: "ghost" | "key") =>
-    indices.map((i, k) => {
-      const f = poseFrame(shown, i);
-      // Pooled by place in the list: a new plan moves the figures instead of replacing them.
-      return f && <Figure key={k} robot={shape} bones={skeleton(shape, f)} to={to} kind={kind} />;
-    });
   return (
     <>
-      {layers.value.has("com") && (
-        <polyline class="comp" points={shown.poses.map((p) => to.at(p.com)).join(" ")} />
-      )}
-      {layers.value.has("ghosts") && <g>{figures(ghostIndices.value, "ghost")}</g>}
-      {layers.value.has("keys") && (
-        <g>
-          {figures(keyIndices.value, "key")}
-          <KeyNumbers shown={shown} to={to} />
-        </g>
-      )}
+      <Between />
+      <Keys />
     </>
+  );
+}
+
+interface FiguresProps {
+  shown: Plan;
+  shape: RobotShape;
+  indices: number[];
+  kind: "ghost" | "key";
+}
+
+function Figures({ shown, shape, indices, kind }: FiguresProps) {
+  const to = projection.value;
+  return (
+    <g>
+      {indices.map((i, k) => {
+        const f = poseFrame(shown, i);
+        // Pooled by place in the list: a new plan moves the figures instead of replacing them.
+        return f && <Figure key={k} robot={shape} bones={skeleton(shape, f)} to={to} kind={kind} />;
+      })}
+    </g>
+  );
+}
+
+/** What only a path tells: the poses between the key ones and the centre of mass's way. */
+function Between() {
+  const shown = plan.value;
+  const shape = robot.value;
+  if (!shown || !shape || !planKept.value) return null;
+  const { at } = projection.value;
+  return (
+    <g class="older">
+      {layers.value.has("com") && (
+        <polyline class="comp" points={shown.poses.map((p) => at(p.com)).join(" ")} />
+      )}
+      {layers.value.has("ghosts") && (
+        <Figures shown={shown} shape={shape} indices={ghostIndices.value} kind="ghost" />
+      )}
+    </g>
+  );
+}
+
+function Keys() {
+  const shown = keyed.value;
+  const shape = robot.value;
+  if (!shown || !shape || !layers.value.has("keys")) return null;
+  return (
+    <g>
+      <Figures shown={shown} shape={shape} indices={keyIndices.value} kind="key" />
+      <KeyNumbers shown={shown} to={projection.value} />
+    </g>
   );
 }
 
@@ -189,7 +226,7 @@ function KeyNumbers({ shown, to }: { shown: Plan; to: Projection }) {
       {keyIndices.value.map((index) => {
         const pose = shown.poses[index];
         const k = shown.critical.indexOf(index);
-        if (!pose) return null;
+        if (!pose || k < 0) return null;
         const at: Vec2 = [to.px(pose.x_c), to.py(pose.z_c + half) - 14 - Math.abs(pose.pitch) * 20];
         if (last && Math.hypot(at[0] - last[0], at[1] - last[1]) < 20) return null;
         last = at;
@@ -219,16 +256,15 @@ const badPart = computed<Part | null>(() => {
 export function Current() {
   const shape = robot.value;
   const now = frame.value;
-  if (!shape || !now) return null;
+  if (!shape || !now || !planKept.value) return null;
   const to = projection.value;
   const bones = skeleton(shape, now);
   const pose = plan.value?.poses[poseIndex.value];
   const points = layers.value.has("collision") ? collisionPoints(shape, bones) : null;
   const rollout = shownRun.value;
-  const fallen =
-    rollout && rollout.outcome !== "success" && shownTime.value >= duration.value - 0.05;
+  const fallen = hasFailed(rollout) && shownTime.value >= duration.value - 0.05;
   return (
-    <g class={fallen ? "fallen" : undefined}>
+    <g class={fallen ? "older fallen" : "older"}>
       <Figure robot={shape} bones={bones} to={to} kind="halo" />
       <Other />
       <Figure robot={shape} bones={bones} to={to} kind="cur" bad={badPart.value} />

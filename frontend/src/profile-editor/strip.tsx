@@ -2,7 +2,7 @@
 
 import type { Plan } from "../api/types";
 import { poseTimes } from "../geometry/frames";
-import { plan } from "../state/planning";
+import { plan, planKept, preview } from "../state/planning";
 import { frame, playing, seek } from "../state/playback";
 import { CLASS_NAMES, MARGINS, type MarginClass, marginClass, worst } from "./margins";
 import { canvasBox, projection, STRIP, size } from "./viewport";
@@ -47,7 +47,7 @@ export function MarginStrip() {
   const top = height - STRIP + 8;
   const left = narrow ? 122 : LABELS;
   const right = width - (narrow ? 62 : LEGEND);
-  const shown = plan.value;
+  const shown = planKept.value ? plan.value : null;
   const { px } = projection.value;
   const last = shown?.poses[shown.poses.length - 1];
   const stop = shown?.problem && last ? Math.min(right, Math.max(left, px(last.x_c))) : null;
@@ -86,12 +86,15 @@ export function MarginStrip() {
               {narrow ? text.split(" / ")[0] : text}
             </text>
             <rect class="s0" x={left} y={y} width={Math.max(0, right - left)} height={ROW} rx={2} />
-            {paths.map((d, c) => (
-              <path key={c} class={`m${c}`} d={d} />
-            ))}
-            {stop !== null && (
-              <Beyond from={stop} to={right} y={y} bad={problemRow(shown!) === row} />
-            )}
+            <g class="older">
+              {paths.map((d, c) => (
+                <path key={c} class={`m${c}`} d={d} />
+              ))}
+              {stop !== null && (
+                <Beyond from={stop} to={right} y={y} bad={problemRow(shown!) === row} />
+              )}
+            </g>
+            <KeyTicks row={row} y={y} left={left} right={right} />
           </g>
         );
       })}
@@ -126,6 +129,35 @@ export function MarginStrip() {
       />
       <Cursor left={left} right={right} />
     </g>
+  );
+}
+
+const TICK = 6;
+
+/** Margins of the previewed key poses, over the dimmed bars of the older plan. */
+function KeyTicks({
+  row,
+  y,
+  left,
+  right,
+}: {
+  row: number;
+  y: number;
+  left: number;
+  right: number;
+}) {
+  const shown = preview.value;
+  if (!shown) return null;
+  const kind = MARGINS[row]!;
+  return (
+    <>
+      {shown.poses.map((pose, i) => {
+        const x = projection.value.px(pose.x_c);
+        if (x < left || x > right) return null;
+        const c = marginClass(kind, pose.margins[kind.name]);
+        return <rect key={i} class={`m${c}`} x={x - TICK / 2} y={y} width={TICK} height={ROW} />;
+      })}
+    </>
   );
 }
 

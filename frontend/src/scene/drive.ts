@@ -1,6 +1,6 @@
 /** Tells this page's 3-D scene what to show: plan, rollout, theme, time. */
 
-import { effect, signal } from "@preact/signals";
+import { effect, signal, untracked } from "@preact/signals";
 import {
   ApiError,
   dropSession,
@@ -9,10 +9,12 @@ import {
   putScene,
   type Session,
 } from "../api/client";
+import type { Plan } from "../api/types";
 import { connected, report } from "../state/connection";
+import { live } from "../state/live";
 import { plan, planB, stale } from "../state/planning";
 import { playing, shownRun, shownTime, speed } from "../state/playback";
-import { runB } from "../state/rollouts";
+import { run, runB } from "../state/rollouts";
 import { compare } from "../state/setup";
 import { type Layer, layers, theme } from "../state/view";
 
@@ -76,14 +78,22 @@ const SCENE_LAYERS: Partial<Record<Layer, string>> = {
   wheel: "wheel_path",
 };
 
+/** Theme and layers at once; what they show as soon as there is a plan. */
 function sceneBody(): Record<string, unknown> {
-  const shown = plan.value;
-  const rollout = shownRun.value;
+  return { ...(plan.value ? contents(plan.value) : {}), ...looks() };
+}
+
+function contents(shown: Plan): Record<string, unknown> {
   const other = compare.value ? (runB.value?.plan_id ?? planB.value?.id) : null;
   return {
-    ...(shown ? { plan_id: shown.id } : {}),
-    rollout_id: rollout?.id ?? null,
+    plan_id: shown.id,
+    rollout_id: live.value || !shownRun.value ? null : (run.value?.id ?? null),
     compare_plan_id: other ?? null,
+  };
+}
+
+function looks(): Record<string, unknown> {
+  return {
     theme: theme.value,
     layers: Object.fromEntries(
       Object.entries(SCENE_LAYERS).map(([ours, theirs]) => [
@@ -95,7 +105,7 @@ function sceneBody(): Record<string, unknown> {
 }
 
 function tellAll(): void {
-  if (plan.peek()) scene.put(sceneBody());
+  scene.put(untracked(sceneBody));
   playback.put({ time: shownTime.peek(), playing: playing.peek(), speed: speed.peek() });
 }
 
@@ -103,11 +113,16 @@ export function setCamera(preset: string): void {
   scene.put({ camera: preset });
 }
 
+/** A running rollout is not stored yet: the scene shows its plan, as far along as the robot is. */
+function moment(time: number): Record<string, unknown> {
+  const along = live.peek()?.series.progress;
+  return along ? { time: undefined, progress: along[along.length - 1] } : { time };
+}
+
 export function startScene(): void {
   void renewSession();
   effect(() => {
-    const body = sceneBody();
-    if (plan.value) scene.put(body);
+    scene.put(sceneBody());
   });
   // While playing, the scene runs its own clock; seeking and previews set it.
   effect(() => {
@@ -115,7 +130,7 @@ export function startScene(): void {
   });
   effect(() => {
     const time = shownTime.value;
-    if (!playing.peek() && !stale.peek()) playback.put({ time });
+    if (!playing.peek() && !stale.peek()) playback.put(moment(time));
   });
   addEventListener("pagehide", () => {
     const id = session.peek()?.id;

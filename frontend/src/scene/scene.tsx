@@ -1,5 +1,6 @@
 /** The 3-D scene: viser's page in a frame, with our header. */
 
+import { hasFailed } from "../api/types";
 import { fixed } from "../geometry/format";
 import { connected } from "../state/connection";
 import { isEmpty } from "../state/drawing";
@@ -92,7 +93,6 @@ export function Scene() {
 function Tag() {
   const rollout = shownRun.value;
   const t = fixed(shownTime.value, 2);
-  const failed = rollout && rollout.outcome !== "success";
   if (plan.value?.poses.length === 0) return null;
   if (plan.value?.problem && shownTime.value >= duration.value - 1e-6) {
     return (
@@ -102,7 +102,7 @@ function Tag() {
       </div>
     );
   }
-  if (failed && shownTime.value >= duration.value - 0.05) {
+  if (rollout && hasFailed(rollout) && shownTime.value >= duration.value - 0.05) {
     return (
       <div class="tag2">
         <span class="live bad" />

@@ -9,18 +9,28 @@ import { NewestWins } from "../api/newest-wins";
 import type { Method, Plan, PlanRequest } from "../api/types";
 import { connected, report } from "./connection";
 import { drawing, isEmpty, terrainDocument } from "./drawing";
+import { Pace } from "./pace";
 import { changedWeights, compare, method, robotName, robots, settings } from "./setup";
 
 /** Shorter waits show no spinner: it would only flicker [ms]. */
 const PATIENCE = 150;
-/** A path that takes longer than this is worth a preview [ms]. */
-const LIVE = 120;
+/** The path follows a preview once the hand has rested for this long [ms]. */
+const REST = 60;
+/** A path that has run for this long gives way to a newer question in any case [ms]. */
+const LONGEST = 400;
 
 export const plan = signal<Plan | null>(null);
 /** B of the comparison: the same terrain without pose optimisation. */
 export const planB = signal<Plan | null>(null);
-/** The shown plan is the quick one; the path is still on its way. */
-export const preview = signal(false);
+/**
+ * The paper's poses for what is drawn now, while `plan` still answers an older question: they
+ * follow the hand, and all that only a full path can tell keeps still until it comes.
+ */
+export const preview = signal<Plan | null>(null);
+/** While poses are previewed: the older plan is of the same corners, and can stay as it is. */
+export const planKept = computed(
+  () => !preview.value || preview.value.terrain.points.length === plan.value?.terrain.points.length,
+);
 /** Why the service refused the question itself (not: why the terrain is infeasible). */
 export const refusal = signal<string | null>(null);
 /** The newest question has waited for longer than anyone would overlook. */
@@ -30,10 +40,11 @@ export const waited = signal(0);
 const shownKey = signal("");
 
 interface Question {
-  /** When the drawing asked, for the benchmark of dragging. */
-  asked?: number;
+  /** When the drawing asked [ms]. */
+  asked: number;
   which: "preview" | "a" | "b";
   request: PlanRequest;
+  /** Of the question that was meant: the request of A as text. */
   key: string;
 }
 
@@ -79,101 +90,132 @@ function stopWaiting(): void {
   slow.value = false;
 }
 
-/** How long the last answers took [ms]; 0 before the first. */
-const took = { a: 0, preview: 0, b: 0 };
-/** The path follows a preview once the hand rests for this long [ms]. */
-const REST = 200;
+const pace = new Pace();
 let resting: ReturnType<typeof setTimeout> | undefined;
+/** The last question to the quick method, as text. */
+let previewed = "";
+
+const queue = new NewestWins<Question, Plan>({ solve, show, fail, yields });
 
 async function solve(question: Question, abort: AbortSignal): Promise<Plan> {
   const started = performance.now();
   const answer = await postPlan(question.request, abort);
-  took[question.which] = performance.now() - started;
+  const trip = performance.now() - started;
+  const { method } = question.request;
+  if (method !== "nominal") pace.measured(method === "path" ? "full" : "quick", trip, answer);
   return answer;
 }
 
+/** A path gives way to newer poses, unless those have been no help: then it is all there is. */
+function yields(running: Question, next: Question, since: number): boolean {
+  if (running.which === "b") return next.which !== "b";
+  if (running.which !== "a" || next.which !== "preview") return false;
+  return pace.finds || since > LONGEST;
+}
+
 function show(answer: Plan, question: Question, newest: boolean): void {
-  if (question.asked !== undefined) {
-    const detail = question.asked;
-    requestAnimationFrame(() => performance.mark("stairwright:poses", { detail }));
-  }
   if (question.which === "b") {
     if (newest) planB.value = answer;
     return;
   }
-  if (question.which === "preview") {
-    // Where the quick method finds no way, the path may: only good news is worth showing early.
-    if (answer.status === "feasible") {
-      batch(() => {
-        plan.value = answer;
-        preview.value = true;
-        shownKey.value = "";
-      });
-    }
-    if (newest) askForPath(question);
-    return;
-  }
+  markDrawn(question.asked);
+  if (question.which === "preview") showPreview(answer, question, newest);
+  else showPlan(answer, question, newest);
+}
+
+/** For the benchmark of dragging: after the frame that is drawn with this answer. */
+function markDrawn(detail: number): void {
+  requestAnimationFrame(() => {
+    setTimeout(() => performance.mark("stairwright:poses", { detail }));
+  });
+}
+
+function showPreview(answer: Plan, question: Question, newest: boolean): void {
+  // Where the quick method finds no way, the path may: only good news is worth showing early.
+  pace.finds = answer.status === "feasible";
+  if (pace.finds) preview.value = answer;
+  if (!newest) return;
+  if (pace.finds) stopWaiting();
+  askForPath(question, pace.finds ? REST : 0);
+}
+
+function showPlan(answer: Plan, question: Question, newest: boolean): void {
   batch(() => {
     plan.value = answer;
-    preview.value = false;
+    preview.value = null;
     shownKey.value = question.key;
     refusal.value = null;
   });
   if (!newest) return;
   stopWaiting();
-  if (compare.peek()) askForB(question);
+  if (compare.peek()) askForB(question.request, question.key);
 }
 
-function askForA(question: PlanRequest, key: string): void {
-  clearTimeout(resting);
-  // Only where the quick method is quick: on some terrains it is not.
-  const worth = took.a > LIVE && took.preview < took.a / 2;
-  if (question.method !== "path" || !worth) {
-    queue.ask({ which: "a", request: question, key, asked: performance.now() });
-    return;
-  }
+/** The question that the quick method is asked: the same without the full method's weights. */
+function quick(question: PlanRequest): PlanRequest {
   const { weights: _, ...rest } = question;
-  queue.ask({
-    which: "preview",
-    asked: performance.now(),
-    request: { ...rest, method: "critical" },
-    key,
-  });
+  return { ...rest, method: "critical" };
 }
 
-/** After the preview: the question that was meant. */
-function askForPath(previewed: Question): void {
+function askForA(request: PlanRequest, key: string): void {
+  clearTimeout(resting);
+  const asked = performance.now();
+  if (request.method === "path" && pace.worthPreview) {
+    const easier = quick(request);
+    const text = JSON.stringify(easier);
+    // A weight of the path changes nothing that the quick method could tell.
+    if (text !== previewed) {
+      previewed = text;
+      queue.ask({ which: "preview", asked, request: easier, key });
+      return;
+    }
+  }
+  queue.ask({ which: "a", request, key, asked });
+}
+
+/** After the preview, once the hand rests: the question that was meant. */
+function askForPath(before: Question, wait: number): void {
   clearTimeout(resting);
   resting = setTimeout(() => {
     const meant = request.peek();
-    if (meant && requestKey.peek() === previewed.key) {
-      queue.ask({ which: "a", request: meant, key: previewed.key });
-    }
-  }, REST);
+    if (!meant || requestKey.peek() !== before.key) return;
+    startWaiting();
+    queue.ask({ which: "a", request: meant, key: before.key, asked: before.asked });
+  }, wait);
 }
 
-function askForB(question: Question): void {
-  const { weights: _, ...rest } = question.request;
-  queue.ask({ which: "b", request: { ...rest, method: "nominal" }, key: question.key });
+function askForB(question: PlanRequest, key: string): void {
+  const { weights: _, ...rest } = question;
+  queue.ask({
+    which: "b",
+    asked: performance.now(),
+    request: { ...rest, method: "nominal" },
+    key,
+  });
 }
 
 function fail(error: unknown, question: Question, newest: boolean): void {
   report(error);
   if (!newest) return;
   if (question.which === "preview" && connected.peek()) {
-    askForPath(question);
+    pace.finds = false;
+    askForPath(question, 0);
     return;
   }
   if (question.which === "b") return;
   stopWaiting();
-  if (connected.peek()) refusal.value = error instanceof Error ? error.message : String(error);
+  if (!connected.peek()) return;
+  batch(() => {
+    refusal.value = error instanceof Error ? error.message : String(error);
+    preview.value = null;
+  });
 }
-
-const queue = new NewestWins<Question, Plan>(solve, show, fail);
 
 function forget(): void {
   clearTimeout(resting);
   queue.forget();
+  preview.value = null;
+  previewed = "";
   stopWaiting();
 }
 
@@ -204,7 +246,7 @@ export function startPlanning(): () => void {
   const stopB = effect(() => {
     if (!compare.value) planB.value = null;
     else if (request.peek() && !stale.peek() && connected.value) {
-      askForB({ which: "a", request: request.peek()!, key: requestKey.peek() });
+      askForB(request.peek()!, requestKey.peek());
     }
   });
   return () => {

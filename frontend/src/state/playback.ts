@@ -1,8 +1,10 @@
 /** The one clock: time on the slider, in the plots, of the robot in 2-D and 3-D. */
 
 import { computed, effect, signal } from "@preact/signals";
+import type { Drive } from "../api/types";
 import { locate, planFrame, poseTimes, runFrame } from "../geometry/frames";
-import { plan } from "./planning";
+import { live, livePlan } from "./live";
+import { plan, stale } from "./planning";
 import { run, runStale } from "./rollouts";
 
 export const time = signal(0);
@@ -13,8 +15,11 @@ export const hoverTime = signal<number | null>(null);
 
 export const SPEEDS = [0.25, 0.5, 1, 2, 4];
 
-/** The rollout that the clock runs on; a stale one only stays in the plots. */
-export const shownRun = computed(() => (runStale.value ? null : run.value));
+/** The drive that the clock runs on; one of an older plan only stays in the plots. */
+export const shownRun = computed<Drive | null>(() => {
+  if (live.value) return livePlan.value?.id === plan.value?.id && !stale.value ? live.value : null;
+  return runStale.value ? null : run.value;
+});
 
 export const duration = computed(() => {
   const times = shownRun.value?.series.time;
@@ -116,6 +121,12 @@ export function startClock(): void {
       time.value = before;
       before = null;
     }
+  });
+  // A running rollout takes the clock along: the robot is where it has got to.
+  effect(() => {
+    if (!live.value || !shownRun.value) return;
+    playing.value = false;
+    time.value = duration.value;
   });
   // A new plan may be shorter than the clock stands.
   effect(() => {

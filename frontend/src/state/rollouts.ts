@@ -12,6 +12,7 @@ import {
 } from "../api/client";
 import type { Job, Plan, Rollout } from "../api/types";
 import { report } from "./connection";
+import { type Chunk, endLive, grow, startLive } from "./live";
 import { plan, planB, request, settled, stale } from "./planning";
 import { compare, controller, seed } from "./setup";
 
@@ -63,10 +64,16 @@ export async function startRollout(): Promise<void> {
     showProgress.value = true;
   }, BLINK);
   try {
-    const done = await runOne(chosen, (value) => {
-      progress.value = value;
-    });
+    startLive(chosen);
+    const done = await runOne(
+      chosen,
+      (value) => {
+        progress.value = value;
+      },
+      grow,
+    );
     batch(() => {
+      endLive();
       run.value = done;
       runB.value = null;
       runPlan.value = chosen;
@@ -78,6 +85,7 @@ export async function startRollout(): Promise<void> {
     activity.value = cancelled ? "cancelled" : "failed";
     if (!cancelled) failure.value = error instanceof Error ? error.message : String(error);
   } finally {
+    endLive();
     clearTimeout(blink);
     showProgress.value = false;
     current = null;
@@ -106,14 +114,19 @@ export async function cancelRollout(): Promise<void> {
   if (current) await cancelJob(current).catch(report);
 }
 
-async function runOne(which: Plan, onProgress: (value: number) => void): Promise<Rollout> {
+async function runOne(
+  which: Plan,
+  onProgress: (value: number) => void,
+  onSeries?: (chunk: Chunk) => void,
+): Promise<Rollout> {
   const job = await submit(which);
   current = job.id;
   if (cancelled) await cancelJob(job.id);
-  const end = await follow(job, (state) => {
+  const onState = (state: Job) => {
     onProgress(state.progress);
     eta.value = state.eta;
-  });
+  };
+  const end = await follow(job, onState, onSeries);
   if (end.state === "cancelled") cancelled = true;
   if (end.state !== "done" || !end.result) {
     throw new Error(end.error?.detail ?? end.error?.title ?? `The rollout was ${end.state}.`);
@@ -141,7 +154,11 @@ async function submit(which: Plan): Promise<Job> {
 const over = (job: Job) => job.state !== "queued" && job.state !== "running";
 
 /** Follow the job's events to its end; poll where the stream breaks. */
-function follow(job: Job, onState: (job: Job) => void): Promise<Job> {
+function follow(
+  job: Job,
+  onState: (job: Job) => void,
+  onSeries?: (chunk: Chunk) => void,
+): Promise<Job> {
   return new Promise((resolve, reject) => {
     const events = jobEvents(job.id);
     events.addEventListener("job", (event) => {
@@ -151,6 +168,11 @@ function follow(job: Job, onState: (job: Job) => void): Promise<Job> {
       events.close();
       resolve(state);
     });
+    if (onSeries) {
+      events.addEventListener("series", (event) => {
+        onSeries(JSON.parse((event as MessageEvent<string>).data) as Chunk);
+      });
+    }
     events.onerror = () => {
       events.close();
       poll(job.id, onState).then(resolve, reject);

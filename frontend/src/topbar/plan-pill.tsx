@@ -4,7 +4,7 @@ import { fixed, took } from "../geometry/format";
 import { nearestCorner } from "../geometry/profile";
 import { connected } from "../state/connection";
 import { drawing, isEmpty } from "../state/drawing";
-import { plan, refusal, slow, waited } from "../state/planning";
+import { plan, preview, refusal, slow, waited } from "../state/planning";
 import { Icon } from "../ui/icon";
 
 export function PlanPill() {
@@ -39,6 +39,15 @@ export function PlanPill() {
       <div class="pill bad" title={refusal.value}>
         <Icon name="warning" />
         <b>Not a terrain</b>
+      </div>
+    );
+  }
+  if (preview.value) {
+    return (
+      <div class="pill" title="The paper's poses for what is drawn; the full path follows at rest">
+        <Icon name="check" />
+        <b>Key poses</b>
+        <span class="wide">solved in {took(preview.value.solve_time)}</span>
       </div>
     );
   }

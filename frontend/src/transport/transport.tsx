@@ -1,5 +1,6 @@
 /** Play, step, speed, and the timeline with its key poses. */
 
+import { hasFailed } from "../api/types";
 import { fixed } from "../geometry/format";
 import { PANELS, type PanelId } from "../plots/lines";
 import { shownPanels } from "../plots/plots";
@@ -98,8 +99,7 @@ function Timeline() {
   const end = plannedEnd.value;
   const share = (t: number) => `${end > 0 ? Math.min(100, (t / end) * 100) : 0}%`;
   const running = activity.value === "running" && showProgress.value;
-  const rollout = shownRun.value;
-  const failed = rollout && rollout.outcome !== "success";
+  const failed = hasFailed(shownRun.value);
   const at = (event: PointerEvent) => {
     const rect = (event.currentTarget as HTMLElement).getBoundingClientRect();
     playing.value = false;
