@@ -41,8 +41,11 @@ def events(api: httpx.Client, job: str, **headers: str) -> list[tuple[int, dict[
                 key, _, value = line.partition(": ")
                 block[key] = value
             elif block:
-                assert block["event"] == "job"
-                found.append((int(block["id"]), json.loads(block["data"])))
+                if block["event"] == "job":
+                    found.append((int(block["id"]), json.loads(block["data"])))
+                else:
+                    assert block["event"] == "series"
+                    assert "id" not in block
                 block = {}
     return found
 

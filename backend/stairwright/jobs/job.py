@@ -9,6 +9,8 @@ from typing import Any, Literal
 
 from stairwright.storage.jobs import JobRecord
 
+from .live import LiveSeries
+
 State = Literal["queued", "running", "done", "failed", "cancelled"]
 FINISHED = frozenset({"done", "failed", "cancelled"})
 _LEAST_STEP = 0.005  # of progress that is worth an event
@@ -24,6 +26,7 @@ class Job:
         self.progress = 0.0
         self.result: str | None = None
         self.error: Mapping[str, Any] | None = None
+        self.live: LiveSeries | None = None  # while it runs
         self.revision = 1
         self._started: float | None = None
         self._changed = asyncio.Event()
@@ -80,6 +83,7 @@ class Job:
         if state == "done":
             self.progress = 1.0
         self._notify()
+        self.live = None
 
     def _notify(self) -> None:
         self.revision += 1

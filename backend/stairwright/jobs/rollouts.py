@@ -18,6 +18,7 @@ from .engine import rollout_engine
 from .failures import problem, problem_of
 from .gauge import Gauge
 from .job import Job
+from .live import LiveSeries
 from .planning import shelve_plan
 from .pool import WorkerPool
 from .questions import PlanQuestion, RolloutQuestion
@@ -38,6 +39,7 @@ class Run:
     question: RolloutQuestion
     owner: str
     gauge: Gauge
+    live: LiveSeries
     jobs: list[Job] = field(default_factory=list)
     task: asyncio.Task[None] | None = None
     started: bool = False
@@ -78,11 +80,12 @@ class Rollouts:
         run = self._runs.get(question.key)
         if run is None:
             self.queue.check()
-            run = Run(question, owner, Gauge.create())
+            run = Run(question, owner, Gauge.create(), LiveSeries())
             self._runs[question.key] = run
             run.task = asyncio.create_task(self._carry_out(run))
         elif run.started:
             job.start()
+        job.live = run.live
         run.jobs.append(job)
 
     async def get(self, job_id: str) -> Job | None:
@@ -159,7 +162,12 @@ class Rollouts:
     async def _simulate(self, run: Run) -> Entry:
         folder = str(self._store.artefacts.folder)
         product = await self._pool.run(
-            work.simulate, run.question.data, folder, run.gauge.path, deadline=self._deadline
+            work.simulate,
+            run.question.data,
+            folder,
+            run.gauge.path,
+            run.live.path,
+            deadline=self._deadline,
         )
         return await asyncio.to_thread(self._shelve, run.question, product)
 

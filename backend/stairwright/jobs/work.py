@@ -19,6 +19,7 @@ from stairwright.robot.description import Robot
 from stairwright.storage.artefacts import Artefacts
 
 from .gauge import Gauge
+from .live import Broadcast
 
 if TYPE_CHECKING:
     from stairwright.planning.plan import Plan
@@ -75,11 +76,12 @@ def _keep_plan(plan: Plan, artefacts: str) -> Product:
     return Product(plan.id, digest, len(content), summary, content)
 
 
-def simulate(question: Question, artefacts: str, gauge_path: str) -> Product:
+def simulate(question: Question, artefacts: str, gauge_path: str, live_path: str) -> Product:
     """Roll a plan out.
 
     `question` has friction, controller and seed, and either the plan's digest as ``plan_digest``,
-    or the whole ``plan``, or what `solve` takes as ``ask``.
+    or the whole ``plan``, or what `solve` takes as ``ask``. The series goes to the file at
+    `live_path` while it grows.
 
     Raises:
         InputError: If a value is bad or the plan has nothing that could be carried out.
@@ -101,6 +103,7 @@ def simulate(question: Question, artefacts: str, gauge_path: str) -> Product:
         controller=question["controller"] or None,
         seed=question["seed"],
         progress=progress,
+        observe=Broadcast(live_path),
     )
     content = run.model_dump_json().encode()
     digest = Artefacts(Path(artefacts)).put(content)

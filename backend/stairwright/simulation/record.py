@@ -56,22 +56,27 @@ class Recorder:
         self._target.append(target[: PITCH + 1].copy())
         self._places.append(places.copy())
 
-    def series(self) -> Series:
-        """The samples up to the first that is not finite."""
-        qpos, qvel = np.array(self._qpos), np.array(self._qvel)
-        torque, target = np.array(self._torque), np.array(self._target)
-        contacts, places = np.array(self._contacts), np.array(self._places)
+    def __len__(self) -> int:
+        """How many samples there are."""
+        return len(self._time)
+
+    def series(self, first: int = 0, stride: int = 1) -> Series:
+        """Every `stride`-th sample from `first` on, up to the first that is not finite."""
+        part = slice(first, None, stride)
+        qpos, qvel = np.array(self._qpos[part]), np.array(self._qvel[part])
+        torque, target = np.array(self._torque[part]), np.array(self._target[part])
+        contacts, places = np.array(self._contacts[part]), np.array(self._places[part])
         rows = np.column_stack([qpos, qvel, torque, contacts, places])
         bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
         n = int(bad[0]) if len(bad) else len(rows)
         qpos, qvel, torque, target = qpos[:n], qvel[:n], torque[:n], target[:n]
-        clock = np.array(self._clock)[:n]
+        clock = np.array(self._clock[part])[:n]
         w, x, y, z = qpos[:, 3:7].T
         pitch = np.arctan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y))
         # Sensors report the force on the ground; turn it into the force on the wheel.
         forces = -contacts[:n, : 4 * len(LEGS)].reshape(n, 4, 4)[:, :, [1, 3]]
         return Series(
-            time=np.array(self._time)[:n],
+            time=np.array(self._time[part])[:n],
             base_position=qpos[:, :3],
             base_quaternion=qpos[:, 3:7],
             q=qpos[:, 7:],

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import AsyncIterator
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Header, Path, Response
+from fastapi import APIRouter, Depends, Header, Path, Query, Response
 from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
 from starlette.responses import StreamingResponse
 
@@ -14,6 +15,14 @@ from stairwright.api.bodies import JobDocument
 from stairwright.api.deps import Service
 from stairwright.api.problems import describe, not_found
 from stairwright.jobs.job import Job
+from stairwright.jobs.live import EVERY, LiveSeries
+
+EVENTS = """Events named `job`, each with the job as JSON and its revision as the event's id; and,
+while a rollout runs, events named `series` without an id, about ten a second, each with the samples
+that are new since the last one: `{"from": number of the first, "time": [n], "pitch": [n],
+"pitch_desired": [n], "progress": [n], "q": [n][12], "q_desired": [n][12],
+"base_position": [n][3], "base_quaternion": [n][4]}`, at 25 samples a simulated second, rounded to
+1e-5. A stream that is opened late or again begins with all samples so far."""
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 
@@ -73,17 +82,19 @@ async def cancel_job(services: Service, job: FoundJob) -> JobDocument:
     response_class=Response,
     responses={
         200: {
-            "description": "Events named `job`, each with the job as JSON",
-            "content": {"text/event-stream": {}},
+            "description": EVENTS,
+            "content": {"text/event-stream": {"schema": {"type": "string"}}},
         },
         204: {"description": "Nothing will change after the event that was seen last"},
         **describe(404),
     },
 )
 async def job_events(
-    job: FoundJob, last_event_id: Annotated[str | None, Header(max_length=20)] = None
+    job: FoundJob,
+    last_event_id: Annotated[str | None, Header(max_length=20)] = None,
+    series: Annotated[bool, Query(description="events named `series` as well")] = True,
 ) -> Response:
-    """The job now and at every change until it is finished."""
+    """The job now and at every change until it is finished, and its series as it grows."""
     seen = 0
     if last_event_id and last_event_id.isascii() and last_event_id.isdigit():
         seen = int(last_event_id)
@@ -91,17 +102,28 @@ async def job_events(
         return Response(status_code=204)  # tells an EventSource not to come back
     headers = {"cache-control": "no-store", "x-accel-buffering": "no"}
     # FastAPI's own event streams check nothing before the answer has begun; this one has.
-    stream = _events(job, seen if seen < job.revision else 0)
+    stream = _events(job, seen if seen < job.revision else 0, job.live if series else None)
     return StreamingResponse(stream, headers=headers, media_type="text/event-stream")
 
 
-async def _events(job: Job, seen: int) -> AsyncIterator[bytes]:
-    changes = job.changes(seen)
+async def _events(job: Job, seen: int, live: LiveSeries | None) -> AsyncIterator[bytes]:
+    changes, offset = job.changes(seen), 0
+    look_every = QUIET if live is None else EVERY
+    spoken = time.monotonic()
     while True:
         following = asyncio.ensure_future(anext(changes, None))
         try:
-            while not (await asyncio.wait({following}, timeout=QUIET))[0]:
-                yield KEEPALIVE_COMMENT
+            done: set[asyncio.Future[int | None]] = set()
+            while not done:
+                done, _ = await asyncio.wait({following}, timeout=look_every)
+                chunks, offset = ([], 0) if live is None else live.after(offset)
+                for chunk in chunks:
+                    yield format_sse_event(data_str=chunk.decode(), event="series")
+                if chunks or done:
+                    spoken = time.monotonic()
+                elif time.monotonic() - spoken >= QUIET:
+                    spoken = time.monotonic()
+                    yield KEEPALIVE_COMMENT
         except BaseException:
             following.cancel()
             raise
