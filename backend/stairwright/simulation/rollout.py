@@ -53,6 +53,7 @@ def rollout(
     disturbance: Mapping[str, Any] | Disturbance | None = None,
     record_hz: float = 100.0,
     keep_plan: bool = True,
+    observe: Callable[[Recorder], None] | None = None,
 ) -> Rollout:
     """Simulate a plan.
 
@@ -65,6 +66,7 @@ def rollout(
         disturbance: Deviations from what the plan believes, see `Disturbance`.
         record_hz: Rate of the recorded series.
         keep_plan: Embed the plan in the result.
+        observe: Called as often as `progress` with the record so far.
 
     Raises:
         InputError: If an argument is bad or the plan has no poses.
@@ -81,7 +83,7 @@ def rollout(
     if not 1.0 <= record_hz <= control_hz:
         raise InputError(f"must be between 1 and {control_hz:g}", ("record_hz",))
     run = _Run(plan, float(truth), settings, deviations, int(seed), record_hz)
-    return run.result(run.simulate(progress), keep_plan)
+    return run.result(run.simulate(progress, observe), keep_plan)
 
 
 class _Run:
@@ -144,7 +146,11 @@ class _Run:
             qpos[2] += lift
             mujoco.mj_forward(self.model, self.data)
 
-    def simulate(self, progress: Callable[[float], None] | None) -> Ending:
+    def simulate(
+        self,
+        progress: Callable[[float], None] | None,
+        observe: Callable[[Recorder], None] | None = None,
+    ) -> Ending:
         """Run the loop to its end."""
         watch, begin = ProgressWatch(), time.perf_counter()
         steps, settled = 0, 0
@@ -156,6 +162,8 @@ class _Run:
             done = (self.clock[0] - self.track.start) / total
             if progress is not None:
                 progress(min(1.0, 0.999 * done))
+            if observe is not None:
+                observe(self.recorder)
             if cause:
                 break
             if done >= 1.0 - 1e-9:
