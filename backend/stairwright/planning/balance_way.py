@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from stairwright.terrain.wheel_path import WheelPath
 
-from .supports import support
+from .sqp.cells import make_course
+from .sqp.places import rooms
 
 Floats = NDArray[np.float64]
 
@@ -23,13 +24,11 @@ def com_ways(path: WheelPath, friction: float, wheels: Floats) -> tuple[Floats, 
         friction: Between wheels and terrain.
         wheels: (n, 2) arc lengths of front and rear wheels.
     """
-    low, high = np.empty(len(wheels)), np.empty(len(wheels))
-    for i, (front, rear) in enumerate(wheels):
-        a, b = support(path, float(front), float(rear)).com_interval(friction)
-        room = min(ROOM, (b - a) / 2)
-        # Where no CoM is held at all (both wheels on one wall), moving it is of no use.
-        low[i], high[i] = (a + room, b - room) if a <= b else (-np.inf, np.inf)
-    return low, high
+    a, b = rooms(make_course(path), wheels, friction).T
+    held = a <= b
+    room = np.minimum(ROOM, np.where(held, b - a, 0.0) / 2)
+    # Where no CoM is held at all (both wheels on one wall), moving it is of no use.
+    return np.where(held, a + room, -np.inf), np.where(held, b - room, np.inf)
 
 
 def eased_shift(progress: Floats, com: Floats, low: Floats, high: Floats) -> Floats:

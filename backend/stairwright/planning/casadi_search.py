@@ -16,8 +16,8 @@ from stairwright.terrain.wheel_path import WheelPath
 from .nlp import Layout
 from .pose_search import TRIES, Found, Place, PoseSearch
 from .solver import Bounds, Solution, pose_solver
+from .sqp.places import room
 from .sqp.search import ENOUGH, WANTED, Rules
-from .supports import support
 from .terrain_window import SIZES, cell_vector, cells, curve_window
 from .weights import CriticalWeights
 
@@ -128,18 +128,18 @@ class CasadiSearch(PoseSearch):
         x_c, z_c, pitch = (np.asarray(value) for value in x[:3])
         frames = kinematics.forward(self.robot, x_c, z_c, pitch, x[3:7])
         com = float(kinematics.com(self.robot, x_c, z_c, frames)[0])
-        low, high = support(self.path, x[7], x[8]).com_interval(self.friction)
+        low, high = room(self.course, x[7], x[8], self.friction)
         # Just after the first pose the face alone carries the front wheel; on the way down it still
         # does just before the second one, and there the CoM has the least time to move on.
         if place.ahead or not place.climbs:
             on_face = x[7] + _FACE if place.ahead else place.face
-            a, b = support(self.path, on_face, x[8]).com_interval(self.friction)
+            a, b = room(self.course, on_face, x[8], self.friction)
             if max(low, a) <= min(high, b):
                 low, high = max(low, a), min(high, b)
         if low > high:
             return 0.0, -np.inf
-        room = min(WANTED, (high - low) / 2)
-        wanted = min(max(com, low + room), high - room)
+        spare = min(WANTED, (high - low) / 2)
+        wanted = min(max(com, low + spare), high - spare)
         return wanted - com, min(com - low, high - com)
 
 

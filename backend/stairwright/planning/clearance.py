@@ -34,7 +34,7 @@ def clearance(
         q: (4,) planar joints.
     """
     segments, radii = bodies(robot, trunk, q)
-    best, at_x, at_z = _least(np.ascontiguousarray(vertices), segments, radii)
+    best, at_x, at_z = least_clearance(np.ascontiguousarray(vertices), segments, radii)
     return float(best), np.array([at_x, at_z])
 
 
@@ -97,7 +97,8 @@ def _segments_apart(a: Floats, b: Floats, c: Floats, d: Floats) -> float:
 
 
 @nb.njit(cache=True)
-def _least(p: Floats, segments: Floats, radii: Floats) -> tuple[float, float, float]:
+def least_clearance(p: Floats, segments: Floats, radii: Floats) -> tuple[float, float, float]:
+    """Least distance of `bodies` from the profile `p`, and where (x, z)."""
     best, at_x, at_z = _FAR, np.nan, np.nan
     for k in range(len(segments)):
         a, b, r = segments[k, 0], segments[k, 1], radii[k]

@@ -23,7 +23,7 @@ from .path.course import NoStand, Stand, find_stands, stand
 from .plan import Plan, Pose, Problem
 from .pose_locations import Obstacle, find_obstacles, front_places
 from .pose_search import Found, Place, PoseSearch
-from .poses import complete_pose
+from .poses import PoseWriter
 from .solver import now
 from .timing import pose_times
 from .weights import CriticalWeights
@@ -179,17 +179,9 @@ def _poses(search: PoseSearch, knots: list[_Knot], speed: float) -> list[Pose]:
     wheels = np.array([knot.wheels for knot in knots])
     times = pose_times(wheels, speed)
     progress = wheels.mean(axis=1) - wheels[0].mean()
+    writer = PoseWriter(search.robot, search.path, search.friction)
     return [
-        complete_pose(
-            search.robot,
-            search.path,
-            search.friction,
-            knot.trunk,
-            knot.wheels,
-            q=knot.joints,
-            progress=float(progress[i]),
-            time=float(times[i]),
-        )
+        writer.write(knot.trunk, knot.wheels, knot.joints, float(progress[i]), float(times[i]))
         for i, knot in enumerate(knots)
     ]
 

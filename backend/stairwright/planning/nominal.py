@@ -16,7 +16,7 @@ from .assembly import assemble
 from .diagnosis import no_stand
 from .path.course import NoStand, find_stands
 from .plan import Limit, Plan, Pose, Problem
-from .poses import complete_pose
+from .poses import PoseWriter
 from .solver import now
 from .timing import pose_times
 from .weights import NominalWeights
@@ -117,16 +117,14 @@ def _poses(
     hips = np.array([robot.hips.front, robot.hips.rear]).mean(axis=0)
     up = kinematics.rotate(pitch, np.tile([-hips[0], drop - hips[1]], (len(pitch), 1)))
     trunk = (front + rear) / 2 + up
+    writer = PoseWriter(robot, path, friction)
     return [
-        complete_pose(
-            robot,
-            path,
-            friction,
+        writer.write(
             (float(trunk[i, 0]), float(trunk[i, 1]), float(pitch[i])),
             (float(wheels[i, 0]), float(wheels[i, 1])),
-            q=standing,
-            progress=float(progress[i]),
-            time=float(times[i]),
+            standing,
+            float(progress[i]),
+            float(times[i]),
         )
         for i in range(len(wheels))
     ]

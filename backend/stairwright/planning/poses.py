@@ -4,110 +4,143 @@ from __future__ import annotations
 
 import math
 
+import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
-from stairwright.terrain.wheel_path import WheelPath
+from stairwright.statics.margin import friction_needed
+from stairwright.terrain.wheel_path import WheelPath, curve_at
 
-from .clearance import clearance
+from .clearance import least_clearance
 from .plan import Margins, Pose
-from .supports import Support, contact_forces, support, torque_margin, weight_of
+from .sqp.cells import Course, make_course
+from .sqp.places import CONTACTS, contacts, room
+from .sqp.search import com_x, com_z
+from .sqp.state import HIP, POINTS, Body, make_body, new_state, place, stand_on
+from .supports import contact_forces, gentlest_forces, torque_margin, weight_of
 
 Floats = NDArray[np.float64]
 
 WORST = -1e3  # written where a margin has no finite value: nothing holds the robot there
+_SNAP = 1e-6  # rad; a joint that far beyond its limit is put onto it
+_Q, _WHEELS, _CONTACTS, _FORCES, _COM, _MARGINS, _RECORD = 0, 4, 8, 12, 16, 18, 22
 
 
-def complete_pose(
-    robot: Robot,
-    path: WheelPath,
-    friction: float,
-    trunk: tuple[float, float, float],
-    wheel_progress: tuple[float, float],
-    *,
-    q: Floats | None = None,
-    progress: float = 0.0,
-    time: float = 0.0,
-) -> Pose:
-    """The pose document of a trunk pose with the wheels at places of the wheel-centre curve.
+class PoseWriter:
+    """Completes poses of one robot on one terrain."""
+
+    def __init__(self, robot: Robot, path: WheelPath, friction: float) -> None:
+        self._body, self._course = make_body(robot), make_course(path)
+        self._friction, self._weight = friction, weight_of(robot)
+        self._points = robot.collision_points.count
+
+    def write(
+        self,
+        trunk: tuple[float, float, float],
+        wheel_progress: tuple[float, float],
+        q: Floats,
+        progress: float,
+        time: float,
+    ) -> Pose:
+        """The pose document of a trunk pose with the wheels at places of the wheel-centre curve.
+
+        Args:
+            trunk: x, z [m] and pitch [rad].
+            wheel_progress: Arc lengths of the front and the rear wheels [m].
+            q: (4,) planar joints, which count where a wheel is out of reach.
+            progress: Mean arc length since the start [m].
+            time: Planned time since the start [s].
+        """
+        record, points = np.empty(_RECORD), np.empty((self._points, 2))
+        y = np.array([*trunk, *wheel_progress])
+        _measure(self._body, self._course, self._friction, self._weight, y, q, record, points)
+        r = record.tolist()
+        return Pose(
+            progress=progress,
+            time=time,
+            x_c=float(trunk[0]),
+            z_c=float(trunk[1]),
+            pitch=float(trunk[2]),
+            q=tuple(r[_Q:_WHEELS]),
+            wheels=_pairs(r[_WHEELS:_CONTACTS]),
+            wheel_progress=(float(wheel_progress[0]), float(wheel_progress[1])),
+            contacts=_pairs(r[_CONTACTS:_FORCES]),
+            com=(r[_COM], r[_COM + 1]),
+            collision_points=[(x, z) for x, z in points.tolist()],
+            forces=_pairs(r[_FORCES:_COM]),
+            margins=Margins(
+                clearance=r[_MARGINS],
+                com=_finite(r[_MARGINS + 1]),
+                friction=_finite(r[_MARGINS + 2]),
+                torque=_finite(r[_MARGINS + 3]),
+            ),
+        )
+
+
+@nb.njit(cache=True)
+def _measure(
+    body: Body, course: Course, friction: float, weight: float, y: Floats, q: Floats,
+    record: Floats, collision: Floats,
+) -> None:  # fmt: skip
+    """Fill the numbers of one pose.
 
     Args:
-        robot: The robot.
-        path: Wheel-centre curve of the terrain.
+        body: The robot.
+        course: The terrain.
         friction: Between wheels and terrain.
-        trunk: x, z [m] and pitch [rad].
-        wheel_progress: Arc lengths of the front and the rear wheels [m].
-        q: (4,) planar joints; found by inverse kinematics if left out. They count where a wheel is
-            out of reach.
-        progress: Mean arc length since the start [m].
-        time: Planned time since the start [s].
+        weight: Of the robot [N].
+        y: (5,) x, z, pitch, arc lengths of front and rear wheels.
+        q: (4,) joints where a wheel is out of reach.
+        record: (_RECORD,) joints, wheel centres, contacts, forces, CoM, margins.
+        collision: (n, 2) collision points.
     """
-    x, z, pitch = (np.asarray(value, float) for value in trunk)
-    wheels = path.centres(np.array(wheel_progress))
-    joints = kinematics.inverse(robot, x, z, pitch, wheels)
-    if q is not None:
-        joints = np.where(np.isfinite(joints), joints, q)
-    joints = _snap(robot, joints)
-    frames = kinematics.forward(robot, x, z, pitch, joints)
-    com = kinematics.com(robot, x, z, frames)
-    held = support(path, *wheel_progress)
-    normals = path.normals(np.array(wheel_progress))
-    contacts = path.contacts(np.array(wheel_progress))
-    forces = contact_forces(weight_of(robot), com[None, 0], contacts[None], normals[None])[0]
-    return Pose(
-        progress=progress,
-        time=time,
-        x_c=float(x),
-        z_c=float(z),
-        pitch=float(pitch),
-        q=(float(joints[0]), float(joints[1]), float(joints[2]), float(joints[3])),
-        wheels=_pairs(frames.wheels),
-        wheel_progress=(float(wheel_progress[0]), float(wheel_progress[1])),
-        contacts=_pairs(contacts),
-        com=(float(com[0]), float(com[1])),
-        collision_points=[
-            (float(px), float(pz))
-            for px, pz in kinematics.collision_points(robot, x, z, pitch, joints)
-        ],
-        forces=_pairs(forces),
-        margins=margins(robot, path, friction, trunk, joints, held, frames, float(com[0])),
-    )
+    st = new_state(body, False)
+    place(body, course, y, st)
+    stand_on(body, q, _SNAP, st)
+    record[_Q:_WHEELS] = st.q
+    at, n = np.empty((1, 2, 2)), np.empty((1, 2, 2))
+    for leg in range(2):
+        x, z, nx, nz = curve_at(course.pieces, course.radius, y[3 + leg])
+        at[0, leg, 0], at[0, leg, 1] = x - course.radius * nx, z - course.radius * nz
+        n[0, leg, 0], n[0, leg, 1] = nx, nz
+    centre = com_x(body, st)
+    record[_WHEELS:_CONTACTS] = st.points[HIP + 4 : HIP + 6].ravel()
+    record[_CONTACTS:_FORCES] = at.ravel()
+    record[_FORCES:_COM] = contact_forces(weight, np.array([centre]), at, n).ravel()
+    record[_COM], record[_COM + 1] = centre, com_z(body, st)
+    collision[:] = st.points[POINTS:]
+
+    points, normals = np.empty((CONTACTS, 2)), np.empty((CONTACTS, 2))
+    owner, forces = np.empty(CONTACTS, np.int64), np.empty((CONTACTS, 2))
+    count = contacts(course, y[3], y[4], points, normals, owner)
+    low, high = room(course, y[3], y[4], friction)
+    record[_MARGINS] = _clearance(body, course, st.points)
+    record[_MARGINS + 1] = -np.inf if low > high else min(centre - low, high - centre)
+    record[_MARGINS + 2] = friction - friction_needed(points, normals, count, centre)
+    record[_MARGINS + 3] = -np.inf
+    if gentlest_forces(points, normals, owner, count, centre, forces):
+        record[_MARGINS + 3] = torque_margin(
+            body.planar, st.points[HIP:POINTS], points, normals, owner, count, weight * forces
+        )
 
 
-def margins(
-    robot: Robot,
-    path: WheelPath,
-    friction: float,
-    trunk: tuple[float, float, float],
-    q: Floats,
-    held: Support,
-    frames: kinematics.Frames,
-    com_x: float,
-) -> Margins:
-    """All margins of one pose; the arguments are those of `complete_pose` and what it derived."""
-    forces = held.forces(weight_of(robot), com_x)
-    torque = WORST if forces is None else torque_margin(robot, frames, held, forces)
-    return Margins(
-        clearance=clearance(robot, path.vertices, trunk, q)[0],
-        com=_finite(held.com_margin(friction, com_x)),
-        friction=_finite(friction - held.friction_needed(com_x)),
-        torque=torque,
-    )
-
-
-def _snap(robot: Robot, q: Floats) -> Floats:
-    """Joints with a rounding error beyond a limit put onto it."""
-    limits = kinematics.limits(robot)
-    inside = np.clip(q, limits[:, 0], limits[:, 1])
-    return np.where(np.abs(q - inside) < 1e-6, inside, q)
+@nb.njit(cache=True)
+def _clearance(body: Body, course: Course, points: Floats) -> float:
+    """Least distance of trunk and links from the terrain [m]."""
+    segments, radii = np.empty((8, 2, 2)), np.zeros(8)
+    for k in range(4):
+        segments[k, 0], segments[k, 1] = points[k], points[(k + 1) % 4]
+        leg, upper = k // 2, k % 2 == 0
+        a = HIP + leg if upper else HIP + 2 + leg
+        segments[4 + k, 0], segments[4 + k, 1] = points[a], points[a + 2]
+        radii[4 + k] = body.planar.thigh_radius if upper else body.planar.calf_radius
+    return least_clearance(course.vertices, segments, radii)[0]
 
 
 def _finite(value: float) -> float:
     return max(value, WORST) if math.isfinite(value) else WORST
 
 
-def _pairs(rows: Floats) -> tuple[tuple[float, float], tuple[float, float]]:
-    (a, b), (c, d) = rows
-    return (float(a), float(b)), (float(c), float(d))
+def _pairs(row: list[float]) -> tuple[tuple[float, float], tuple[float, float]]:
+    return (row[0], row[1]), (row[2], row[3])

@@ -1,107 +1,92 @@
-"""Where the wheels touch, and what the ground can hold there: margins of one pose."""
+"""What the ground's forces ask of the legs: gentlest equilibrium, static torques (numba)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
 
+import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.robot.description import Robot
-from stairwright.robot.kinematics import Frames
-from stairwright.statics.contact import GRAVITY, com_interval, least_friction
-from stairwright.statics.margin import friction_needed, leg_torques
-from stairwright.terrain.wheel_path import WheelPath
+from stairwright.robot.description import Planar, Robot
+from stairwright.statics.contact import GRAVITY, least_friction
+from stairwright.statics.margin import leg_torques
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
-CORNER = 1.5e-3  # m; a wheel this near to a concave corner touches both faces
+
+def weight_of(robot: Robot) -> float:
+    """Weight of the whole robot [N]."""
+    return robot.mass * GRAVITY
 
 
-@dataclass(frozen=True)
-class Support:
-    """Contacts of one pose: up to two per wheel pair.
+@nb.njit(cache=True)
+def gentlest_forces(
+    points: Floats, normals: Floats, owner: Ints, count: int, com_x: float, forces: Floats
+) -> bool:
+    """Equilibrium with the least friction need; False if there is none.
 
-    Attributes:
+    Of a wheel at a corner one face carries all; of all such choices the gentlest counts.
+
+    Args:
         points: (m, 2) contact points [m].
         normals: (m, 2) unit normals out of the terrain.
         owner: (m,) 0 for the front wheels, 1 for the rear ones.
+        count: Number of contacts.
+        com_x: Centre of mass [m].
+        forces: (m, 2) filled with (tangential, normal) forces, in robot weights.
     """
-
-    points: Floats
-    normals: Floats
-    owner: NDArray[np.int64]
-
-    def com_interval(self, friction: float) -> tuple[float, float]:
-        """Least and largest x of the CoM [m] in equilibrium inside the friction cones."""
-        low, high = com_interval(self.points, self.normals, len(self.points), friction)
-        return float(low), float(high)
-
-    def com_margin(self, friction: float, com_x: float) -> float:
-        """How far the CoM may shift, the smaller way [m]; negative outside, -inf without any."""
-        low, high = self.com_interval(friction)
-        return -np.inf if low > high else min(com_x - low, high - com_x)
-
-    def friction_needed(self, com_x: float) -> float:
-        """Least friction that holds the CoM at `com_x`; inf where none does."""
-        return float(friction_needed(self.points, self.normals, len(self.points), com_x))
-
-    def forces(self, weight: float, com_x: float) -> Floats | None:
-        """Forces (m, 2), x and z [N], of the equilibrium with the least friction need, if any.
-
-        Of a wheel at a corner one face carries all; of all such choices the gentlest counts.
-        """
-        best: tuple[float, Floats] | None = None
-        for front in np.flatnonzero(self.owner == 0):
-            for rear in np.flatnonzero(self.owner == 1):
-                pair = np.array([front, rear])
-                local = np.zeros((2, 2))
-                need = least_friction(self.points[pair], self.normals[pair], com_x, 0.0, local)
-                if np.isfinite(need) and (best is None or need < best[0]):
-                    n = self.normals[pair]
-                    tangents = np.stack([n[:, 1], -n[:, 0]], axis=1)
-                    force = np.zeros_like(self.points)
-                    force[pair] = weight * (local[:, :1] * tangents + local[:, 1:] * n)
-                    best = (need, force)
-        return None if best is None else best[1]
+    pair, n, local = np.empty((2, 2)), np.empty((2, 2)), np.empty((2, 2))
+    best = np.inf
+    forces[:] = 0.0
+    for front in range(count):
+        for rear in range(count):
+            if owner[front] != 0 or owner[rear] != 1:
+                continue
+            pair[0], pair[1] = points[front], points[rear]
+            n[0], n[1] = normals[front], normals[rear]
+            need = least_friction(pair, n, com_x, 0.0, local)
+            if need < best:
+                best = need
+                forces[:] = 0.0
+                forces[front], forces[rear] = local[0], local[1]
+    return math.isfinite(best)
 
 
-def support(path: WheelPath, front: float, rear: float) -> Support:
-    """Contacts with the wheels at arc lengths `front` and `rear`."""
-    points, normals, owner = [], [], []
-    for k, s in enumerate((front, rear)):
-        centre = path.centres(np.array([s]))[0]
-        near = path.corners[np.abs(path.corners - s) < CORNER]
-        places = [s] if len(near) == 0 else [near[0] - 1e-7, near[0] + 1e-7]
-        for normal in path.normals(np.array(places)):
-            points.append(centre - path.radius * normal)
-            normals.append(normal)
-            owner.append(k)
-    return Support(np.array(points), np.array(normals), np.array(owner))
+@nb.njit(cache=True)
+def torque_margin(
+    robot: Planar, skeleton: Floats, points: Floats, normals: Floats, owner: Ints, count: int,
+    forces: Floats,
+) -> float:  # fmt: skip
+    """Limit minus the largest static torque of leg joints and wheels [Nm].
 
-
-def torque_margin(robot: Robot, frames: Frames, held: Support, forces: Floats) -> float:
-    """Limit minus the largest static torque of leg joints and wheels [Nm]."""
-    planar = robot.planar
+    Args:
+        robot: The robot.
+        skeleton: (6, 2) hips, knees and wheel centres; each front, rear [m].
+        points, normals, owner, count: Contacts, see `gentlest_forces`.
+        forces: (m, 2) tangential and normal forces [N].
+    """
     spare = np.inf
     for leg in range(2):
-        mine = held.owner == leg
-        total = forces[mine].sum(axis=0)
-        # One face of a corner carries the wheel: see `Support.forces`.
-        loaded = held.points[mine][np.argmax(np.abs(forces[mine]).sum(axis=1))]
-        hip, knee, wheel = (
-            np.ascontiguousarray(f[leg]) for f in (frames.hips, frames.knees, frames.wheels)
-        )
-        thigh, calf = leg_torques(
-            planar, hip, knee, wheel, loaded, float(total[0]), float(total[1])
-        )
-        spare = min(spare, planar.leg_torque - max(thigh, calf))
-        tangents = np.stack([held.normals[mine, 1], -held.normals[mine, 0]], axis=1)
-        traction = float(np.abs(np.sum(tangents * forces[mine], axis=1).sum()))
-        spare = min(spare, planar.wheel_torque - traction * planar.wheel_radius / 2)
-    return float(spare)
+        fx, fz, traction, most, loaded = 0.0, 0.0, 0.0, -1.0, 0
+        for k in range(count):
+            if owner[k] != leg:
+                continue
+            t, f = forces[k, 0], forces[k, 1]
+            fx += t * normals[k, 1] + f * normals[k, 0]
+            fz += f * normals[k, 1] - t * normals[k, 0]
+            traction += t
+            if abs(t) + abs(f) > most:
+                most, loaded = abs(t) + abs(f), k
+        hip, knee, wheel = skeleton[leg], skeleton[2 + leg], skeleton[4 + leg]
+        thigh, calf = leg_torques(robot, hip, knee, wheel, points[loaded], fx, fz)
+        spare = min(spare, robot.leg_torque - max(thigh, calf))
+        spare = min(spare, robot.wheel_torque - abs(traction) * robot.wheel_radius / 2)
+    return spare
 
 
+@nb.njit(cache=True)
 def contact_forces(weight: float, com_x: Floats, contacts: Floats, normals: Floats) -> Floats:
     """Forces (n, 2, 2) [N] of many poses: wheel pair, then (tangential, normal).
 
@@ -116,17 +101,11 @@ def contact_forces(weight: float, com_x: Floats, contacts: Floats, normals: Floa
     """
     out = np.empty((len(com_x), 2, 2))
     for i in range(len(com_x)):
-        local = np.zeros((2, 2))
-        points, n = np.ascontiguousarray(contacts[i]), np.ascontiguousarray(normals[i])
-        if not np.isfinite(least_friction(points, n, float(com_x[i]), 0.0, local)):
+        points, n = contacts[i], normals[i]
+        if not math.isfinite(least_friction(points, n, com_x[i], 0.0, out[i])):
             gap = max(points[0, 0] - points[1, 0], 1e-6)
-            front = float(np.clip((com_x[i] - points[1, 0]) / gap, 0.0, 1.0))
-            for k, share in enumerate((front, 1.0 - front)):
-                local[k] = -share * n[k, 0], share * max(n[k, 1], 0.0)
-        out[i] = weight * local
-    return out
-
-
-def weight_of(robot: Robot) -> float:
-    """Weight of the whole robot [N]."""
-    return robot.mass * GRAVITY
+            front = min(max((com_x[i] - points[1, 0]) / gap, 0.0), 1.0)
+            for k in range(2):
+                share = front if k == 0 else 1.0 - front
+                out[i, k, 0], out[i, k, 1] = -share * n[k, 0], share * max(n[k, 1], 0.0)
+    return weight * out

@@ -209,6 +209,19 @@ def com_x(body: Body, st: State) -> float:
 
 
 @nb.njit(cache=True)
+def com_z(body: Body, st: State) -> float:
+    """z of the centre of mass of the whole robot [m]."""
+    p = body.planar
+    total = p.trunk_mass * st.y[1]
+    for leg in range(2):
+        hip, knee = st.points[HIP + leg, 1], st.points[KNEE + leg, 1]
+        wheel = st.points[WHEEL + leg, 1]
+        total += p.thigh_mass * (hip + p.thigh_com * (knee - hip)) + p.wheel_mass * wheel
+        total += p.calf_mass * (knee + p.calf_com * (wheel - knee))
+    return float(total / p.mass)
+
+
+@nb.njit(cache=True)
 def com_shift(
     body: Body, course: Course, friction: float, wish: Wish, x: Floats, st: State
 ) -> tuple[float, float]:

@@ -78,6 +78,7 @@ class State(NamedTuple):
         curve: (2, 3) tangent (x, z) and curvature of the wheel-centre curve at the wheels.
         contact: (2,) x of the rear contact, and its derivative by s_rear.
         turns: (4, 5) derivative of the four link angles by y.
+        reached: (2,) 1 where the leg reaches its wheel.
     """
 
     y: Floats
@@ -89,6 +90,7 @@ class State(NamedTuple):
     curve: Floats
     contact: Floats
     turns: Floats
+    reached: Floats
 
 
 @nb.njit(cache=True)
@@ -100,6 +102,7 @@ def new_state(body: Body, links: bool) -> State:
     return State(
         np.zeros(5), np.zeros(5), np.zeros(4), np.zeros((n, 2)), np.zeros((n, ANGLES, 2)),
         np.zeros((6, 2)), np.zeros((2, 3)), np.zeros(2), np.zeros((4, 5)),
+        np.zeros(2),
     )  # fmt: skip
 
 
@@ -131,7 +134,9 @@ def place(body: Body, course: Course, y: Floats, st: State) -> bool:
         dx, dz = wx - hx, wz - hz
         d = math.hypot(dx, dz)
         if not abs(p.thigh - p.calf) + 1e-6 < d < p.thigh + p.calf - 1e-6:
-            return False
+            st.reached[leg] = 0.0
+            continue
+        st.reached[leg] = 1.0
         kx, kz = knee_point(dx, dz, p.thigh, p.calf, limb.knee)
         st.q[2 * leg] = thigh_joint(kx, kz, y[2], limb)
         st.q[2 * leg + 1] = calf_joint(dx, dz, p.thigh, p.calf, limb.knee)
@@ -149,6 +154,8 @@ def place(body: Body, course: Course, y: Floats, st: State) -> bool:
         st.normals[3 + 2 * leg, 0] = (dz - kz) / p.calf
         st.normals[3 + 2 * leg, 1] = -(dx - kx) / p.calf
         _turns(st, leg)
+    if st.reached.sum() < 2.0:
+        return False
     _collision_points(body, st, c, s)
     return True
 
@@ -203,3 +210,36 @@ def _collision_points(body: Body, st: State, c: float, s: float) -> None:
                             st.arms[b, j, i] - st.arms[a, j, i]
                         )
                 k += 1
+
+
+@nb.njit(cache=True)
+def stand_on(body: Body, q: Floats, rounding: float, st: State) -> None:
+    """Set the joints of a placed state: those that reach, else `q`; rounding errors at limits go.
+
+    Points are moved to where the joints put them.
+
+    Args:
+        body: The robot.
+        q: (4,) joints of a leg that does not reach its wheel [rad].
+        rounding: A joint that little beyond its limit is put onto it [rad].
+        st: The state, after `place`.
+    """
+    p = body.planar
+    c, s = math.cos(st.y[2]), math.sin(st.y[2])
+    for leg in range(2):
+        limb = body.front if leg == 0 else body.rear
+        _on_trunk(st, HIP + leg, c * limb.hip_x + s * limb.hip_z, c * limb.hip_z - s * limb.hip_x)
+        angle, at = st.y[2], HIP + leg
+        for link in range(2):
+            k = 2 * leg + link
+            low = limb.thigh_min if link == 0 else limb.calf_min
+            high = limb.thigh_max if link == 0 else limb.calf_max
+            joint = st.q[k] if st.reached[leg] > 0.0 else q[k]
+            inside = min(max(joint, low), high)
+            st.q[k] = inside if abs(joint - inside) < rounding else joint
+            angle += st.q[k]
+            length = p.thigh if link == 0 else p.calf
+            st.points[at + 2, 0] = st.points[at, 0] - length * math.sin(angle)
+            st.points[at + 2, 1] = st.points[at, 1] - length * math.cos(angle)
+            at += 2
+    _collision_points(body, st, c, s)
