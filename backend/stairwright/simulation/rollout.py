@@ -18,6 +18,7 @@ from stairwright.control.settings import ControllerSettings, parse_settings
 from stairwright.documents import content_hash, parse
 from stairwright.errors import InputError
 from stairwright.planning.interpolation import reference
+from stairwright.planning.path.timing import retimed
 from stairwright.planning.plan import Plan
 from stairwright.robot.description import LEGS
 from stairwright.robot.mujoco_model import TIMESTEP, build_spec
@@ -108,9 +109,7 @@ class _Run:
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
         self.dt = CONTROL_STEPS * self.model.opt.timestep
-        self.track: Track = track(
-            reference(plan, joint_rate=None), robot, self.path, plan.friction, settings
-        )
+        self.track: Track = self._track()
         self.limit = 2.5 * self.track.duration + 5.0
         self.sensors = Sensors(disturbance, self.dt, seed)
         self.record = parameters(robot, plan.friction, settings)
@@ -130,6 +129,15 @@ class _Run:
         self.recorder = Recorder(every, self.track, robot.wheel.radius)
         self.wall = 0.0
         self._place()
+
+    def _track(self) -> Track:
+        plan, settings = self.plan, self.settings
+        if plan.method == "path" and settings.form == "contact" and settings.speed is not None:
+            # Another speed keeps what slows a plan down where margins are thin.
+            plan = retimed(plan, settings.speed)
+            settings = settings.model_copy(update={"speed": None})
+        course = reference(plan, joint_rate=None)
+        return track(course, self.robot, self.path, plan.friction, settings)
 
     def _place(self) -> None:
         """Put the robot into the plan's first pose."""

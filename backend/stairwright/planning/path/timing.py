@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.planning.plan import Plan
+from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
+from stairwright.statics.contact import GRAVITY
 
 Floats = NDArray[np.float64]
 
@@ -15,6 +18,11 @@ _ALONE = 1.5  # one wheel may roll this much faster than the speed along the cou
 _ACCELERATION = 0.4  # m/s^2 along the path
 _THIN = 0.03  # m; below this CoM margin the robot slows down
 _SLOWEST = 0.4  # of the wished speed
+_SWAY = 0.35  # of the CoM margin that accelerations may take
+_LEAST_SWAY = 0.004  # m; what they may take where there is hardly any margin
+_TICK = 0.02  # s between samples of the accelerations
+_WINDOW = 0.08  # s; standard deviation of the window that they are averaged over
+_ROUNDS = 6
 
 
 def path_parameter(s: Floats, body: Floats) -> Floats:
@@ -65,4 +73,56 @@ def pose_times(
             node[k] = min(node[k], (node[before] ** 2 + 2 * _ACCELERATION * ahead) ** 0.5)
     mean = np.maximum(0.5 * (node[:-1] + node[1:]), 1e-6)
     steps = np.maximum(least, length / mean)
-    return np.concatenate([[0.0], np.cumsum(steps)])
+    times = np.concatenate([[0.0], np.cumsum(steps)])
+    return _calmed(robot, times, body, q, margin)
+
+
+def retimed(plan: Plan, speed: float) -> Plan:
+    """A path plan's poses at the times that it would have with another wished `speed` [m/s]."""
+    s = np.array([pose.wheel_progress for pose in plan.poses])
+    body = np.array([(pose.x_c, pose.z_c, pose.pitch) for pose in plan.poses])
+    q = np.array([pose.q for pose in plan.poses])
+    margin = np.array([pose.margins.com for pose in plan.poses])
+    times = pose_times(plan.robot_description, s, body, q, margin, speed).tolist()
+    poses = [
+        pose.model_copy(update={"time": time}) for pose, time in zip(plan.poses, times, strict=True)
+    ]
+    timing = plan.timing.model_copy(update={"total": times[-1]})
+    return plan.model_copy(update={"poses": poses, "timing": timing})
+
+
+def _calmed(robot: Robot, times: Floats, body: Floats, q: Floats, margin: Floats) -> Floats:
+    """Times (n,) [s] stretched where accelerations of the CoM would eat up its margin.
+
+    Statically the weight acts at the CoM. While the CoM, `h` above the lower wheel's contact,
+    accelerates by `a`, weight and inertia together act `h a / g` beside it, and balance needs that
+    to stay within the margin as well. Slower by a factor, accelerations fall by its square.
+    """
+    frames = kinematics.forward(robot, body[:, 0], body[:, 1], body[:, 2], q)
+    com = kinematics.com(robot, body[:, 0], body[:, 1], frames)
+    height = com[:, 1] - frames.wheels[..., 1].min(axis=1) + robot.wheel.radius
+    allowed = np.maximum(_SWAY * margin, _LEAST_SWAY)
+    reach = int(4 * _WINDOW / _TICK)
+    window = np.exp(-0.5 * (np.arange(-reach, reach + 1) * _TICK / _WINDOW) ** 2)
+    for _ in range(_ROUNDS):
+        even = np.arange(0.0, times[-1] + _TICK, _TICK)
+        if len(even) < 2 * reach + 3:
+            break
+        x = np.interp(even, times, com[:, 0])
+        padded = np.pad(x, reach, mode="edge")
+        smooth = np.convolve(padded, window / window.sum(), "valid")
+        sway = np.abs(np.gradient(np.gradient(smooth, _TICK), _TICK))
+        sway *= np.interp(even, times, height) / GRAVITY
+        excess = sway / np.interp(even, times, allowed)
+        if excess.max() < 1.05:
+            break
+        factor = np.sqrt(np.maximum(excess, 1.0))
+        around = np.lib.stride_tricks.sliding_window_view(
+            np.pad(factor, reach, mode="edge"), 2 * reach + 1
+        )
+        factor = np.convolve(np.pad(around.max(axis=1), reach, mode="edge"), window, "valid")
+        factor /= window.sum()
+        middle = 0.5 * (times[:-1] + times[1:])
+        steps = np.diff(times) * np.interp(middle, even, factor)
+        times = np.concatenate([[0.0], np.cumsum(steps)])
+    return times
