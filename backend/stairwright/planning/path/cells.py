@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from stairwright.robot.description import Planar
 from stairwright.statics.contact import CAP
 
-from .contacts import GENTLE, lagged_interval, pair_interval
+from .contacts import GENTLE, TOUCH, lagged_interval, pair_interval
 from .ground import Ground
 from .legs import Leg
 from .tables import INF, Floats32, Lattice, LegTable
@@ -38,6 +38,7 @@ class Cells(NamedTuple):
         spans: (n, 6) CoM intervals at friction, at the reserve, with lag [m].
         t0, z0, x0: (n,) lattice index of the window's corner.
         slope: (n,) angle of the line from the rear to the front wheel, upward positive [rad].
+        touch: (samples,) concave corner that a sample touches, -1 where there is none.
     """
 
     front: Ints
@@ -48,6 +49,7 @@ class Cells(NamedTuple):
     z0: Ints
     x0: Ints
     slope: Floats
+    touch: Ints
 
 
 @nb.njit(cache=True)
@@ -72,6 +74,13 @@ def build_cells(
     The front wheel runs from sample `i0` to `i1`.
     """
     n = len(s)
+    touch = np.full(n, -1, np.int32)
+    for i in range(n):
+        k = int(np.searchsorted(corners, s[i]))
+        if k < len(corners) and corners[k] - s[i] <= TOUCH:
+            touch[i] = k
+        elif k > 0 and s[i] - corners[k - 1] <= TOUCH:
+            touch[i] = k - 1
     index = np.full((n, n), -1, np.int32)
     front, rear = np.empty(n * n, np.int32), np.empty(n * n, np.int32)
     k = 0
@@ -111,7 +120,7 @@ def build_cells(
         m += 1
     return Cells(
         front[:m].copy(), rear[:m].copy(), index, spans[:m].copy(),
-        t0[:m].copy(), z0[:m].copy(), x0[:m].copy(), slope[:m].copy(),
+        t0[:m].copy(), z0[:m].copy(), x0[:m].copy(), slope[:m].copy(), touch,
     )  # fmt: skip
 
 

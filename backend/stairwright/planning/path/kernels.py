@@ -1,4 +1,7 @@
-"""Whole-volume operations of the search, as single loops that compilers vectorise."""
+"""Operations of the search on flat volumes, as single loops that compilers vectorise.
+
+Each works on a range of positions: what a cell has reached is a small part of its volume.
+"""
 
 from __future__ import annotations
 
@@ -13,27 +16,29 @@ Bytes = NDArray[np.uint8]
 FAR = np.float32(2.6)  # cost of two lattice steps in one move, in steps
 
 
-@nb.njit(cache=True)
+@nb.njit(cache=True, nogil=True)
 def shift(lat: Lattice, t: int, z: int, x: int) -> int:
     """Flat distance of poses that are (t, z, x) lattice steps apart."""
     return (t * (lat.nz + 4) + z) * lat.row + x
 
 
-@nb.njit(cache=True)
-def gather(volume: Bytes, by: int, out: Bytes) -> None:
-    """out = max(out, volume shifted by `by`); what leaves the volume counts as 0."""
-    n = len(out)
-    a, b = max(0, -by), min(n, n - by)
+@nb.njit(cache=True, nogil=True)
+def gather(volume: Bytes, lo: int, hi: int, by: int, out: Bytes) -> None:
+    """out = max(out, volume shifted by `by`) for what lies in [lo, hi) of `volume`."""
+    a, b = max(0, lo - by), min(len(out), hi - by)
+    if b <= a:
+        return
     src, dst = volume[a + by : b + by], out[a:b]
     for k in range(b - a):
         dst[k] = src[k] if src[k] > dst[k] else dst[k]
 
 
-@nb.njit(cache=True)
-def gather_cost(volume: Floats32, by: int, cost: float, out: Floats32) -> None:
-    """out = min(out, volume shifted by `by` + cost)."""
-    n = len(out)
-    a, b = max(0, -by), min(n, n - by)
+@nb.njit(cache=True, nogil=True)
+def gather_cost(volume: Floats32, lo: int, hi: int, by: int, cost: float, out: Floats32) -> None:
+    """out = min(out, volume shifted by `by` + cost) for what lies in [lo, hi) of `volume`."""
+    a, b = max(0, lo - by), min(len(out), hi - by)
+    if b <= a:
+        return
     src, dst = volume[a + by : b + by], out[a:b]
     add = np.float32(cost)
     for k in range(b - a):
@@ -41,46 +46,57 @@ def gather_cost(volume: Floats32, by: int, cost: float, out: Floats32) -> None:
         dst[k] = v if v < dst[k] else dst[k]
 
 
-@nb.njit(cache=True)
-def _largest(a: Bytes, b: Bytes, o: int) -> None:
-    """b = largest of a within two strides `o`."""
-    n = len(a)
-    s0, s1, s2 = a[0 : n - 4 * o], a[o : n - 3 * o], a[2 * o : n - 2 * o]
-    s3, s4, d = a[3 * o : n - o], a[4 * o : n], b[2 * o : n - 2 * o]
-    for k in range(n - 4 * o):
+@nb.njit(cache=True, nogil=True)
+def reach(lat: Lattice) -> int:
+    """Flat distance that two lattice steps along every axis span."""
+    return 2 * (lat.row * (lat.nz + 4) + lat.row + 1)
+
+
+@nb.njit(cache=True, nogil=True)
+def _largest(a: Bytes, b: Bytes, lo: int, hi: int, o: int) -> None:
+    """b = largest of a within two strides `o`, in [lo, hi)."""
+    lo, hi = max(lo, 2 * o), min(hi, len(a) - 2 * o)
+    if hi <= lo:
+        return
+    s0, s1, s2 = a[lo - 2 * o : hi - 2 * o], a[lo - o : hi - o], a[lo:hi]
+    s3, s4, d = a[lo + o : hi + o], a[lo + 2 * o : hi + 2 * o], b[lo:hi]
+    for k in range(hi - lo):
         u = s0[k] if s0[k] > s1[k] else s1[k]
         v = s3[k] if s3[k] > s4[k] else s4[k]
         w = u if u > v else v
         d[k] = w if w > s2[k] else s2[k]
 
 
-@nb.njit(cache=True)
-def dilate(a: Bytes, b: Bytes, lat: Lattice) -> None:
-    """Largest value within two lattice steps along each axis; the result is in `b`, `a` is spent.
+@nb.njit(cache=True, nogil=True)
+def dilate(a: Bytes, b: Bytes, lo: int, hi: int, lat: Lattice) -> None:
+    """Largest value within two lattice steps along each axis, in [lo, hi).
 
-    Right inside the window; the rim holds scratch.
+    The result is in `b`, `a` is spent; both are zero outside what `a` holds, as far as [lo, hi) and
+    a `reach` beyond. Right inside the window; the rim holds scratch.
     """
-    _largest(a, b, 1)
-    _largest(b, a, lat.row)
-    _largest(a, b, lat.row * (lat.nz + 4))
+    _largest(a, b, lo, hi, 1)
+    _largest(b, a, lo, hi, lat.row)
+    _largest(a, b, lo, hi, lat.row * (lat.nz + 4))
 
 
-@nb.njit(cache=True, fastmath=True)
-def _cheapest(a: Floats32, b: Floats32, o: int, one: float) -> None:
-    """b = least of a within two strides `o` plus what the way costs."""
-    n = len(a)
+@nb.njit(cache=True, fastmath=True, nogil=True)
+def _cheapest(a: Floats32, b: Floats32, lo: int, hi: int, o: int, one: float) -> None:
+    """b = least of a within two strides `o` plus what the way costs, in [lo, hi)."""
+    lo, hi = max(lo, 2 * o), min(hi, len(a) - 2 * o)
+    if hi <= lo:
+        return
     near, far = np.float32(one), np.float32(one) * FAR
-    s0, s1, s2 = a[0 : n - 4 * o], a[o : n - 3 * o], a[2 * o : n - 2 * o]
-    s3, s4, d = a[3 * o : n - o], a[4 * o : n], b[2 * o : n - 2 * o]
-    for k in range(n - 4 * o):
+    s0, s1, s2 = a[lo - 2 * o : hi - 2 * o], a[lo - o : hi - o], a[lo:hi]
+    s3, s4, d = a[lo + o : hi + o], a[lo + 2 * o : hi + 2 * o], b[lo:hi]
+    for k in range(hi - lo):
         u = min(s1[k], s3[k]) + near
         v = min(s0[k], s4[k]) + far
         d[k] = min(s2[k], min(u, v))
 
 
-@nb.njit(cache=True)
-def convolve(a: Floats32, b: Floats32, lat: Lattice, one: float) -> None:
-    """Min-plus convolution with the cost of body motion; the result is in `b`, `a` is spent."""
-    _cheapest(a, b, 1, one)
-    _cheapest(b, a, lat.row, one)
-    _cheapest(a, b, lat.row * (lat.nz + 4), one)
+@nb.njit(cache=True, nogil=True)
+def convolve(a: Floats32, b: Floats32, lo: int, hi: int, lat: Lattice, one: float) -> None:
+    """Min-plus convolution with the cost of body motion, in [lo, hi), as in `dilate`."""
+    _cheapest(a, b, lo, hi, 1, one)
+    _cheapest(b, a, lo, hi, lat.row, one)
+    _cheapest(a, b, lo, hi, lat.row * (lat.nz + 4), one)

@@ -13,12 +13,14 @@ from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
-from .cells import Cells, World, build_cells, volume_size
+from .cells import Cells, World, build_cells
+from .cheapest import cheapest, trace
 from .course import Stand, sample_course, scale, stand_height
+from .flood import flood
 from .ground import Ground
 from .legs import Leg, make_legs
-from .search import FORWARD, MOVES, cheapest, flood, trace
-from .tables import INF, Bounds, Floats32, Lattice, Pulls, hip_grid, on_lattice, trunk_grid
+from .moves import FORWARD, MOVES, Volumes, make_volumes
+from .tables import Bounds, Floats32, Lattice, Pulls, hip_grid, on_lattice, trunk_grid
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -60,7 +62,7 @@ def make_lattice(robot: Robot, pitches: float, fine: float = 1.0) -> Lattice:
         nt=2 * round(8 / fine) + 1,
         nz=round(17 / fine),
         nx=2 * round(13 / fine),
-        row=16 * math.ceil((2 * round(13 / fine) + 6) / 16),
+        row=8 * math.ceil((2 * round(13 / fine) + 6) / 8),
         low=-round(3 / fine),
         half=half,
     )
@@ -165,37 +167,28 @@ class Search:
         w = self._world(com)
         seed: Ints = self._seed(cells, source, self.begin)
         target: Ints = self._seed(cells, goal, self.end)
-        n = len(cells.front)
-        shape = (n, volume_size(lat))
-        qual, width = np.zeros(shape, np.uint8), np.zeros(shape, np.uint8)
-        state, alive = np.zeros(n, np.uint8), np.zeros(n, np.bool_)
+        v = make_volumes(len(cells.front), lat)
         moves = FORWARD
-        flood(w, cells, source, seed, moves, False, qual, state, width, alive)
+        flood(w, cells, v, source, seed, moves)
         if open_end:
-            goal = int(exits[int(np.argmax(width[exits].max(axis=1)))])
-            inside = self._window(width[goal])
-            at = np.unravel_index(int(inside.argmax()), inside.shape)
-            target = np.array([int(k) for k in at], np.int32)
-        best, pose = self._best(self._window(width[goal]), target)
+            goal = int(exits[int(np.argmax(v.best[exits]))])
+            if v.best[goal] > 0:
+                inside = self._window(v.width[v.slot[goal]])
+                at = np.unravel_index(int(inside.argmax()), inside.shape)
+                target = np.array([int(k) for k in at], np.int32)
+        best, pose = self._best(v, goal, target)
         if best == 0 and roll_back:
             moves = len(MOVES)
             for k in range(_SWEEPS):
-                if not flood(w, cells, source, seed, moves, False, qual, state, width, alive):
+                if not flood(w, cells, v, source, seed, moves):
                     break
-                best, pose = self._best(self._window(width[goal]), target)
+                best, pose = self._best(v, goal, target)
                 if best > 0 and k > 1:
                     break
         if best == 0:
-            return Finding(None, None, 0, self._farthest(cells, alive))
+            return Finding(None, None, 0, self._farthest(cells, v))
         if not cheap:
             return Finding(None, None, best, None, moves > FORWARD)
-        rest, alive_back = np.zeros(shape, np.uint8), np.zeros(n, np.bool_)
-        state[~alive] = 2
-        for _ in range(1 if moves == FORWARD else _SWEEPS):
-            if not flood(w, cells, goal, pose, moves, True, qual, state, rest, alive_back):
-                break
-        value = np.full(shape, INF, np.float32)
-        reached = np.zeros(n, np.bool_)
         level = max(1, min(best, 150) if best > 100 else int(0.7 * best))
         pulls = np.array(
             [
@@ -207,15 +200,13 @@ class Search:
         )
         smooth = 0.25 * self.weights.smoothness
         for _ in range(1 if moves == FORWARD else 2 * _SWEEPS):
-            if not cheapest(
-                w, cells, source, seed, moves, smooth, pulls, level, width, rest, value, reached,
-            ):  # fmt: skip
+            if not cheapest(w, cells, v, source, seed, moves, smooth, pulls, level):
                 break
         rows = np.empty((4 * len(self.s) + 400, 5), np.int32)
-        last = self._cheapest_pose(self._window(value[goal]), pose)
-        count = trace(w, cells, source, goal, last, moves, smooth, value, rows)
+        last = self._cheapest_pose(self._window(v.value[v.slot[goal]]), pose)
+        count = trace(w, cells, v, source, goal, last, moves, smooth, rows)
         if count < 0:
-            return Finding(None, None, 0, self._farthest(cells, alive))
+            return Finding(None, None, 0, self._farthest(cells, v))
         rows = rows[:count][::-1]
         s = np.stack([self.s[rows[:, 0]], self.s[rows[:, 1]]], axis=1)
         body = np.stack(
@@ -258,10 +249,12 @@ class Search:
     def _near(pose: Ints) -> tuple[slice, ...]:
         return tuple(slice(max(0, int(v) - 2), int(v) + 3) for v in pose)
 
-    def _best(self, volume: NDArray[np.uint8], target: Ints) -> tuple[int, Ints]:
+    def _best(self, v: Volumes, goal: int, target: Ints) -> tuple[int, Ints]:
         """Best quality near the resting pose `target` at the goal, and that pose."""
+        if v.best[goal] == 0:
+            return 0, target
         part = self._near(target)
-        near = volume[part]
+        near = self._window(v.width[v.slot[goal]])[part]
         if near.size == 0 or near.max() == 0:
             return 0, target
         at = np.unravel_index(int(near.argmax()), near.shape)
@@ -273,8 +266,8 @@ class Search:
         at = np.unravel_index(int(volume[part].argmin()), volume[part].shape)
         return np.array([int(k) + part[m].start for m, k in enumerate(at)], np.int32)
 
-    def _farthest(self, cells: Cells, alive: NDArray[np.bool_]) -> tuple[float, float] | None:
-        found = np.flatnonzero(alive)
+    def _farthest(self, cells: Cells, v: Volumes) -> tuple[float, float] | None:
+        found = np.flatnonzero(v.best)
         if len(found) == 0:
             return None
         sums = self.s[cells.front[found]] + self.s[cells.rear[found]]

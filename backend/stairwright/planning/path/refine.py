@@ -62,7 +62,7 @@ def refine(
         hop = even[1]
         nodes_s = np.stack([np.interp(even, u, s[:, k]) for k in range(2)], axis=1)
         nodes_body = np.stack([np.interp(even, u, body[:, k]) for k in range(3)], axis=1)
-        nodes_s = _smooth(nodes_s, soft * 0.02 * scale(robot) / hop)
+        nodes_s = _smooth(nodes_s, soft * 0.01 * scale(robot) / hop)
         nodes_body = _smooth(nodes_body, soft * 0.05 * scale(robot) / hop)
         if (np.diff(s, axis=0) >= 0).all():
             nodes_s = np.maximum.accumulate(nodes_s, axis=0)

@@ -39,22 +39,28 @@ HOPE = Bounds(trunk=-0.012, links=-0.012, legs=-0.009, reach=-0.006, thigh=-0.06
 
 @dataclass(frozen=True)
 class Rung:
-    """One attempt: lattice refinement, bounds, and whether wheels may roll back."""
+    """One attempt: lattice refinement (above 1: coarser), bounds, and whether wheels may roll back.
+
+    A coarse rung costs a tenth of one at 1 and the polish makes as good a path from it.
+    """
 
     fine: float
     bounds: Bounds
     roll_back: bool = False
 
 
+COARSE = (Rung(2.0, STRICT), Rung(1.7, BOLD))
 LADDER = (
+    *COARSE,
+    Rung(1.7, BOLD, True),
     Rung(1.0, STRICT),
     Rung(1.0, BOLD),
     Rung(1.0, BOLD, True),
-    Rung(0.8, STRICT),
     Rung(0.8, BOLD),
     Rung(0.67, BOLD),
 )
-QUICK = LADDER[:2]  # enough to confirm that a relaxed problem has a plan
+QUICK = COARSE  # enough to confirm that a relaxed problem has a plan
+_THIN = 0.01  # m; a path with a thinner CoM margin is compared with that of the next coarse rung
 
 
 @dataclass(frozen=True)
@@ -65,7 +71,11 @@ class Solved:
     keys: list[int]
     total: float
     certificate: Certificate
-    rung: int
+
+    @property
+    def margin(self) -> float:
+        """Thinnest CoM margin [m]."""
+        return min(pose.margins.com for pose in self.poses)
 
 
 @dataclass(frozen=True)
@@ -113,31 +123,35 @@ class Course:
         )  # fmt: skip
 
     def solve(self, ladder: tuple[Rung, ...] = LADDER) -> Solved | Blocked:
-        """Climb the ladder until a path passes the certificate."""
+        """Climb the ladder until a path passes the certificate and is not needlessly thin."""
         reached: tuple[float, float] | None = None
         opened = False
-        for k, rung in enumerate(ladder):
+        best: Solved | None = None
+        for rung in ladder:
+            if best is not None and rung not in COARSE:
+                break
             finding = self.find(rung.fine, rung.bounds, roll_back=rung.roll_back)
             if finding.s is None:
                 if finding.reached and (reached is None or sum(finding.reached) > sum(reached)):
                     reached = finding.reached
-                if rung.bounds is BOLD and rung.roll_back and not opened:
-                    opened = self.hopeful()
-                    if not opened:
-                        break
+                if rung.roll_back and not opened and not self.hopeful(rung.fine):
+                    break
                 continue
             opened = True
-            solved = self.finish(finding, k)
-            if isinstance(solved, Solved):
-                return solved
-            reached = (float(solved[0]), float(solved[1]))
-        return Blocked(reached, opened)
+            solved = self.finish(finding)
+            if not isinstance(solved, Solved):
+                reached = (float(solved[0]), float(solved[1]))
+            elif best is None or solved.margin > best.margin:
+                best = solved
+            if best is not None and best.margin > _THIN:
+                break
+        return best or Blocked(reached, opened)
 
-    def hopeful(self) -> bool:
+    def hopeful(self, fine: float) -> bool:
         """Whether a search that forgives more than rounding can hide comes through."""
-        return self.find(1.0, HOPE, cheap=False, roll_back=True).quality > 0
+        return self.find(fine, HOPE, cheap=False, roll_back=True).quality > 0
 
-    def finish(self, finding: Finding, rung: int) -> Solved | Floats:
+    def finish(self, finding: Finding) -> Solved | Floats:
         """Polish and certify; where that fails, the pair of arc lengths at the worst place."""
         assert finding.s is not None
         assert finding.body is not None
@@ -155,5 +169,5 @@ class Course:
         )  # fmt: skip
         certificate = certify(plan)
         if certificate.passed:
-            return Solved(poses, keys, total, certificate, rung)
+            return Solved(poses, keys, total, certificate)
         return worst

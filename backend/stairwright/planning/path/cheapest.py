@@ -1,0 +1,211 @@
+"""Second pass of the search: the cheapest way among poses whose best way to them is wide enough."""
+
+from __future__ import annotations
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from .cells import Cells, World, columns, row_start, volume_size
+from .kernels import convolve, gather_cost, reach
+from .moves import FORWARD, MOVES, Volumes, offset, origin
+from .tables import INF, Floats32
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+
+@nb.njit(cache=True, nogil=True)
+def step_cost(w: World, cells: Cells, c: int, m: int) -> float:
+    """Cost of rolling into cell `c` by move `m`: distance, dearer when one wheel rolls alone."""
+    i, j = cells.front[c] - MOVES[m, 0], cells.rear[c] - MOVES[m, 1]
+    length = abs(w.s[cells.front[c]] - w.s[i]) + abs(w.s[cells.rear[c]] - w.s[j])
+    return float(length) * (1.0 if m == 0 else (1.25 if m < FORWARD else 2.5)) / (2.0 * w.lat.step)
+
+
+@nb.njit(cache=True, error_model="numpy", fastmath=True, nogil=True)
+def pose_cost(w: World, cells: Cells, c: int, t: int, z: int, pulls: Floats, row: Floats32) -> bool:
+    """Cost (nx,) of the poses in row (t, z) of cell `c`, INF where impossible; False if all are.
+
+    `pulls`: weights of CoM margin, pitch; nominal height above the wheels' mean [m]; the margin
+    wished for [m].
+    """
+    lat = w.lat
+    fz, rz, tz, sf, sr, st, a, b = columns(w, cells, c, t, z)
+    if b <= a:
+        return False
+    row[:] = INF
+    i, j, tt = cells.front[c], cells.rear[c], cells.t0[c] + t
+    pitch = (tt - lat.pitches // 2) * lat.turn
+    mean = 0.5 * (w.centres[i, 1] + w.centres[j, 1])
+    rise = ((cells.z0[c] + z) * lat.step - mean) / pulls[2] - 1.0
+    lean = pitch + 0.8 * cells.slope[c]
+    base = np.float32(0.075 * pulls[1] * lean * lean + 0.3 * rise * rise)
+    spans = cells.spans[c]
+    lo, hi = np.float32(spans[4]), np.float32(spans[5])
+    rlo, rhi = np.float32(spans[2]), np.float32(spans[3])
+    if spans[2] > spans[3]:
+        rlo = rhi = np.float32(0.5 * (spans[0] + spans[1]))
+    mass = np.float32(1.0 / w.robot.mass)
+    share = np.float32(w.robot.trunk_mass / w.robot.mass)
+    wish, heavy = np.float32(pulls[3]), np.float32(0.25 * pulls[0])
+    worst, zero, half = np.float32(-0.06), np.float32(0.0), np.float32(0.5)
+    step = np.float32(lat.step)
+    first = np.float32((cells.x0[c] + a) * lat.step)
+    fc = w.front_table.cost[i, tt, fz, a + sf : b + sf]
+    fm = w.front_table.moment[i, tt, fz, a + sf : b + sf]
+    rc = w.rear_table.cost[j, tt, rz, a + sr : b + sr]
+    rm = w.rear_table.moment[j, tt, rz, a + sr : b + sr]
+    tc = w.trunk[tt, tz, a + st : b + st]
+    out = row[a:b]
+    for x in range(b - a):
+        e = fc[x] + rc[x] + tc[x]
+        com = share * (first + np.float32(x) * step) + mass * (fm[x] + rm[x])
+        h = max(zero, wish - max(worst, min(com - lo, hi - com))) / wish
+        k = max(zero, wish - max(worst, min(com - rlo, rhi - com))) / wish
+        out[x] = half * e + base + heavy * (h * h + k * k)
+    return True
+
+
+@nb.njit(cache=True, nogil=True)
+def cheapest(
+    w: World,
+    cells: Cells,
+    v: Volumes,
+    source: int,
+    seed: Ints,
+    moves: int,
+    smooth: float,
+    pulls: Floats,
+    level: int,
+) -> bool:
+    """One sweep of the cheapest way from `source` through poses at least `level` wide.
+
+    Args:
+        w: The problem.
+        cells: Its cells.
+        v: Their volumes: `value` is filled.
+        source: Start cell.
+        seed: (3,) lattice pose round which it is entered.
+        moves: How many of `MOVES` are allowed.
+        smooth: Cost of one lattice step of the body.
+        pulls: See `pose_cost`.
+        level: Least width.
+
+    Returns:
+        Whether anything changed.
+    """
+    lat = w.lat
+    size, margin = volume_size(lat), reach(lat)
+    pad, result = np.full(size, INF, np.float32), np.full(size, INF, np.float32)
+    row = np.empty(lat.nx, np.float32)
+    least = np.uint8(level)
+    changed = False
+    for c in range(len(cells.front)):
+        if v.best[c] < least:
+            continue
+        lo, hi = size, 0
+        for m in range(moves):
+            p = origin(cells, c, m)
+            if p >= 0 and v.low[p] < v.high[p]:
+                by = offset(cells, lat, c, p)
+                lo, hi = min(lo, v.low[p] - by), max(hi, v.high[p] - by)
+        if c == source:
+            lo, hi = 0, size
+        lo, hi = max(0, lo - margin), min(size, hi + margin)
+        if max(lo, v.first[c]) >= min(hi, v.last[c]):
+            continue
+        a, b = max(0, lo - margin), min(size, hi + margin)
+        pad[a:b] = INF
+        result[a:b] = INF
+        for m in range(moves):
+            p = origin(cells, c, m)
+            if p >= 0 and v.low[p] < v.high[p]:
+                by, cost = offset(cells, lat, c, p), step_cost(w, cells, c, m)
+                gather_cost(v.value[v.slot[p]], v.low[p], v.high[p], by, cost, pad)
+        convolve(pad, result, lo, hi, lat, smooth)
+        if c == source:
+            for t in range(max(0, seed[0] - 2), min(lat.nt, seed[0] + 3)):
+                for z in range(max(0, seed[1] - 2), min(lat.nz, seed[1] + 3)):
+                    for x in range(max(0, seed[2] - 2), min(lat.nx, seed[2] + 3)):
+                        far = abs(t - seed[0]) + abs(z - seed[1]) + abs(x - seed[2])
+                        result[row_start(lat, t, z) + x] = np.float32(far)
+        slot = v.slot[c]
+        width, value = v.width[slot], v.value[slot]
+        if v.low[c] >= v.high[c]:
+            value[:] = INF
+        lo, hi = max(lo, v.first[c]), min(hi, v.last[c])
+        page = lat.row * (lat.nz + 4)
+        for t in range(max(0, lo // page - 2), min(lat.nt, hi // page - 1)):
+            for z in range(lat.nz):
+                k = row_start(lat, t, z)
+                if k + lat.nx <= lo or k >= hi:
+                    continue
+                p, r, u = width[k : k + lat.nx], result[k : k + lat.nx], value[k : k + lat.nx]
+                some = np.uint8(0)
+                for x in range(lat.nx):
+                    some = p[x] if p[x] > some else some
+                if some < least or not pose_cost(w, cells, c, t, z, pulls, row):
+                    continue
+                for x in range(lat.nx):
+                    if p[x] >= least and r[x] < INF and row[x] < INF:
+                        cost = r[x] + row[x]
+                        if cost < u[x] - np.float32(1e-4):
+                            u[x] = cost
+                            v.low[c] = min(v.low[c], k + x)
+                            v.high[c] = max(v.high[c], k + x + 1)
+                            changed = True
+    return changed
+
+
+@nb.njit(cache=True, nogil=True)
+def trace(
+    w: World,
+    cells: Cells,
+    v: Volumes,
+    source: int,
+    goal: int,
+    pose: Ints,
+    moves: int,
+    smooth: float,
+    out: Ints,
+) -> int:
+    """Follow the costs back from `pose` in `goal`; rows (front, rear, pitch, z, x) into `out`.
+
+    Returns their number (goal first), or -1 if the way does not end within `out`.
+    """
+    lat = w.lat
+    c, t, z, x = goal, pose[0], pose[1], pose[2]
+    price = np.array([2.6, 1.0, 0.0, 1.0, 2.6]) * smooth
+    for n in range(len(out)):
+        out[n, 0], out[n, 1] = cells.front[c], cells.rear[c]
+        out[n, 2] = cells.t0[c] + t - lat.pitches // 2
+        out[n, 3], out[n, 4] = cells.z0[c] + z, cells.x0[c] + x
+        if c == source:
+            return n + 1
+        best, bc, bt, bz, bx = 1e8, -1, 0, 0, 0
+        for m in range(moves):
+            p = origin(cells, c, m)
+            if p < 0 or v.low[p] >= v.high[p]:
+                continue
+            value, cost = v.value[v.slot[p]], step_cost(w, cells, c, m)
+            ot, oz = cells.t0[c] - cells.t0[p], cells.z0[c] - cells.z0[p]
+            ox = cells.x0[c] - cells.x0[p]
+            for dt in range(-2, 3):
+                tt = t + dt + ot
+                for dz in range(-2, 3):
+                    zz = z + dz + oz
+                    if tt < 0 or tt >= lat.nt or zz < 0 or zz >= lat.nz:
+                        continue
+                    for dx in range(-2, 3):
+                        xx = x + dx + ox
+                        if xx < 0 or xx >= lat.nx:
+                            continue
+                        u = value[row_start(lat, tt, zz) + xx] + cost
+                        u += price[dt + 2] + price[dz + 2] + price[dx + 2]
+                        if u < best:
+                            best, bc, bt, bz, bx = u, p, tt, zz, xx
+        if bc < 0:
+            return -1
+        c, t, z, x = bc, bt, bz, bx
+    return -1

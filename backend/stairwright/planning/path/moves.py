@@ -1,0 +1,105 @@
+"""Moves between cells of the search, and the memory of the volumes that they link."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any, NamedTuple
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from .cells import Cells, volume_size
+from .kernels import shift
+from .tables import Floats32, Lattice
+
+Ints = NDArray[np.int32]
+Bytes = NDArray[np.uint8]
+
+# Wheel moves (front, rear); the first three roll forward.
+MOVES = np.array(
+    [[1, 1], [1, 0], [0, 1], [1, -1], [-1, 1], [-1, 0], [0, -1], [-1, -1]], dtype=np.int32
+)
+FORWARD = 3
+
+_KEPT = 64_000_000  # bytes of an array that is kept for the next search of this thread
+
+
+@nb.njit(cache=True, nogil=True)
+def origin(cells: Cells, c: int, m: int) -> int:
+    """The cell that move `m` into `c` comes from, or -1.
+
+    A wheel comes to touch a second face, or leaves it, while the other stands: what carries the
+    robot then changes at a place that the search has judged, not somewhere on a diagonal.
+    """
+    f, r = cells.front[c], cells.rear[c]
+    i, j = f - MOVES[m, 0], r - MOVES[m, 1]
+    if i < 0 or j < 0 or i >= len(cells.number) or j >= len(cells.number):
+        return -1
+    touch = cells.touch
+    if i != f and j != r and (touch[i] != touch[f] or touch[j] != touch[r]):
+        return -1
+    return int(cells.number[i, j])
+
+
+@nb.njit(cache=True, nogil=True)
+def offset(cells: Cells, lat: Lattice, c: int, p: int) -> int:
+    """Flat shift from a pose's place in cell `c` to its place in cell `p`."""
+    return shift(
+        lat, cells.t0[c] - cells.t0[p], cells.z0[c] - cells.z0[p], cells.x0[c] - cells.x0[p]
+    )
+
+
+class Volumes(NamedTuple):
+    """Volumes of the cells that are entered, in the order in which they are.
+
+    Attributes:
+        slot: (n,) row of a cell in the arrays below, -1 where there is none.
+        used: (1,) rows used.
+        dead: (n,) whether a cell has no possible pose.
+        quality: (rows, volume) quality of poses, see `cells.quality`.
+        width: (rows, volume) least quality on the best way to a pose, 0 where there is none.
+        value: (rows, volume) cost of the cheapest way.
+        first, last: (n,) range of positions in `width` that are reached; first >= last: none are.
+        best: (n,) largest width of a cell.
+        low, high: (n,) the same range for `value`.
+    """
+
+    slot: Ints
+    used: Ints
+    dead: NDArray[np.bool_]
+    quality: Bytes
+    width: Bytes
+    value: Floats32
+    first: Ints
+    last: Ints
+    best: Bytes
+    low: Ints
+    high: Ints
+
+
+_memory = threading.local()
+
+
+def _array(name: str, rows: int, columns: int, kind: Any) -> NDArray[Any]:
+    """An uninitialised (rows, columns) array; small ones are used again by later searches."""
+    size = rows * columns
+    if size * np.dtype(kind).itemsize > _KEPT:
+        return np.empty((rows, columns), kind)
+    kept: NDArray[Any] | None = getattr(_memory, name, None)
+    if kept is None or kept.size < size:
+        kept = np.empty(size, kind)
+        setattr(_memory, name, kept)
+    return kept[:size].reshape(rows, columns)
+
+
+def make_volumes(n: int, lat: Lattice) -> Volumes:
+    """Empty volumes for `n` cells; they share memory with earlier ones of this thread."""
+    size = volume_size(lat)
+    return Volumes(
+        np.full(n, -1, np.int32), np.zeros(1, np.int32), np.zeros(n, np.bool_),
+        _array("quality", n, size, np.uint8), _array("width", n, size, np.uint8),
+        _array("value", n, size, np.float32),
+        np.full(n, size, np.int32), np.zeros(n, np.int32), np.zeros(n, np.uint8),
+        np.full(n, size, np.int32), np.zeros(n, np.int32),
+    )  # fmt: skip
