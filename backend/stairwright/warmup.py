@@ -17,7 +17,12 @@ from .library import load_robot, robots
 from .planning.planner import plan
 from .terrain.profile import Terrain
 
-SERVED = ("stairwright.api.server", "stairwright.scene.session", "stairwright.export.formats")
+SERVED = (
+    "uvicorn.main",
+    "stairwright.api.app",
+    "stairwright.scene.session",
+    "stairwright.export.formats",
+)
 _STEP = Terrain(points=[(-1.2, 0.0), (0.0, 0.0), (0.0, 0.1), (1.2, 0.1)])
 _WALL = Terrain(points=[(-1.2, 0.0), (0.0, 0.0), (0.0, 1.3), (1.2, 1.3)])
 

@@ -12,6 +12,7 @@ from collections.abc import Awaitable, Callable
 import pytest
 
 from stairwright.errors import InputError
+from stairwright.jobs import launch
 from stairwright.jobs import pool as pools
 from stairwright.jobs.failures import DeadlineExceeded, WorkerDied
 from stairwright.jobs.pool import WorkerPool
@@ -24,7 +25,7 @@ Story = Callable[[WorkerPool], Awaitable[None]]
 @pytest.fixture(autouse=True)
 def _light_workers(monkeypatch: pytest.MonkeyPatch) -> None:
     """These functions need no kernels: workers start at once."""
-    monkeypatch.setattr(pools, "PRELOAD", "json")
+    monkeypatch.setattr(launch, "PRELOAD", "json")
 
 
 def tell(story: Story, workers: int = 1, limits: Limits | None = None) -> None:

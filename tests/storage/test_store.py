@@ -10,10 +10,13 @@ import time
 from pathlib import Path
 
 import pytest
+from alembic.config import Config
+from alembic.script import ScriptDirectory
 from sqlalchemy import text
 
 from stairwright.errors import InputError
 from stairwright.storage.artefacts import Artefacts
+from stairwright.storage.database import MIGRATIONS, newest_revision
 from stairwright.storage.idempotency import Verdict
 from stairwright.storage.jobs import JobRecord
 from stairwright.storage.store import DATABASE, Store
@@ -163,6 +166,12 @@ def test_the_database_is_migrated_and_logs_ahead(tmp_path: Path) -> None:
     with store.engine.connect() as connection:
         assert connection.execute(text("PRAGMA journal_mode")).scalar() == "wal"
         assert connection.execute(text("SELECT version_num FROM alembic_version")).scalar()
+
+
+def test_files_of_migrations_are_named_by_their_revision() -> None:
+    config = Config()
+    config.set_main_option("script_location", str(MIGRATIONS))
+    assert ScriptDirectory.from_config(config).get_current_head() == newest_revision()
 
 
 def test_a_folder_that_cannot_be_used_is_bad_input(tmp_path: Path) -> None:

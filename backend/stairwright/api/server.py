@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-import uvicorn
+from stairwright.jobs.launch import launch
 
-from . import logs
-from .app import create_app
 from .settings import Settings
 
 
 def serve(host: str | None = None, port: int | None = None) -> int:
     """Serve until interrupted; `host` and `port` win over the environment."""
     settings = Settings.from_env(host=host, port=port)
+    launch()  # gets ready while this process imports what follows
+    import uvicorn
+
+    from . import logs
+    from .app import create_app
+
     logs.configure(settings.log_level)
     uvicorn.run(
         create_app(settings),

@@ -7,11 +7,14 @@ import contextlib
 import logging
 from functools import partial
 
-from stairwright.jobs.failures import problem
+from stairwright.jobs import work
+from stairwright.jobs.engine import planning_engine, rollout_engine
+from stairwright.jobs.failures import Failure, problem
 from stairwright.jobs.planning import Planning
 from stairwright.jobs.pool import WorkerPool
 from stairwright.jobs.rollouts import Rollouts
 from stairwright.jobs.worker import Limits
+from stairwright.library import load_robot, load_terrain, robots, terrains
 from stairwright.storage.store import Store
 
 from .metrics import Metrics
@@ -22,10 +25,22 @@ logger = logging.getLogger(__name__)
 
 COLLECT_EVERY = 3600.0  # s
 SETTLE_EVERY = 2.0  # s
+START_DEADLINE = 300.0  # s; kernels may have to be compiled
+FIRST_SECOND = 1.0  # s
 UPLOAD_MEMORY = 2048  # MiB
 UPLOAD_DEADLINE = 20.0  # s
 EXPORT_DEADLINE = 60.0  # s
 ROLLOUT_NICENESS = 10
+
+
+def _read_what_questions_need() -> None:
+    """Presets and fingerprints of the code, which the first question would wait for."""
+    for name in terrains():
+        load_terrain(name)
+    for name in robots():
+        load_robot(name)
+    planning_engine()
+    rollout_engine()
 
 
 class Services:
@@ -49,6 +64,7 @@ class Services:
         self.uploading = asyncio.Semaphore(1)
         self.sessions = Sessions(settings.session_limit, settings.session_idle)
         self._tasks: list[asyncio.Task[None]] = []
+        self.ready = False  # until a plan can be answered without waiting for workers to start
         self._show_gauges()
 
     @property
@@ -63,14 +79,24 @@ class Services:
         await asyncio.to_thread(self.store.idempotency.release_unfinished)
         if interrupted:
             logger.warning("%d jobs were interrupted by a restart", interrupted)
-        for pool in self.pools:
-            await pool.start()
-        load_scenes()
+        await self.plan_pool.start()
         self._tasks = [
+            asyncio.create_task(self._start_the_rest()),
             asyncio.create_task(self._collect()),
             asyncio.create_task(self._settle()),
             asyncio.create_task(self.sessions.close_idle_forever()),
         ]
+
+    async def _start_the_rest(self) -> None:
+        """What nobody waits for in the first second must not compete with what somebody does."""
+        await asyncio.to_thread(_read_what_questions_need)
+        with contextlib.suppress(Failure):
+            await self.plan_pool.run(work.rehearse, deadline=START_DEADLINE)
+        self.ready = True
+        await asyncio.sleep(FIRST_SECOND)
+        await self.rollout_pool.start()
+        await self.upload_pool.start()
+        load_scenes()
 
     async def stop(self) -> None:
         """End everything in order."""

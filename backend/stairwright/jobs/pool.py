@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-import multiprocessing
 import threading
 from collections.abc import Callable
 from concurrent.futures.process import BrokenProcessPool
@@ -14,6 +13,7 @@ from typing import Any, TypeVar, cast
 
 from pebble import CONSTS, ProcessExpired, ProcessPool
 
+from . import launch
 from .board import Board, carry_out
 from .failures import DeadlineExceeded, WorkerDied
 from .worker import Limits, initialise
@@ -23,7 +23,6 @@ logger = logging.getLogger(__name__)
 
 GRACE = 5.0  # s beyond a deadline after which the pool itself is thought to hang
 CHECK_EVERY = 0.5  # s between looks at idle pools
-PRELOAD = "stairwright.jobs.preload"
 
 
 class WorkerPool:
@@ -120,13 +119,11 @@ class WorkerPool:
     def _new_pool(self) -> ProcessPool:
         CONSTS.sleep_unit = 0.02  # s between looks at deadlines and dead workers
         CONSTS.term_timeout = 0.5  # s from SIGTERM to SIGKILL
-        context = multiprocessing.get_context("forkserver")
-        context.set_forkserver_preload([PRELOAD])
         pool = ProcessPool(
             max_workers=self.workers + self._spares,
             initializer=initialise,
             initargs=[self._limits, self._board.path],
-            context=context,
+            context=launch.context(),
         )
         assert pool.active  # asking starts the workers
         return pool

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import gzip
 import logging
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -14,7 +15,7 @@ import orjson
 
 from stairwright.documents import parse
 from stairwright.errors import InputError
-from stairwright.library import robots
+from stairwright.library import load_robot, robots
 from stairwright.robot.description import Robot
 from stairwright.storage.artefacts import Artefacts
 
@@ -154,17 +155,39 @@ def export(packed: bytes, kind: str, format_name: str) -> bytes:
     return bytes(ROLLOUT_FORMATS[format_name].write(Rollout.model_validate(orjson.loads(content))))
 
 
-def warm() -> None:
-    """Import and load what the first question would otherwise wait for; seconds, not minutes.
+def warm_plans() -> None:
+    """Import and load what the first plan would otherwise wait for."""
+    with _logged():
+        from stairwright.planning.planner import plan
 
-    What fails here is logged only: it will fail again, and be answered, where it is needed.
-    """
-    try:
+        plan(GENTLE, robots()[0], method="path")
+        plan(GENTLE, robots()[0], method="critical")
+
+
+def rehearse() -> None:
+    """A small plan in a worker, so that the first one that counts meets warm memory."""
+    with _logged():
+        _plan(
+            {"terrain": GENTLE, "robot": load_robot(robots()[0]).model_dump(mode="json"),
+             "friction": 0.6, "method": "path", "weights": {}}
+        )  # fmt: skip
+
+
+def warm_rollouts() -> None:
+    """The same for rollouts, and for the other robots."""
+    with _logged():
         from stairwright.planning.planner import plan
         from stairwright.simulation.rollout import rollout
 
         for robot in robots():
             rollout(plan(GENTLE, robot, method="path"))
-        plan(GENTLE, robots()[0], method="critical")
+            plan(GENTLE, robot, method="critical")
+
+
+@contextlib.contextmanager
+def _logged() -> Iterator[None]:
+    """What fails while warming up will fail again, and be answered, where it is needed."""
+    try:
+        yield
     except Exception:
         logging.getLogger(__name__).exception("warming up failed")

@@ -36,7 +36,23 @@ def open_database(path: Path) -> Engine:
     return engine
 
 
+def newest_revision() -> str:
+    """The revision that the code needs: migrations' files begin with theirs."""
+    return max(path.name.split("_")[0] for path in (MIGRATIONS / "versions").glob("[0-9]*_*.py"))
+
+
+def _is_current(engine: Engine) -> bool:
+    """Whether nothing has to be migrated, found out without Alembic, which is slow to import."""
+    with engine.connect() as connection:
+        if not inspect(connection).has_table("alembic_version"):
+            return False
+        found = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalar()
+        return bool(found == newest_revision())
+
+
 def _migrate(engine: Engine) -> None:
+    if _is_current(engine):
+        return
     from alembic import command  # takes a while to import
     from alembic.config import Config
     from alembic.runtime.migration import MigrationContext
@@ -45,9 +61,6 @@ def _migrate(engine: Engine) -> None:
     config = Config()
     config.set_main_option("script_location", str(MIGRATIONS).replace("%", "%%"))
     newest = ScriptDirectory.from_config(config).get_current_head()
-    with engine.connect() as connection:
-        if MigrationContext.configure(connection).get_current_revision() == newest:
-            return
     with engine.connect() as connection:
         # One process migrates; another that starts meanwhile waits here and finds it done.
         connection.exec_driver_sql("BEGIN IMMEDIATE")

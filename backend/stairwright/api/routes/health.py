@@ -9,7 +9,7 @@ from fastapi import APIRouter, Response
 from stairwright import __version__
 from stairwright.api.bodies import Health
 from stairwright.api.deps import Service
-from stairwright.api.problems import describe
+from stairwright.api.problems import Problem, describe
 
 router = APIRouter(tags=["service"])
 metrics_router = APIRouter(include_in_schema=False)
@@ -17,8 +17,11 @@ metrics_router = APIRouter(include_in_schema=False)
 
 @router.get("/healthz", responses=describe(503))
 async def healthz(services: Service) -> Health:
-    """Answers when the service can take requests."""
+    """200 when plans are answered at once; others are answered before that, only later."""
     await asyncio.to_thread(services.store.ready)
+    if not services.ready:
+        soon = {"retry-after": "1"}
+        raise Problem(503, "the workers are starting", kind="starting", headers=soon)
     return Health(version=__version__)
 
 
