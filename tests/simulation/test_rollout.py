@@ -106,6 +106,15 @@ def test_forms_and_solvers_drive_on_flat_ground(flat: Plan, form: str, solver: s
         assert np.abs(native.series.pitch[:n] - run.series.pitch[:n]).max() < 1e-3
 
 
+def test_noise_and_delay_are_the_same_for_the_compiled_and_the_plain_loop(flat: Plan) -> None:
+    world = {"noise": 1.0, "delay": 0.004}
+    plain = rollout(flat, controller={"solver": "daqp", "speed": 0.3}, disturbance=world, seed=5)
+    fast = rollout(flat, controller={"speed": 0.3}, disturbance=world, seed=5)
+    n = min(len(plain.series), len(fast.series))
+    assert np.abs(plain.series.pitch[:n] - fast.series.pitch[:n]).max() < 1e-3
+    assert np.abs(plain.series.q[:n] - fast.series.q[:n]).max() < 0.02
+
+
 def test_speed_setting_is_kept(flat: Plan) -> None:
     slow, fast = (rollout(flat, controller={"speed": v}) for v in (0.1, 0.3))
     speed = np.gradient(fast.series.progress, fast.series.time)

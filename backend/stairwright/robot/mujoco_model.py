@@ -49,6 +49,8 @@ _WHEEL_SENSOR = [
     3,  # reduce: net force, in world axes
     1,
 ]
+# Contact sensor of the whole robot: how many contacts, with the world or with itself.
+_COUNT_SENSOR = [1 << int(mujoco.mjtConDataField.mjCONDATA_FOUND), 0, 1]
 _COLOURS = {
     "terrain": (0.62, 0.65, 0.70, 1.0),
     "trunk": (0.16, 0.22, 0.32, 1.0),
@@ -188,6 +190,13 @@ def _add_robot(spec: Any, robot: Robot, friction: float, visual: bool) -> None:
             refname="world",
             intprm=_WHEEL_SENSOR,
         )
+    spec.add_sensor(
+        name="all_contacts",
+        type=mujoco.mjtSensor.mjSENS_CONTACT,
+        objtype=mujoco.mjtObj.mjOBJ_XBODY,
+        objname="trunk",
+        intprm=_COUNT_SENSOR,
+    )
 
 
 def _add_leg(trunk: Any, robot: Robot, leg: str, friction: float, visual: bool) -> None:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections import deque
+import math
 from collections.abc import Mapping
 from typing import Any
 
+import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
@@ -82,42 +83,65 @@ def disturb_trunk(spec: Any, robot: Robot, disturbance: Disturbance) -> None:
 
 
 class Sensors:
-    """What the controller sees: the truth with noise, some control steps late."""
+    """What the controller sees: the truth with noise, some control steps late.
+
+    Attributes:
+        history: (delay + 1, 37) ring of the last measurements, qpos and qvel.
+        seen: (1,) number of measurements so far.
+    """
 
     def __init__(self, disturbance: Disturbance, dt: float, seed: int) -> None:
         self.noise = disturbance.noise
-        self.delay = round(disturbance.delay / dt)
         self.random = np.random.default_rng(seed)
-        self.history: deque[tuple[Floats, Floats]] = deque(maxlen=self.delay + 1)
-        joints = [JOINT_NOISE, JOINT_NOISE, JOINT_NOISE] * 4
-        rates = [JOINT_RATE_NOISE] * 12
-        self.position_noise = np.array([POSITION_NOISE] * 3 + [0.0] * 4 + joints)
-        self.velocity_noise = np.array([VELOCITY_NOISE] * 3 + [GYRO_NOISE] * 3 + rates)
+        self.history = np.zeros((1 + round(disturbance.delay / dt), 37))
+        self.seen = np.zeros(1, np.int64)
+        place, turn = [POSITION_NOISE] * 3 + [0.0] * 4, [0.5 * TILT_NOISE] * 3
+        speed, joints = [VELOCITY_NOISE] * 3 + [GYRO_NOISE] * 3, [JOINT_NOISE] * 12
+        self._scale = np.array([*place, *joints, *speed, *[JOINT_RATE_NOISE] * 12, *turn])
 
-    @property
-    def exact(self) -> bool:
-        """Whether the controller sees the truth at once."""
-        return self.noise == 0.0 and self.delay == 0
+    def draws(self, count: int) -> Floats:
+        """(count, 40) noise of as many measurements; (0, 40) if there is none.
+
+        Added to qpos (19) and qvel (18), and half a small turn about each axis of the trunk (3).
+        """
+        if self.noise == 0.0:
+            return np.zeros((0, 40))
+        noise: Floats = self.noise * self._scale * self.random.standard_normal((count, 40))
+        return noise
 
     def sense(self, qpos: Floats, qvel: Floats) -> tuple[Floats, Floats]:
         """Measured `qpos` (19,) and `qvel` (18,)."""
-        if self.noise > 0.0:
-            qpos = qpos + self.noise * self.position_noise * self.random.standard_normal(19)
-            qvel = qvel + self.noise * self.velocity_noise * self.random.standard_normal(18)
-            # A small turn about each axis of the trunk.
-            turn = 0.5 * self.noise * TILT_NOISE * self.random.standard_normal(3)
-            w, x, y, z = qpos[3:7]
-            a, b, c = turn
-            quaternion = np.array(
-                [
-                    w - x * a - y * b - z * c,
-                    x + w * a + y * c - z * b,
-                    y + w * b + z * a - x * c,
-                    z + w * c + x * b - y * a,
-                ]
-            )
-            qpos[3:7] = quaternion / np.linalg.norm(quaternion)
-        else:
-            qpos, qvel = qpos.copy(), qvel.copy()
-        self.history.append((qpos, qvel))
-        return self.history[0]
+        out = np.empty(19), np.empty(18)
+        perceive(qpos, qvel, self.draws(1), 0, self.history, self.seen, *out)
+        return out
+
+
+@nb.njit(cache=True)
+def perceive(
+    qpos: Floats,
+    qvel: Floats,
+    draws: Floats,
+    k: int,
+    history: Floats,
+    seen: NDArray[np.int64],
+    out_qpos: Floats,
+    out_qvel: Floats,
+) -> None:
+    """What the controller sees of `qpos` and `qvel`, into `out_*`; noise is row `k` of `draws`."""
+    size = len(history)
+    new = history[seen[0] % size]
+    new[:19], new[19:] = qpos, qvel
+    if len(draws):
+        draw = draws[k]
+        for i in range(37):
+            new[i] += draw[i]
+        w, x, y, z = qpos[3], qpos[4], qpos[5], qpos[6]
+        a, b, c = draw[37], draw[38], draw[39]
+        new[3], new[4] = w - x * a - y * b - z * c, x + w * a + y * c - z * b
+        new[5], new[6] = y + w * b + z * a - x * c, z + w * c + x * b - y * a
+        length = math.sqrt(new[3] ** 2 + new[4] ** 2 + new[5] ** 2 + new[6] ** 2)
+        for i in range(3, 7):
+            new[i] /= length
+    old = history[max(0, seen[0] - size + 1) % size]
+    out_qpos[:], out_qvel[:] = old[:19], old[19:]
+    seen[0] += 1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +17,14 @@ from .result import Series
 Floats = NDArray[np.float64]
 
 
+# Columns of a sample.
+_TIME = 0
+_QPOS, _QVEL, _TORQUE = slice(1, 20), slice(20, 38), slice(38, 50)
+_CONTACTS, _CLOCK, _TARGET = slice(50, 66), slice(66, 69), slice(69, 76)
+_PLACES = slice(76, 80)
+_WIDTH = 80
+
+
 class Recorder:
     """Takes a sample every few control steps.
 
@@ -23,70 +32,54 @@ class Recorder:
         every: Control steps between samples.
         track: What is carried out.
         radius: Of the wheels [m].
+
+    Attributes:
+        samples: (capacity, 80), the first `len(recorder)` of them taken.
+        cursor: (2,) number of samples, and control steps to let pass before the next.
     """
 
     def __init__(self, every: int, track: Track, radius: float) -> None:
         self.every, self.track, self.radius = every, track, radius
-        self._wait = 0
-        self._time: list[float] = []
-        self._qpos: list[Floats] = []
-        self._qvel: list[Floats] = []
-        self._torque: list[Floats] = []
-        self._contacts: list[Floats] = []
-        self._clock: list[Floats] = []
-        self._target: list[Floats] = []
-        self._places: list[Floats] = []
+        self.samples = np.empty((1024, _WIDTH))
+        self.cursor = np.zeros(2, np.int64)
 
-    def due(self) -> bool:
-        """Whether this control step is to be recorded."""
-        self._wait -= 1
-        if self._wait >= 0:
-            return False
-        self._wait = self.every - 1
-        return True
+    def reserve(self, steps: int) -> None:
+        """Make room for the samples of `steps` more control steps."""
+        if len(self) + steps > len(self.samples):
+            self.samples = np.vstack([self.samples, np.empty((len(self) + steps, _WIDTH))])
 
     def take(self, data: Any, clock: Floats, target: Floats, places: Floats) -> None:
-        """Keep the state of `data` (an MjData) and what was asked for."""
-        self._time.append(data.time)
-        self._qpos.append(data.qpos.copy())
-        self._qvel.append(data.qvel.copy())
-        self._torque.append(data.ctrl.copy())
-        self._contacts.append(data.sensordata.copy())
-        self._clock.append(clock.copy())
-        self._target.append(target[: PITCH + 1].copy())
-        self._places.append(places.copy())
+        """Keep the state of `data` (an MjData) and what was asked for, if it is time to."""
+        self.reserve(1)
+        state = (data.time, data.qpos, data.qvel, data.ctrl, data.sensordata)
+        keep_sample(self.every, self.cursor, self.samples, *state, clock, target, places)
 
     def __len__(self) -> int:
         """How many samples there are."""
-        return len(self._time)
+        return int(self.cursor[0])
 
     def series(self, first: int = 0, stride: int = 1) -> Series:
         """Every `stride`-th sample from `first` on, up to the first that is not finite."""
-        part = slice(first, None, stride)
-        qpos, qvel = np.array(self._qpos[part]), np.array(self._qvel[part])
-        torque, target = np.array(self._torque[part]), np.array(self._target[part])
-        contacts, places = np.array(self._contacts[part]), np.array(self._places[part])
-        rows = np.column_stack([qpos, qvel, torque, contacts, places])
+        rows = self.samples[first : len(self) : stride]
         bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
-        n = int(bad[0]) if len(bad) else len(rows)
-        qpos, qvel, torque, target = qpos[:n], qvel[:n], torque[:n], target[:n]
-        clock = np.array(self._clock[part])[:n]
+        rows = rows[: bad[0]] if len(bad) else rows
+        qpos, target, n = rows[:, _QPOS], rows[:, _TARGET], len(rows)
         w, x, y, z = qpos[:, 3:7].T
         pitch = np.arctan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y))
         # Sensors report the force on the ground; turn it into the force on the wheel.
-        forces = -contacts[:n, : 4 * len(LEGS)].reshape(n, 4, 4)[:, :, [1, 3]]
+        forces = -rows[:, _CONTACTS].reshape(n, len(LEGS), 4)[:, :, [1, 3]]
         return Series(
-            time=np.array(self._time[part])[:n],
-            base_position=qpos[:, :3],
-            base_quaternion=qpos[:, 3:7],
-            q=qpos[:, 7:],
+            time=rows[:, _TIME].copy(),
+            base_position=qpos[:, :3].copy(),
+            base_quaternion=qpos[:, 3:7].copy(),
+            q=qpos[:, 7:].copy(),
             q_desired=self._desired(target),
-            dq=qvel[:, 6:],
-            torque=torque,
+            dq=rows[:, _QVEL][:, 6:].copy(),
+            torque=rows[:, _TORQUE].copy(),
             pitch=np.unwrap(pitch),
-            pitch_desired=target[:, PITCH],
-            progress=self._progress(places[:n]),
-            progress_desired=clock[:, 0],
+            pitch_desired=target[:, PITCH].copy(),
+            progress=self._progress(rows[:, _PLACES]),
+            progress_desired=rows[:, _CLOCK][:, 0].copy(),
             contact_force=forces,
         )
 
@@ -109,3 +102,30 @@ class Recorder:
             out[:, 3 * leg : 3 * leg + 2] = q
             out[:, 3 * leg + 2] = rolled - (turned - start - first[PITCH])
         return out
+
+
+@nb.njit(cache=True)
+def keep_sample(
+    every: int,
+    cursor: NDArray[np.int64],
+    samples: Floats,
+    time: float,
+    qpos: Floats,
+    qvel: Floats,
+    torque: Floats,
+    contacts: Floats,
+    clock: Floats,
+    target: Floats,
+    places: Floats,
+) -> None:
+    """Write the next row of `samples`, if it is time to; see `Recorder`."""
+    if cursor[1] > 0:
+        cursor[1] -= 1
+        return
+    cursor[1] = every - 1
+    row = samples[cursor[0]]
+    cursor[0] += 1
+    row[0] = time
+    row[1:20], row[20:38], row[38:50] = qpos, qvel, torque
+    row[50:66], row[66:69], row[69:76] = contacts[:16], clock, target[:7]
+    row[76:80] = places

@@ -24,6 +24,7 @@ from stairwright.robot.description import LEGS
 from stairwright.robot.mujoco_model import TIMESTEP, build_spec
 from stairwright.terrain.wheel_path import wheel_path
 
+from . import loop
 from . import tick as score
 from .actuators import limit_torques
 from .disturbance import (
@@ -37,12 +38,18 @@ from .governor import Track, advance, cruise, track
 from .outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
 from .record import Recorder
 from .result import Metrics, Rollout
+from .stepping import addresses
 
 Floats = NDArray[np.float64]
 
 CONTROL_STEPS = 2  # physics steps per control step: 500 Hz
 SETTLE = 0.4  # s at rest before the plan starts and after it ends
 CHUNK = 125  # control steps between reports of progress
+_DIVERGED = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+)
 
 
 def rollout(
@@ -127,7 +134,7 @@ class _Run:
         self.floor = float(terrain.vertices[:, 1].min())
         every = max(1, round(1.0 / (record_hz * self.dt)))
         self.recorder = Recorder(every, self.track, robot.wheel.radius)
-        self.wall = 0.0
+        self.wall = self.time = 0.0
         self._place()
 
     def _track(self) -> Track:
@@ -166,7 +173,7 @@ class _Run:
         while True:
             cause = self._chunk(steps * self.dt >= SETTLE)
             steps += CHUNK
-            now = self.data.time
+            now = self.time = steps * self.dt
             done = (self.clock[0] - self.track.start) / total
             if progress is not None:
                 progress(min(1.0, 0.999 * done))
@@ -187,42 +194,51 @@ class _Run:
                 break
         self.wall = time.perf_counter() - begin
         reached = self.clock[0] - self.track.start
-        return Ending(cause[0], self.data.time, (reached, total), self._end_error(), cause[1])
+        return Ending(cause[0], self.time, (reached, total), self._end_error(), cause[1])
 
     def _chunk(self, moving: bool) -> tuple[str, str] | None:
         """Some control steps; the cause and its words if the rollout is over."""
-        model, data, step = self.model, self.data, mujoco.mj_step
-        qpos, qvel, ctrl, contacts = data.qpos, data.qvel, data.ctrl, data.sensordata
-        track, exact = self.track, self.sensors.exact
-        recorder = self.recorder
-        seen_qpos, seen_qvel = qpos, qvel
-        compiled_tick: Callable[..., int] = score.tick  # mypy cannot see through numba
-        ground = (self.record, self.path.pieces, self.path.corners)
-        course = (track.start, track.step, track.rows, track.speeds, self.settings.leash)
-        common: tuple[Any, ...] = (*ground, *course, moving, self.dt, qpos, qvel)
-        memory: tuple[Any, ...] = (self.clock, self.places, self.forces, self.learnt, self.target)
-        memory = (*memory, self.wanted, ctrl, self.score)
-        for _ in range(CHUNK):
-            if not exact:
-                seen_qpos, seen_qvel = self.sensors.sense(qpos, qvel)
-            if self.controller is None:
-                wheels = compiled_tick(*common, seen_qpos, seen_qvel, *memory, contacts)
-            else:
-                wheels = self._tick(moving, seen_qpos, seen_qvel)
-            if recorder.due():
-                recorder.take(data, self.clock, self.target, self.places)
-            if data.ncon != wheels or self.loads.loads:
-                self._touch()
-            step(model, data, CONTROL_STEPS)
-        if (
-            not (np.isfinite(qpos).all() and np.isfinite(qvel).all())
-            or data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number
-        ):
+        data = self.data
+        if self.controller is None:
+            self._compiled_steps(moving)
+        else:
+            self._plain_steps(moving)
+        finite = np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all()
+        # MuJoCo starts anew, with a warning, when numbers leave the finite.
+        if not finite or any(data.warning[kind].number for kind in _DIVERGED):
             return "diverged", ""
-        why = fallen(
-            self.score[score.LAST_PITCH_ERROR], self.score[score.TILT], qpos[2], self.floor
-        )
+        pitch_error, tilt = self.score[score.LAST_PITCH_ERROR], self.score[score.TILT]
+        why = fallen(pitch_error, tilt, data.qpos[2], self.floor)
         return ("fell", why) if why else None
+
+    def _compiled_steps(self, moving: bool) -> None:
+        data, t, recorder, sensors = self.data, self.track, self.recorder, self.sensors
+        recorder.reserve(CHUNK)
+        go: Callable[..., int] = loop.run  # mypy cannot see through numba
+        where = addresses(self.model, data)
+        ground = (self.record, self.path.pieces, self.path.corners)
+        course = (t.start, t.step, t.rows, t.speeds, self.settings.leash)
+        state = (data.qpos, data.qvel, data.ctrl, data.sensordata)
+        senses = (sensors.draws(CHUNK), sensors.history, sensors.seen)
+        memory = (self.clock, self.places, self.forces, self.learnt, self.target, self.wanted)
+        book = (recorder.every, recorder.cursor, recorder.samples)
+        rest: tuple[Any, ...] = (self.time, self.dt, moving, *ground, *course, *state, *senses)
+        rest = (*rest, *memory, self.score, *book)
+        at = go(*where, CONTROL_STEPS, 0, CHUNK, False, bool(self.loads.loads), *rest)
+        while at < CHUNK:
+            self._touch(self.time + at * self.dt)
+            loaded = bool(self.loads.loads)
+            at = go(*where, CONTROL_STEPS, at, CHUNK, True, loaded, *rest)
+
+    def _plain_steps(self, moving: bool) -> None:
+        assert self.controller is not None
+        data = self.data
+        for k in range(CHUNK):
+            wheels = self._tick(moving, *self.sensors.sense(data.qpos, data.qvel))
+            self.recorder.take(data, self.clock, self.target, self.places)
+            if data.sensordata[16] != wheels or self.loads.loads:
+                self._touch(self.time + k * self.dt)
+            mujoco.mj_step(self.model, data, CONTROL_STEPS)
 
     def _tick(self, moving: bool, qpos: Floats, qvel: Floats) -> int:
         """`tick.tick` with the numpy controller."""
@@ -240,7 +256,7 @@ class _Run:
         score.keep_score(data.qpos, data.qvel, data.ctrl, self.target, self.dt, self.score)
         return int(data.sensordata[0:16:4].sum())
 
-    def _touch(self) -> None:
+    def _touch(self, time: float) -> None:
         """Book contacts that are not a wheel on the terrain."""
         force, own = np.zeros(6), False
         loads: dict[str, float] = {}
@@ -254,7 +270,7 @@ class _Run:
                 mujoco.mj_contactForce(self.model, self.data, i, force)
                 loads[second] = loads.get(second, 0.0) + float(np.hypot(*force[:2]))
         self.loads.self_contacts += own
-        self.loads.add(self.data.time, loads)
+        self.loads.add(time, loads)
 
     def _wheels(self) -> Floats:
         return np.array([self.data.body(f"{leg}_wheel").xpos[[0, 2]] for leg in LEGS])
