@@ -54,7 +54,7 @@ def parser() -> argparse.ArgumentParser:
         "--trials", type=int, metavar="N", help="N times in slightly different worlds"
     )
     rollout.add_argument(
-        "--workers", type=int, default=1, metavar="N", help="processes for trials (%(default)s)"
+        "--workers", type=int, metavar="N", help="share trials among so many; default: all cores"
     )
     rollout.add_argument("-o", "--output", metavar="FILE", help="json, csv, npz, mcap or html")
 

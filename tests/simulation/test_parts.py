@@ -229,10 +229,13 @@ def test_trials_report() -> None:
     assert caught.value.field == ("ranges", "wind")
 
 
-@pytest.mark.slow
-def test_workers_change_nothing() -> None:
+@pytest.mark.parametrize(
+    "solver", ["native", pytest.param("daqp", marks=pytest.mark.slow)], ids=["threads", "processes"]
+)
+def test_workers_change_nothing(solver: str) -> None:
     plan = sw.plan(FLAT, "a1_wheeled", method="nominal")
-    alone, shared = (trials(plan, 4, seed=1, workers=w) for w in (1, 2))
+    settings = {"solver": solver, "speed": 0.3}
+    alone, shared = (trials(plan, 4, seed=1, workers=w, controller=settings) for w in (1, 2))
     assert alone.trials == shared.trials
 
 

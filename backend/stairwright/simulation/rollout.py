@@ -94,6 +94,11 @@ def rollout(
     return run.result(run.simulate(progress, observe), keep_plan)
 
 
+def compiled(settings: ControllerSettings) -> bool:
+    """Whether these settings run in the compiled loop."""
+    return settings.form == "contact" and settings.solver == "native"
+
+
 class _Run:
     """One rollout: model, memory of the controller, score and record."""
 
@@ -120,8 +125,9 @@ class _Run:
         self.limit = 2.5 * self.track.duration + 5.0
         self.sensors = Sensors(disturbance, self.dt, seed)
         self.record = parameters(robot, plan.friction, settings)
-        native = settings.form == "contact" and settings.solver == "native"
-        self.controller = None if native else Controller(robot, self.path, plan.friction, settings)
+        self.controller = (
+            None if compiled(settings) else Controller(robot, self.path, plan.friction, settings)
+        )
         self.clock = np.array([self.track.start, 0.0, 0.0])
         self.places = np.full(4, np.nan)
         self.forces = np.tile([0.0, robot.mass * 9.81 / 4], 4)

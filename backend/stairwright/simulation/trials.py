@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import os
 from collections import Counter
-from collections.abc import Callable, Mapping
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from functools import partial
 from multiprocessing import get_context
 from typing import Annotated, Any, Literal
 
@@ -19,10 +21,11 @@ from stairwright.planning.plan import Plan
 
 from .disturbance import Disturbance
 from .result import Outcome
-from .rollout import rollout
+from .rollout import compiled, rollout
 
 Bound = Annotated[float, Field(ge=-5.0, le=5.0)]
 Range = tuple[Bound, Bound]
+Job = tuple[int, Disturbance]  # seed and deviations
 
 CONFIDENCE_Z = 1.959964  # two-sided 95 %
 
@@ -86,7 +89,7 @@ def trials(
     n: int = 100,
     seed: int = 0,
     ranges: Mapping[str, Any] | Ranges | None = None,
-    workers: int = 1,
+    workers: int | None = None,
     friction: float | None = None,
     controller: Mapping[str, Any] | ControllerSettings | None = None,
     progress: Callable[[float], None] | None = None,
@@ -100,7 +103,7 @@ def trials(
         n: Number of rollouts, 1..100,000.
         seed: Of the deviations and of each rollout's sensor noise.
         ranges: Where the deviations come from, see `Ranges`.
-        workers: Processes to share the work.
+        workers: How many share the work; as many as there are cores by default.
         friction: Nominal true friction; the plan's by default.
         controller: Settings by name, see `ControllerSettings`.
         progress: Called with the share done, 0..1; may raise `Cancelled`.
@@ -112,33 +115,19 @@ def trials(
         plan = parse(Plan, dict(plan))
     if not isinstance(n, int) or isinstance(n, bool) or not 1 <= n <= 100_000:
         raise InputError("must be a whole number from 1 to 100,000", ("trials",))
+    if workers is None:
+        workers = all_cores()
     if not isinstance(workers, int) or workers < 1:
         raise InputError("must be at least 1", ("workers",))
     settings, limits = parse_settings(controller), parse_ranges(ranges)
     nominal = plan.friction if friction is None else friction
     draws = draw(limits, n, seed)
     jobs = [(seed + i, deviation) for i, deviation in enumerate(draws)]
-    document, results = plan.model_dump(mode="json"), []
-    if workers == 1:
-        _start_worker(document, nominal, settings.model_dump())
-        for job in jobs:
-            results.append(_one(job))
-            if progress is not None:
-                progress(len(results) / n)
-    else:
-        pool = ProcessPoolExecutor(
-            workers,
-            mp_context=get_context("spawn"),
-            initializer=_start_worker,
-            initargs=(document, nominal, settings.model_dump()),
-        )
-        try:
-            for result in pool.map(_one, jobs, chunksize=max(1, min(8, n // (4 * workers)))):
-                results.append(result)
-                if progress is not None:
-                    progress(len(results) / n)
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
+    results = []
+    for result in _share(plan, nominal, settings, jobs, workers):
+        results.append(result)
+        if progress is not None:
+            progress(len(results) / n)
     successes = sum(result.outcome == "success" for result in results)
     return Trials(
         plan_id=plan.id,
@@ -197,20 +186,59 @@ def clopper_pearson(successes: int, n: int) -> tuple[float, float]:
     return low, high
 
 
-_job: dict[str, Any] = {}
+def all_cores() -> int:
+    """How many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _share(
+    plan: Plan, friction: float, settings: ControllerSettings, jobs: list[Job], workers: int
+) -> Iterator[Trial]:
+    """Results of all `jobs`, in order.
+
+    The compiled loop runs without Python's lock, so threads share the work without any start-up
+    cost; other controllers are Python and need processes.
+    """
+    if workers == 1:
+        yield from (_one(plan, friction, settings, job) for job in jobs)
+        return
+    pool: Executor
+    work: Callable[[Job], Trial]
+    if compiled(settings):
+        pool = ThreadPoolExecutor(workers)
+        work = partial(_one, plan, friction, settings)
+    else:
+        pool = ProcessPoolExecutor(
+            workers,
+            mp_context=get_context("spawn"),
+            initializer=_start_worker,
+            initargs=(plan.model_dump(mode="json"), friction, settings.model_dump()),
+        )
+        work = _one_of_worker
+    try:
+        yield from pool.map(work, jobs)
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+_shared: list[tuple[Plan, float, ControllerSettings]] = []
 
 
 def _start_worker(plan: dict[str, Any], friction: float, settings: dict[str, Any]) -> None:
-    """What all rollouts of a worker share: parsed once, not sent with each."""
-    _job.update(plan=parse(Plan, plan), friction=friction, settings=parse_settings(settings))
+    """What all rollouts of a process share: parsed once, not sent with each."""
+    _shared[:] = [(parse(Plan, plan), friction, parse_settings(settings))]
 
 
-def _one(job: tuple[int, Disturbance]) -> Trial:
+def _one_of_worker(job: Job) -> Trial:
+    return _one(*_shared[0], job)
+
+
+def _one(plan: Plan, friction: float, settings: ControllerSettings, job: Job) -> Trial:
     seed, disturbance = job
     run = rollout(
-        _job["plan"],
-        friction=_job["friction"],
-        controller=_job["settings"],
+        plan,
+        friction=friction,
+        controller=settings,
         seed=seed,
         disturbance=disturbance,
         record_hz=5.0,
