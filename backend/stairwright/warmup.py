@@ -14,6 +14,7 @@ import time
 from pathlib import Path
 
 from .library import load_robot, robots
+from .planning.interpolation import reference
 from .planning.planner import plan
 from .terrain.profile import Terrain
 
@@ -25,6 +26,8 @@ SERVED = (
 )
 _STEP = Terrain(points=[(-1.2, 0.0), (0.0, 0.0), (0.0, 0.1), (1.2, 0.1)])
 _WALL = Terrain(points=[(-1.2, 0.0), (0.0, 0.0), (0.0, 1.3), (1.2, 1.3)])
+# High enough to be out of clearance, low enough to be within reach: diagnosed by solving.
+_LOW_WALL = Terrain(points=[(-1.2, 0.0), (0.0, 0.0), (0.0, 0.85), (1.2, 0.85)])
 
 
 def warm_up() -> float:
@@ -32,7 +35,10 @@ def warm_up() -> float:
     begun = time.perf_counter()
     for name in robots():
         plan(_STEP, load_robot(name))
+        reference(plan(_STEP, load_robot(name), method="critical"))
     plan(_WALL, load_robot(robots()[0]))
+    for wall in (_WALL, _LOW_WALL):
+        plan(wall, load_robot("a1_wheeled"), method="critical")
     if importlib.util.find_spec("stairwright.simulation.rollout") is not None:
         from .simulation.rollout import rollout
 

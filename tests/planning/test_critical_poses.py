@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 
 import stairwright as sw
+from stairwright.planning.interpolation import reference
 from stairwright.planning.pose_locations import find_obstacles
-from stairwright.planning.solver import pose_solver
+from stairwright.planning.sqp import nearest, places, search
 from stairwright.planning.weights import CriticalWeights
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.stairs import ramp, stair
@@ -76,13 +77,17 @@ def test_poses_repeat_on_a_uniform_flight():
         assert np.allclose(after.q, before.q, atol=1e-6)
 
 
-def test_nothing_is_rebuilt_when_a_vertex_moves():
-    sw.plan("single-stair-030", method="critical")
-    sw.plan("single-stair-030", "a1_wheeled_x", method="critical")
-    before = pose_solver.cache_info().misses
-    for height in (0.21, 0.24, 0.27):
-        sw.plan(stair(height), method="critical")
-    assert pose_solver.cache_info().misses == before
+def test_nothing_is_compiled_twice():
+    """Neither another terrain nor another robot makes a user wait for a compiler."""
+    for robot in sw.robots():
+        for terrain in (stair(0.2), stair(1.2), ramp(0.3, 0.4), "flat", random_profile(2)):
+            reference_or_none(sw.plan(terrain, robot, method="critical"))
+    kernels = (search.search, search.least_slack, nearest.nearest, places.rear_places, places.rooms)
+    assert [len(kernel.signatures) for kernel in kernels] == [1] * len(kernels)
+
+
+def reference_or_none(plan):
+    return reference(plan) if plan.feasible else None
 
 
 def test_same_question_same_answer():

@@ -75,7 +75,8 @@ class CasadiSearch(PoseSearch):
             reference = self.reference(x_ref)
             starts = [
                 self._guess(place, rear, reference),
-                self._guess(place, rear, reference, True),
+                self._guess(place, rear, reference, float(place.posture[0])),
+                self._guess(place, rear, reference, -0.6 if place.climbs else 0.6, 0.3),
             ]
             if start is not None:
                 starts.insert(0, start)
@@ -88,7 +89,10 @@ class CasadiSearch(PoseSearch):
             if not solution.solved or abs(shift) < 1e-3:
                 break
             start = solution.x
-            x_ref = float(solution.x[0]) + shift
+            moved = float(solution.x[0]) + shift - x_ref
+            if abs(moved) < 3e-3:
+                break
+            x_ref += moved
         assert found is not None
         return found
 
@@ -108,12 +112,23 @@ class CasadiSearch(PoseSearch):
         vector = np.concatenate([*curves, *(part.ravel() for part in ground)])
         return vector, len(ground[0])
 
-    def _guess(self, place: Place, rear: float, reference: Floats, same: bool = False) -> Floats:
-        """Trunk along the line of the wheels, or pitched as before (`same`); legs to the wheels."""
+    def _guess(
+        self,
+        place: Place,
+        rear: float,
+        reference: Floats,
+        pitch: float | None = None,
+        higher: float = 0.0,
+    ) -> Floats:
+        """Trunk along the line of the wheels or at `pitch` [rad]; legs to the wheels.
+
+        It is raised by `higher` times the nominal height.
+        """
         wheels = self.path.centres(np.array([place.front, rear]))
         rise, run = wheels[0] - wheels[1], max(wheels[0, 0] - wheels[1, 0], 0.1)
-        pitch = float(place.posture[0]) if same else -0.8 * math.atan2(rise[1], run)
+        pitch = -0.8 * math.atan2(rise[1], run) if pitch is None else pitch
         z = max(reference[1], wheels[:, 1].mean() + 0.5 * self.robot.nominal_height)
+        z += higher * self.robot.nominal_height
         x = np.asarray(reference[0])
         q = kinematics.inverse(self.robot, x, np.asarray(z), np.asarray(pitch), wheels)
         q = np.where(np.isfinite(q), q, self.standing)

@@ -167,7 +167,7 @@ def _moved_pair(
         wheels = (knot.wheels[0] + way, knot.wheels[1] + way)
         before, after = path.centres(np.array(knot.wheels)), path.centres(np.array(wheels))
         trunk = (knot.trunk[0] + step[0], knot.trunk[1] + step[1], knot.trunk[2])
-        if np.abs(after - before - step).max() > CONGRUENT or not search.clear(trunk, knot.joints):
+        if np.abs(after - before - step).max() > CONGRUENT or not search.clear(trunk, wheels):
             return None
         if search.settled(wheels[1]) != search.settled(knot.wheels[1]):
             return None

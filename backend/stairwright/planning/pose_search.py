@@ -12,12 +12,11 @@ from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
-from .clearance import clearance, legs_apart
 from .solver import Solution
 from .sqp import places, search
 from .sqp.cells import make_course
 from .sqp.nearest import nearest
-from .sqp.search import COST, ENOUGH, GRID, MARGIN, TURN, VIOLATION, WANTED, Rules, Wish
+from .sqp.search import COST, ENOUGH, GRID, MARGIN, TOLERANCE, TURN, VIOLATION, WANTED, Rules, Wish
 from .sqp.state import make_body
 from .weights import CriticalWeights
 
@@ -181,10 +180,10 @@ class PoseSearch:
         )
         return Solution(x, float(value), float(violation), "sqp")
 
-    def clear(self, trunk: tuple[float, float, float], q: Floats) -> bool:
-        """Whether a pose with known joints keeps the clearances asked for."""
-        gap, _ = clearance(self.robot, self.path.vertices, trunk, q)
-        return gap >= CLEARANCE - 1e-6 and legs_apart(self.robot, trunk, q) >= APART - 1e-6
+    def clear(self, trunk: tuple[float, float, float], wheels: tuple[float, float]) -> bool:
+        """Whether a pose with the wheels at given arc lengths keeps limits and clearances."""
+        slack = search.least_slack(self.body, self.course, self.rules, np.array([*trunk, *wheels]))
+        return bool(slack >= -TOLERANCE)
 
     def rear_places(self, place: Place, gentle: bool = False) -> Floats:
         """Arc lengths of the rear wheel where ground and friction allow a pose, likeliest first."""

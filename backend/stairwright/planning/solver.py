@@ -20,7 +20,7 @@ TOLERANCE = 1e-6  # m and rad; a solution violates no constraint by more
 _SQP = {
     "max_iter": 30,
     "tol_pr": 1e-8,
-    "tol_du": 1e-4,
+    "tol_du": 1e-6,
     "convexify_strategy": "eigen-clip",
     "print_header": False,
     "print_iteration": False,

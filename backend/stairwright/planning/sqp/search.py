@@ -13,7 +13,7 @@ from stairwright.terrain.wheel_path import curve_at
 
 from .cells import Course
 from .places import ground_below, room
-from .rows import Task
+from .rows import Task, collect, new_rows
 from .solve import solve_pose
 from .state import HIP, KNEE, WHEEL, Body, State, new_state, place
 
@@ -26,6 +26,9 @@ GRID = 0.05  # m between the rear wheel places that are tried
 _FACE = 2e-3  # m past a corner, where the face ahead alone carries the wheel
 _PULLS = 4  # times that the trunk is asked to move until the CoM has room
 _SETTLED = 1e-3  # m; such a move is none
+_SAME = 3e-3  # m; so little another pull changes nothing
+_USUAL = 4  # first guesses; the last one's trunk is higher and turned towards what comes
+_HIGHER, _RAISED = 0.3, 0.6  # nominal heights, rad
 _PITCHES = (-1.2, -0.6, 0.0, 0.6, 1.2)  # rad, first guesses of the patient search
 _HEIGHTS = (0.5, 0.8, 1.1)  # of the nominal height, above the wheels' middle, likewise
 
@@ -156,7 +159,10 @@ def solve_at(
         if not solved or abs(shift) < _SETTLED:
             break
         first[:3], first[3:] = trial[:3], trial[7:]
-        middle = trial[0] + shift
+        moved = trial[0] + shift - middle
+        if abs(moved) < _SAME:
+            break
+        middle += moved
 
 
 @nb.njit(cache=True)
@@ -173,7 +179,7 @@ def _first_solution(
     trial, guess = np.empty(9), np.empty(5)
     x[:] = np.nan
     more = len(_PITCHES) * len(_HEIGHTS) if patient else 0
-    for k in range(3 + more):
+    for k in range(_USUAL + more):
         guess[:3] = task.reference[0], z, line
         guess[3], guess[4] = wish.front, rear
         if k == 0:
@@ -182,8 +188,12 @@ def _first_solution(
             guess[:] = start
         elif k == 2:
             guess[2] = wish.posture[0]
-        elif k > 2:
-            pitch, height = _PITCHES[(k - 3) % len(_PITCHES)], _HEIGHTS[(k - 3) // len(_PITCHES)]
+        elif k == 3:
+            guess[1] += _HIGHER * body.planar.nominal_height
+            guess[2] = -_RAISED if wish.climbs else _RAISED
+        elif k >= _USUAL:
+            pitch = _PITCHES[(k - _USUAL) % len(_PITCHES)]
+            height = _HEIGHTS[(k - _USUAL) // len(_PITCHES)]
             guess[2] = pitch
             guess[1] = (fz + rz) / 2 + height * body.planar.nominal_height
         value, violation, _ = solve_pose(body, course, task, guess, trial)
@@ -193,6 +203,18 @@ def _first_solution(
         if least <= TOLERANCE:
             break
     return best, least
+
+
+@nb.njit(cache=True)
+def least_slack(body: Body, course: Course, rules: Rules, y: Floats) -> float:
+    """Least slack of joint limits and clearances of a pose `y` (5,); -inf out of reach."""
+    lower, upper, none = rules.lower.copy(), rules.upper.copy(), np.zeros(7)
+    lower[7:], upper[7:] = y[3:], y[3:]
+    task = Task(none, none, lower, upper, rules.clearance, rules.apart, -np.inf, rules.links)
+    st = new_state(body, rules.links)
+    if not place(body, course, y, st):
+        return -np.inf
+    return collect(body, course, task, st, new_rows())[1]
 
 
 @nb.njit(cache=True)

@@ -24,8 +24,10 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 TOLERANCE = 1e-9  # m and rad; the largest violation of a solution
-_STEP = 1e-8  # m and rad; a smaller step ends the iteration
+_STEP = 1e-6  # m and rad; a smaller step ends the iteration
 _ROUNDS = 60
+_PATIENCE = 8  # rounds in which a violation must fall by `_FALL`, or there is no solution near
+_FALL = 0.8
 _HALVINGS = 8
 _LEAST_CURVATURE = 1e-3
 _LONGEST = (0.15, 0.15, 0.5, 0.05, 0.05)  # m, m, rad, m, m; of one step
@@ -64,6 +66,7 @@ def solve_pose(
     held = new_rows()  # the rows that held the last step back, and their multipliers
     force = np.zeros(len(free) + 1)
     holding, penalty, rounds = 0, 1.0, 0
+    closest, since = np.inf, 0
     g, H, A = np.empty(5), np.empty((5, 5)), np.empty((len(rows.value), len(free)))
     while rounds < _ROUNDS:
         rounds += 1
@@ -76,7 +79,10 @@ def solve_pose(
         worst = max(0.0, -least)
         if size < _STEP and worst <= TOLERANCE:
             break
-        if not math.isfinite(size):
+        since += 1
+        if worst <= TOLERANCE or worst < _FALL * closest:
+            closest, since = worst, 0
+        if since > _PATIENCE or not math.isfinite(size):
             break
         penalty = max(penalty, 1.5 * multipliers.sum())
         shorten = 1.0
@@ -166,12 +172,13 @@ def _model(
         add_curvature(st, held, k, -force[k], Hu)
     for leg in range(2):
         _closure(st, leg, gu, Hu)
-    Z = np.zeros((U, 5))
-    for k in range(3):
-        Z[k, k] = 1.0
-    Z[3:7] = st.turns
-    Z[7, 3] = Z[8, 4] = 1.0
-    H[:] = Z.T @ (Hu @ Z)
+    # H = Z' Hu Z, where Z (U, 5) holds the turns of the link angles and ones elsewhere.
+    half, row = np.empty((U, 5)), np.empty(5)
+    for i in range(U):
+        _reduce(st, Hu[i], half[i])
+    for j in range(5):
+        _reduce(st, half[:, j], row)
+        H[j] = row
 
 
 @nb.njit(cache=True)
@@ -242,12 +249,31 @@ def _direction(
 @nb.njit(cache=True)
 def _lift(B: Floats) -> None:
     """Make B positive definite: negative eigenvalues change sign, and none stays near zero."""
-    values, vectors = np.linalg.eigh(B)
-    if values[0] >= _LEAST_CURVATURE:
+    if _curved(B):
         return
+    values, vectors = np.linalg.eigh(B)
     for k in range(len(values)):
         values[k] = max(abs(values[k]), _LEAST_CURVATURE)
     B[:] = (vectors * values) @ vectors.T
+
+
+@nb.njit(cache=True)
+def _curved(B: Floats) -> bool:
+    """Whether all eigenvalues of B are above `_LEAST_CURVATURE`: its Cholesky factor exists."""
+    n = len(B)
+    L = np.empty((n, n))
+    for i in range(n):
+        for j in range(i + 1):
+            total = B[i, j] - (_LEAST_CURVATURE if i == j else 0.0)
+            for k in range(j):
+                total -= L[i, k] * L[j, k]
+            if i == j:
+                if not total > 0.0:
+                    return False
+                L[i, i] = math.sqrt(total)
+            else:
+                L[i, j] = total / L[j, j]
+    return True
 
 
 @nb.njit(cache=True)
