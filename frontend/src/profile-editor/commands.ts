@@ -48,11 +48,14 @@ export function selectAll(): void {
 }
 
 /**
- * At once, not after the next drawing: corners keep their elements by index, so that of a corner
- * beside a removed or added one is there already, and the next key must find the focus on it.
+ * At once, not after the next drawing: corners keep their elements by index and the selected one's
+ * neighbours are always drawn, so the element is there, and the next key must find the focus on it.
  */
 function focusVertex(i: number): void {
-  document.querySelector<SVGElement>(`[data-vertex="${i}"]`)?.focus();
+  const element = () => document.querySelector<SVGElement>(`[data-vertex="${i}"]`);
+  if (element()) element()?.focus();
+  // Of many corners one that was not beside a selected one is drawn only now.
+  else requestAnimationFrame(() => element()?.focus());
 }
 
 const isField = (target: EventTarget | null) =>

@@ -11,6 +11,7 @@ import { EmptyCanvas } from "./empty";
 import {
   cancelGesture,
   dragging,
+  MOVE_EVENT,
   move,
   press,
   release,
@@ -71,7 +72,12 @@ function Canvas() {
     const element = svg.current!;
     // Preact's own listener would be passive, and the page would zoom with the canvas.
     element.addEventListener("wheel", onWheel, { passive: false });
-    return () => element.removeEventListener("wheel", onWheel);
+    const onMove = (event: Event) => move(event as PointerEvent, local(event as PointerEvent));
+    element.addEventListener(MOVE_EVENT, onMove);
+    return () => {
+      element.removeEventListener("wheel", onWheel);
+      element.removeEventListener(MOVE_EVENT, onMove);
+    };
   });
   const { width, height } = size.value;
   const box = canvasBox.value;
@@ -86,7 +92,6 @@ function Canvas() {
       role="group"
       aria-label="Side view of the terrain profile with the planned robot poses"
       onPointerDown={onPointerDown}
-      onPointerMove={(event) => move(event, local(event))}
       onPointerUp={release}
       onPointerCancel={() => cancelGesture()}
       onDblClick={onDblClick}

@@ -4,6 +4,7 @@ import { signal } from "@preact/signals";
 import type { Vec2 } from "../api/types";
 import { heightAt, type Points } from "../geometry/profile";
 import { commit, draft, drawing, revert, selection } from "../state/drawing";
+import { stir } from "../state/planning";
 import { dismissHint, tool } from "../state/view";
 import { addFlat, addFree, addRamp, addStairs, addVertex, ground, moveVertices } from "./edits";
 import { code, onGrid, type Snapped, snap } from "./snap";
@@ -90,7 +91,13 @@ function dragKind(target: Target): Drag["kind"] {
   return target.kind === "canvas" ? "marquee" : target.kind;
 }
 
-/** Keep only the newest position; it is applied once a frame. */
+/** Browsers that can tell of moves between frames: the service is then asked up to a frame earlier. */
+export const MOVE_EVENT = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
+
+/**
+ * The first move since the last frame is applied at once; of those that come before the next one
+ * only the newest position is kept, and it is applied with that frame.
+ */
 export function move(event: PointerEvent, at: Vec2): void {
   if (touches.has(event.pointerId)) touches.set(event.pointerId, at);
   if (touches.size === 2) {
@@ -98,9 +105,23 @@ export function move(event: PointerEvent, at: Vec2): void {
     return;
   }
   if (!drag || event.pointerId !== drag.id) return;
-  const first = pending === null;
   pending = { at, event };
-  if (first) requestAnimationFrame(apply);
+  if (applied) return;
+  apply();
+  nextFrame();
+}
+
+/** A move was applied for the frame to come. */
+let applied = false;
+
+function nextFrame(): void {
+  applied = true;
+  requestAnimationFrame(() => {
+    applied = false;
+    if (!pending) return;
+    apply();
+    nextFrame();
+  });
 }
 
 function apply(): void {
@@ -114,6 +135,7 @@ function apply(): void {
   if (!drag.moved && !far) return;
   drag.moved = true;
   performance.mark("stairwright:move", { startTime: event.timeStamp });
+  stir();
   if (drag.kind === "pan") pan(at[0] - drag.last[0], at[1] - drag.last[1]);
   else if (drag.kind === "marquee") marquee.value = [...drag.down, ...at];
   else if (drag.kind === "tool") drawWith(drag, at, event.altKey);

@@ -54,6 +54,9 @@ export function WheelPath() {
   return <polyline class="wcp" points={curve.map(projection.value.at).join(" ")} />;
 }
 
+/** Faces lower than this have no room for their number [px]. */
+const LEAST_RISE = 16;
+
 /** Runs along the lower rim, rises beside their faces, slopes on their stretch. */
 export function Dimensions() {
   if (!layers.value.has("dimensions")) return null;
@@ -71,6 +74,7 @@ export function Dimensions() {
           if (!isEmpty.value) editingDimension.value = { segment: i, which };
         };
         if (kind === "upright") {
+          if (Math.abs(py(a[1]) - py(b[1])) < LEAST_RISE) return null;
           return (
             <Rise
               key={i}
@@ -148,7 +152,6 @@ function Rise({ a, b, selected, edit }: RiseProps) {
   const side = up ? 7 : -7;
   const x = px(a[0]) + side;
   const [y0, y1] = [py(a[1]), py(b[1])];
-  if (Math.abs(y0 - y1) < 16) return null;
   const label = fixed(Math.abs(b[1] - a[1]), 3);
   return (
     <g class={selected ? "rise sel" : "rise"}>

@@ -12,20 +12,41 @@ import { canvasBox, centreOn, projection } from "./viewport";
 
 export const names = computed(() => cornerNames(drawing.value.points));
 
+/** With more corners than this, only those that can be told apart are drawn. */
+const MANY = 150;
+/** Corners nearer to each other than this cannot be told apart [px]. */
+const APART = 6;
+
+/** The corners to draw: all, or of many those in view that stand apart, and the selected one's
+ * neighbours, so that Tab and the arrows reach every corner. */
+const drawn = computed<number[]>(() => {
+  const points = drawing.value.points;
+  if (points.length <= MANY) return points.map((_, i) => i);
+  const { px, py } = projection.value;
+  const chosen = selection.value[0] ?? Number.NaN;
+  const out: number[] = [];
+  let last: Vec2 = [Number.NaN, Number.NaN];
+  points.forEach((p, i) => {
+    const at: Vec2 = [px(p[0]), py(p[1])];
+    const near = Math.abs(at[0] - last[0]) < APART && Math.abs(at[1] - last[1]) < APART;
+    if (Math.abs(i - chosen) > 1 && (near || isHidden(p))) return;
+    out.push(i);
+    last = at;
+  });
+  return out;
+});
+
 export function Stretches() {
   if (tool.value !== "select") return null;
   const { at } = projection.value;
   const points = drawing.value.points;
   return (
     <g>
-      {points.slice(0, -1).map((a, i) => (
-        <polyline
-          key={i}
-          class="stretch"
-          data-segment={i}
-          points={`${at(a)} ${at(points[i + 1]!)}`}
-        />
-      ))}
+      {drawn.value.map((i) => {
+        const b = points[i + 1];
+        const ends = b && `${at(points[i]!)} ${at(b)}`;
+        return ends && <polyline key={i} class="stretch" data-segment={i} points={ends} />;
+      })}
     </g>
   );
 }
@@ -40,8 +61,8 @@ function onFocus(i: number): void {
 }
 
 function isHidden(p: Vec2): boolean {
-  const { left, right, top, bottom } = canvasBox.peek();
-  const [x, y] = [projection.peek().px(p[0]), projection.peek().py(p[1])];
+  const { left, right, top, bottom } = canvasBox.value;
+  const [x, y] = [projection.value.px(p[0]), projection.value.py(p[1])];
   return x < left - 4 || x > right + 4 || y < top - 4 || y > bottom + 4;
 }
 
@@ -51,7 +72,8 @@ export function Vertices() {
   const words = names.value;
   return (
     <g>
-      {drawing.value.points.map((p, i) => {
+      {drawn.value.map((i) => {
+        const p = drawing.value.points[i]!;
         const [x, y] = [px(p[0]), py(p[1])];
         const selected = chosen.includes(i);
         const half = selected ? 4.5 : 3.5;

@@ -15,7 +15,7 @@ import { changedWeights, compare, method, robotName, robots, settings } from "./
 /** Shorter waits show no spinner: it would only flicker [ms]. */
 const PATIENCE = 150;
 /** The path follows a preview once the hand has rested for this long [ms]. */
-const REST = 60;
+const REST = 100;
 /** A path that has run for this long gives way to a newer question in any case [ms]. */
 const LONGEST = 400;
 
@@ -92,6 +92,12 @@ function stopWaiting(): void {
 
 const pace = new Pace();
 let resting: ReturnType<typeof setTimeout> | undefined;
+let stirred = Number.NEGATIVE_INFINITY;
+
+/** The hand is at work, even where its moves change nothing yet (snapping). */
+export function stir(): void {
+  stirred = performance.now();
+}
 /** The last question to the quick method, as text. */
 let previewed = "";
 
@@ -136,7 +142,7 @@ function showPreview(answer: Plan, question: Question, newest: boolean): void {
   if (pace.finds) preview.value = answer;
   if (!newest) return;
   if (pace.finds) stopWaiting();
-  askForPath(question, pace.finds ? REST : 0);
+  askForPath(question, pace.finds);
 }
 
 function showPlan(answer: Plan, question: Question, newest: boolean): void {
@@ -174,14 +180,17 @@ function askForA(request: PlanRequest, key: string): void {
 }
 
 /** After the preview, once the hand rests: the question that was meant. */
-function askForPath(before: Question, wait: number): void {
+function askForPath(before: Question, patient: boolean): void {
   clearTimeout(resting);
-  resting = setTimeout(() => {
-    const meant = request.peek();
-    if (!meant || requestKey.peek() !== before.key) return;
-    startWaiting();
-    queue.ask({ which: "a", request: meant, key: before.key, asked: before.asked });
-  }, wait);
+  const wait = patient ? stirred + REST - performance.now() : 0;
+  if (wait > 0) {
+    resting = setTimeout(() => askForPath(before, true), wait);
+    return;
+  }
+  const meant = request.peek();
+  if (!meant || requestKey.peek() !== before.key) return;
+  startWaiting();
+  queue.ask({ which: "a", request: meant, key: before.key, asked: before.asked });
 }
 
 function askForB(question: PlanRequest, key: string): void {
@@ -199,7 +208,7 @@ function fail(error: unknown, question: Question, newest: boolean): void {
   if (!newest) return;
   if (question.which === "preview" && connected.peek()) {
     pace.finds = false;
-    askForPath(question, 0);
+    askForPath(question, false);
     return;
   }
   if (question.which === "b") return;
@@ -222,8 +231,9 @@ function forget(): void {
 /** Follow every change of drawing and set-up from now on. */
 export function startPlanning(): () => void {
   const stopA = effect(() => {
-    const question = request.value;
+    // By its text: a drag that stays on its grid point is a new drawing, but no new question.
     const key = requestKey.value;
+    const question = request.peek();
     if (!question) {
       forget();
       batch(() => {
