@@ -25,9 +25,18 @@ async def get_services(request: Request) -> Services:
     return services
 
 
-async def get_owner(request: Request) -> str:
-    """Who asks, for the fair queues."""
-    return owner_of(request.scope)
+async def get_owner(
+    request: Request,
+    services: Annotated[Services, Depends(get_services)],
+    stairwright_session: Annotated[
+        str | None,
+        Header(max_length=64, description="an open session: sessions take turns in the queues"),
+    ] = None,
+) -> str:
+    """Who asks, for the fair queues: an open session, or else the client's address."""
+    address = owner_of(request.scope)
+    known = stairwright_session is not None and stairwright_session in services.sessions
+    return f"{address} {stairwright_session}" if known else address
 
 
 async def require_json(request: Request) -> None:

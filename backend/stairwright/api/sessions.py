@@ -34,6 +34,9 @@ class Sessions:
     def __len__(self) -> int:
         return len(self._scenes)
 
+    def __contains__(self, name: str) -> bool:
+        return name in self._scenes
+
     async def open(self) -> str:
         """A new scene's id.
 
