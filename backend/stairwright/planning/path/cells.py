@@ -29,6 +29,13 @@ FULL_MARGIN = 0.06  # m; more CoM margin is no better
 RESERVED = 101  # quality from here on: equilibrium also at the reserved friction
 
 
+# Wheel moves (front, rear); the first three roll forward.
+MOVES = np.array(
+    [[1, 1], [1, 0], [0, 1], [1, -1], [-1, 1], [-1, 0], [0, -1], [-1, -1]], dtype=np.int32
+)
+FORWARD = 3
+
+
 class Cells(NamedTuple):
     """Pairs of wheel samples in lexicographic order.
 
@@ -38,7 +45,7 @@ class Cells(NamedTuple):
         spans: (n, 6) CoM intervals at friction, at the reserve, with lag [m].
         t0, z0, x0: (n,) lattice index of the window's corner.
         slope: (n,) angle of the line from the rear to the front wheel, upward positive [rad].
-        touch: (samples,) concave corner that a sample touches, -1 where there is none.
+        origin: (n, moves) cell that a move into a cell comes from, -1 where there is none.
     """
 
     front: Ints
@@ -49,7 +56,7 @@ class Cells(NamedTuple):
     z0: Ints
     x0: Ints
     slope: Floats
-    touch: Ints
+    origin: Ints
 
 
 @nb.njit(cache=True)
@@ -74,13 +81,6 @@ def build_cells(
     The front wheel runs from sample `i0` to `i1`.
     """
     n = len(s)
-    touch = np.full(n, -1, np.int32)
-    for i in range(n):
-        k = int(np.searchsorted(corners, s[i]))
-        if k < len(corners) and corners[k] - s[i] <= TOUCH:
-            touch[i] = k
-        elif k > 0 and s[i] - corners[k - 1] <= TOUCH:
-            touch[i] = k - 1
     index = np.full((n, n), -1, np.int32)
     front, rear = np.empty(n * n, np.int32), np.empty(n * n, np.int32)
     k = 0
@@ -118,10 +118,38 @@ def build_cells(
         x0[m] = int(round(0.5 * (centres[i, 0] + centres[j, 0]) / lat.step)) - lat.nx // 2
         z0[m] = int(round(0.5 * (centres[i, 1] + centres[j, 1]) / lat.step)) + lat.low
         m += 1
+    origin = _origins(s, corners, front[:m], rear[:m], index)
     return Cells(
         front[:m].copy(), rear[:m].copy(), index, spans[:m].copy(),
-        t0[:m].copy(), z0[:m].copy(), x0[:m].copy(), slope[:m].copy(), touch,
+        t0[:m].copy(), z0[:m].copy(), x0[:m].copy(), slope[:m].copy(), origin,
     )  # fmt: skip
+
+
+@nb.njit(cache=True, nogil=True)
+def _origins(s: Floats, corners: Floats, front: Ints, rear: Ints, number: Ints) -> Ints:
+    """`Cells.origin`.
+
+    A wheel comes to touch a second face, or leaves it, while the other stands: what carries the
+    robot then changes at a place that the search has judged, not somewhere on a diagonal.
+    """
+    n = len(s)
+    touch = np.full(n, -1, np.int32)
+    for i in range(n):
+        k = int(np.searchsorted(corners, s[i]))
+        if k < len(corners) and corners[k] - s[i] <= TOUCH:
+            touch[i] = k
+        elif k > 0 and s[i] - corners[k - 1] <= TOUCH:
+            touch[i] = k - 1
+    out = np.full((len(front), len(MOVES)), -1, np.int32)
+    for c in range(len(front)):
+        f, r = front[c], rear[c]
+        for m in range(len(MOVES)):
+            i, j = f - MOVES[m, 0], r - MOVES[m, 1]
+            if i < 0 or j < 0 or i >= n or j >= n:
+                continue
+            if i == f or j == r or (touch[i] == touch[f] and touch[j] == touch[r]):
+                out[c, m] = number[i, j]
+    return out
 
 
 class World(NamedTuple):

@@ -6,13 +6,14 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from .cells import Cells, World, columns, row_start, volume_size
+from .cells import FORWARD, MOVES, Cells, World, columns, row_start, volume_size
 from .kernels import convolve, gather_cost, reach
-from .moves import FORWARD, MOVES, Volumes, offset, origin
 from .tables import INF, Floats32
+from .volumes import Volumes, offset
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
+Bytes = NDArray[np.uint8]
 
 
 @nb.njit(cache=True, nogil=True)
@@ -24,47 +25,72 @@ def step_cost(w: World, cells: Cells, c: int, m: int) -> float:
 
 
 @nb.njit(cache=True, error_model="numpy", fastmath=True, nogil=True)
-def pose_cost(w: World, cells: Cells, c: int, t: int, z: int, pulls: Floats, row: Floats32) -> bool:
-    """Cost (nx,) of the poses in row (t, z) of cell `c`, INF where impossible; False if all are.
+def pose_costs(
+    w: World, cells: Cells, c: int, pulls: Floats, width: Bytes, least: np.uint8, lo: int, hi: int,
+    out: Floats32,
+) -> None:  # fmt: skip
+    """Add the costs of the poses of cell `c` to the flat volume `out`, in rows that meet [lo, hi).
 
-    `pulls`: weights of CoM margin, pitch; nominal height above the wheels' mean [m]; the margin
-    wished for [m].
+    Poses narrower than `least`, and the rows' other positions, become INF.
+
+    Args:
+        w: The problem.
+        cells: Its cells.
+        c: The cell.
+        pulls: Weights of CoM margin, pitch; nominal height above the wheels' mean [m]; the margin
+            wished for [m].
+        width: (volume,) of the cell.
+        least: Width.
+        lo: First position.
+        hi: Position after the last.
+        out: (volume,) cost so far.
     """
     lat = w.lat
-    fz, rz, tz, sf, sr, st, a, b = columns(w, cells, c, t, z)
-    if b <= a:
-        return False
-    row[:] = INF
-    i, j, tt = cells.front[c], cells.rear[c], cells.t0[c] + t
-    pitch = (tt - lat.pitches // 2) * lat.turn
+    i, j = cells.front[c], cells.rear[c]
     mean = 0.5 * (w.centres[i, 1] + w.centres[j, 1])
-    rise = ((cells.z0[c] + z) * lat.step - mean) / pulls[2] - 1.0
-    lean = pitch + 0.8 * cells.slope[c]
-    base = np.float32(0.075 * pulls[1] * lean * lean + 0.3 * rise * rise)
     spans = cells.spans[c]
-    lo, hi = np.float32(spans[4]), np.float32(spans[5])
-    rlo, rhi = np.float32(spans[2]), np.float32(spans[3])
+    low, high = np.float32(spans[4]), np.float32(spans[5])
+    rlow, rhigh = np.float32(spans[2]), np.float32(spans[3])
     if spans[2] > spans[3]:
-        rlo = rhi = np.float32(0.5 * (spans[0] + spans[1]))
+        rlow = rhigh = np.float32(0.5 * (spans[0] + spans[1]))
     mass = np.float32(1.0 / w.robot.mass)
     share = np.float32(w.robot.trunk_mass / w.robot.mass)
     wish, heavy = np.float32(pulls[3]), np.float32(0.25 * pulls[0])
     worst, zero, half = np.float32(-0.06), np.float32(0.0), np.float32(0.5)
-    step = np.float32(lat.step)
-    first = np.float32((cells.x0[c] + a) * lat.step)
-    fc = w.front_table.cost[i, tt, fz, a + sf : b + sf]
-    fm = w.front_table.moment[i, tt, fz, a + sf : b + sf]
-    rc = w.rear_table.cost[j, tt, rz, a + sr : b + sr]
-    rm = w.rear_table.moment[j, tt, rz, a + sr : b + sr]
-    tc = w.trunk[tt, tz, a + st : b + st]
-    out = row[a:b]
-    for x in range(b - a):
-        e = fc[x] + rc[x] + tc[x]
-        com = share * (first + np.float32(x) * step) + mass * (fm[x] + rm[x])
-        h = max(zero, wish - max(worst, min(com - lo, hi - com))) / wish
-        k = max(zero, wish - max(worst, min(com - rlo, rhi - com))) / wish
-        out[x] = half * e + base + heavy * (h * h + k * k)
-    return True
+    step, one = np.float32(lat.step), np.float32(1.0)
+    page = lat.row * (lat.nz + 4)
+    for t in range(max(0, lo // page - 2), min(lat.nt, hi // page - 1)):
+        tt = cells.t0[c] + t
+        lean = (tt - lat.pitches // 2) * lat.turn + 0.8 * cells.slope[c]
+        for z in range(lat.nz):
+            k = row_start(lat, t, z)
+            if k + lat.nx <= lo or k >= hi:
+                continue
+            some = np.uint8(0)
+            for x in range(k, k + lat.nx):
+                some = width[x] if width[x] > some else some
+            if some < least:
+                out[k : k + lat.nx] = INF
+                continue
+            fz, rz, tz, sf, sr, st, a, b = columns(w, cells, c, t, z)
+            out[k : k + a] = INF
+            out[k + b : k + lat.nx] = INF
+            rise = ((cells.z0[c] + z) * lat.step - mean) / pulls[2] - 1.0
+            base = np.float32(0.075 * pulls[1] * lean * lean + 0.3 * rise * rise)
+            first = np.float32((cells.x0[c] + a) * lat.step)
+            fc = w.front_table.cost[i, tt, fz, a + sf : b + sf]
+            fm = w.front_table.moment[i, tt, fz, a + sf : b + sf]
+            rc = w.rear_table.cost[j, tt, rz, a + sr : b + sr]
+            rm = w.rear_table.moment[j, tt, rz, a + sr : b + sr]
+            tc = w.trunk[tt, tz, a + st : b + st]
+            row, wide = out[k + a : k + b], width[k + a : k + b]
+            for x in range(b - a):
+                e = fc[x] + rc[x] + tc[x]
+                com = share * (first + np.float32(x) * step) + mass * (fm[x] + rm[x])
+                h = max(zero, wish - max(worst, min(com - low, high - com))) / wish
+                g = max(zero, wish - max(worst, min(com - rlow, rhigh - com))) / wish
+                cost = half * e + base + heavy * (h * h + g * g)
+                row[x] = row[x] + (cost if wide[x] >= least else one * INF)
 
 
 @nb.njit(cache=True, nogil=True)
@@ -89,7 +115,7 @@ def cheapest(
         seed: (3,) lattice pose round which it is entered.
         moves: How many of `MOVES` are allowed.
         smooth: Cost of one lattice step of the body.
-        pulls: See `pose_cost`.
+        pulls: See `pose_costs`.
         level: Least width.
 
     Returns:
@@ -98,7 +124,6 @@ def cheapest(
     lat = w.lat
     size, margin = volume_size(lat), reach(lat)
     pad, result = np.full(size, INF, np.float32), np.full(size, INF, np.float32)
-    row = np.empty(lat.nx, np.float32)
     least = np.uint8(level)
     changed = False
     for c in range(len(cells.front)):
@@ -106,7 +131,7 @@ def cheapest(
             continue
         lo, hi = size, 0
         for m in range(moves):
-            p = origin(cells, c, m)
+            p = cells.origin[c, m]
             if p >= 0 and v.low[p] < v.high[p]:
                 by = offset(cells, lat, c, p)
                 lo, hi = min(lo, v.low[p] - by), max(hi, v.high[p] - by)
@@ -119,7 +144,7 @@ def cheapest(
         pad[a:b] = INF
         result[a:b] = INF
         for m in range(moves):
-            p = origin(cells, c, m)
+            p = cells.origin[c, m]
             if p >= 0 and v.low[p] < v.high[p]:
                 by, cost = offset(cells, lat, c, p), step_cost(w, cells, c, m)
                 gather_cost(v.value[v.slot[p]], v.low[p], v.high[p], by, cost, pad)
@@ -135,26 +160,14 @@ def cheapest(
         if v.low[c] >= v.high[c]:
             value[:] = INF
         lo, hi = max(lo, v.first[c]), min(hi, v.last[c])
-        page = lat.row * (lat.nz + 4)
-        for t in range(max(0, lo // page - 2), min(lat.nt, hi // page - 1)):
-            for z in range(lat.nz):
-                k = row_start(lat, t, z)
-                if k + lat.nx <= lo or k >= hi:
-                    continue
-                p, r, u = width[k : k + lat.nx], result[k : k + lat.nx], value[k : k + lat.nx]
-                some = np.uint8(0)
-                for x in range(lat.nx):
-                    some = p[x] if p[x] > some else some
-                if some < least or not pose_cost(w, cells, c, t, z, pulls, row):
-                    continue
-                for x in range(lat.nx):
-                    if p[x] >= least and r[x] < INF and row[x] < INF:
-                        cost = r[x] + row[x]
-                        if cost < u[x] - np.float32(1e-4):
-                            u[x] = cost
-                            v.low[c] = min(v.low[c], k + x)
-                            v.high[c] = max(v.high[c], k + x + 1)
-                            changed = True
+        pose_costs(w, cells, c, pulls, width, least, lo, hi, result)
+        p, r, u = width[lo:hi], result[lo:hi], value[lo:hi]
+        for k in range(hi - lo):
+            if p[k] >= least and r[k] < u[k] - np.float32(1e-4) and r[k] < INF:
+                u[k] = r[k]
+                v.low[c] = min(v.low[c], lo + k)
+                v.high[c] = max(v.high[c], lo + k + 1)
+                changed = True
     return changed
 
 
@@ -185,7 +198,7 @@ def trace(
             return n + 1
         best, bc, bt, bz, bx = 1e8, -1, 0, 0, 0
         for m in range(moves):
-            p = origin(cells, c, m)
+            p = cells.origin[c, m]
             if p < 0 or v.low[p] >= v.high[p]:
                 continue
             value, cost = v.value[v.slot[p]], step_cost(w, cells, c, m)

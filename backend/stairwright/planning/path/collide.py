@@ -8,7 +8,9 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from .cells import Cells, World
+from stairwright.robot.description import Planar
+
+from .legs import Leg
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -38,35 +40,48 @@ def _links(ax, az, bx, bz, cx, cz, dx, dz, i1, i2):  # type: ignore[no-untyped-d
     return 0.0 if max(s1 * s2, s3 * s4) < 0.0 else near
 
 
-@nb.njit(cache=True, fastmath=True)
+@nb.njit(cache=True, fastmath=True, nogil=True)
 def legs_clear(
-    w: World, cells: Cells, c: int, cos: float, sin: float, z: int, a: int, b: int, clear: Flags
+    p: Planar,
+    front: Leg,
+    rear: Leg,
+    gap: float,
+    wheels: tuple[float, float, float, float],
+    base: float,
+    step: float,
+    bz: float,
+    cos: float,
+    sin: float,
+    a: int,
+    b: int,
+    clear: Flags,
 ) -> None:
-    """Set clear[a:b]: whether the legs keep their gap at columns a..b of a row of cell `c`.
+    """Set clear[a:b]: whether the legs keep their gap at columns a..b of a row of a cell.
 
     Args:
-        w: The problem.
-        cells: Its cells.
-        c: The cell.
+        p: The robot. Arguments are numbers: tuples of arrays cost more to pass than a row to check.
+        front: Front leg.
+        rear: Rear leg.
+        gap: That the legs keep [m].
+        wheels: x and z of the front and of the rear wheel [m].
+        base: x of column 0 [m].
+        step: Between columns [m].
+        bz: z of the row [m].
         cos: Of the row's pitch.
         sin: Of the row's pitch.
-        z: Row of the window.
         a: First column.
         b: Column after the last.
         clear: (nx,) result.
     """
-    p, lat, front, rear = w.robot, w.lat, w.front, w.rear
-    bz = (cells.z0[c] + z) * lat.step
     f0x, f0z = cos * front.hip_x + sin * front.hip_z, bz - sin * front.hip_x + cos * front.hip_z
     r0x, r0z = cos * rear.hip_x + sin * rear.hip_z, bz - sin * rear.hip_x + cos * rear.hip_z
-    f2x, f2z = w.centres[cells.front[c], 0], w.centres[cells.front[c], 1]
-    r2x, r2z = w.centres[cells.rear[c], 0], w.centres[cells.rear[c], 1]
+    f2x, f2z, r2x, r2z = wheels
     l1, l2 = p.thigh, p.calf
     it, ic = 1.0 / (l1 * l1), 1.0 / (l2 * l2)
-    gap, rt, rc, rw = w.legs_gap, p.thigh_radius, p.calf_radius, p.wheel_radius
+    rt, rc, rw = p.thigh_radius, p.calf_radius, p.wheel_radius
     tt, tc, cc = (2 * rt + gap) ** 2, (rt + rc + gap) ** 2, (2 * rc + gap) ** 2
     tw, cw = (rt + rw + gap) ** 2, (rc + rw + gap) ** 2
-    base, step, split = cells.x0[c] * lat.step, lat.step, l1 * l1 - l2 * l2
+    split = l1 * l1 - l2 * l2
     for k in range(b - a):
         bx = base + (a + k) * step
         hx, gx = bx + f0x, bx + r0x

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from .cells import Cells, World, quality, row_start, volume_size
 from .collide import legs_clear
 from .kernels import dilate, gather, reach
-from .moves import Volumes, offset, origin
+from .volumes import Volumes, offset
 
 Ints = NDArray[np.int32]
 Bytes = NDArray[np.uint8]
@@ -46,7 +46,7 @@ def flood(w: World, cells: Cells, v: Volumes, source: int, seed: Ints, moves: in
             continue
         lo, hi = size, 0
         for m in range(moves):
-            p = origin(cells, c, m)
+            p = cells.origin[c, m]
             if p >= 0 and v.first[p] < v.last[p]:
                 by = offset(cells, lat, c, p)
                 lo, hi = min(lo, v.first[p] - by), max(hi, v.last[p] - by)
@@ -59,7 +59,7 @@ def flood(w: World, cells: Cells, v: Volumes, source: int, seed: Ints, moves: in
         pad[a:b] = 0
         result[a:b] = 0
         for m in range(moves):
-            p = origin(cells, c, m)
+            p = cells.origin[c, m]
             if p >= 0 and v.first[p] < v.last[p]:
                 by = offset(cells, lat, c, p)
                 gather(v.width[v.slot[p]], v.first[p], v.last[p], by, pad)
@@ -101,6 +101,8 @@ def _grow(
     if some == 0:
         return False
     changed = False
+    i, j = cells.front[c], cells.rear[c]
+    wheels = (w.centres[i, 0], w.centres[i, 1], w.centres[j, 0], w.centres[j, 1])
     page = lat.row * (lat.nz + 4)
     for t in range(max(0, lo // page - 2), min(lat.nt, hi // page - 1)):
         pitch = (cells.t0[c] + t - lat.pitches // 2) * lat.turn
@@ -120,7 +122,11 @@ def _grow(
                 if r[x] > 0 and u[x] == 0:
                     first, last = min(first, x), x + 1
             if last > 0:
-                legs_clear(w, cells, c, cos, sin, z, a - begin + first, a - begin + last, clear)
+                legs_clear(
+                    w.robot, w.front, w.rear, w.legs_gap, wheels, cells.x0[c] * lat.step, lat.step,
+                    (cells.z0[c] + z) * lat.step, cos, sin, a - begin + first, a - begin + last,
+                    clear,
+                )  # fmt: skip
             for x in range(b - a):
                 if r[x] > 0:
                     if u[x] == 0 and not clear[a - begin + x]:

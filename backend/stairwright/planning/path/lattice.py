@@ -13,17 +13,29 @@ from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
-from .cells import Cells, World, build_cells
+from .cells import FORWARD, MOVES, Cells, World, build_cells
 from .cheapest import cheapest, trace
 from .course import Stand, sample_course, scale, stand_height
 from .flood import flood
 from .ground import Ground
 from .legs import Leg, make_legs
-from .moves import FORWARD, MOVES, Volumes, make_volumes
-from .tables import Bounds, Floats32, Lattice, Pulls, hip_grid, on_lattice, trunk_grid
+from .tables import (
+    Bounds,
+    Floats32,
+    Lattice,
+    LegTable,
+    Pulls,
+    alike,
+    hip_grid,
+    on_lattice,
+    trunk_grid,
+)
+from .volumes import Volumes, make_volumes
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
+
+HipGrid = tuple[Floats32, Floats32, Floats32]
 
 LAG = 0.02  # m; how late a wheel may arrive at a corner
 _SWEEPS = 12  # most sweeps when wheels may roll back
@@ -94,23 +106,31 @@ class Search:
             weights.com_margin, weights.clearance, weights.torque, weights.smoothness, weights.pitch
         )
         front, rear = self.legs
-        grid = self._hip_grid(ground, rear)
-        self.rear_table = on_lattice(grid, rear, self.centres, lattice, 0.02 + bounds.thigh)
-        alike = front._replace(hip_x=0.0, hip_z=0.0) == rear._replace(hip_x=0.0, hip_z=0.0)
-        grid = grid if alike else self._hip_grid(ground, front)
-        self.front_table = on_lattice(grid, front, self.centres, lattice, 0.02 + bounds.thigh)
+        widest = max(leg.reach_max for leg in self.legs) + 0.2 * (p.thigh + p.calf)
+        kept, like = alike(path.vertices, self.centres, widest)
+
+        def table(leg: Leg, grid: HipGrid) -> LegTable:
+            mass = p.thigh_mass + p.calf_mass + p.wheel_mass
+            slack = 0.02 + bounds.thigh
+            built: LegTable = on_lattice(grid, like, leg, mass, self.centres, lattice, slack)
+            return built
+
+        def hips(leg: Leg) -> HipGrid:
+            grid: HipGrid = hip_grid(
+                ground, p, leg, self.centres[kept], lattice, self.pulls, bounds
+            )
+            return grid
+
+        grid = hips(rear)
+        self.rear_table = table(rear, grid)
+        mirrored = front._replace(hip_x=0.0, hip_z=0.0) != rear._replace(hip_x=0.0, hip_z=0.0)
+        self.front_table = table(front, hips(front) if mirrored else grid)
         self.ground = ground
         self.far = 2 * max(leg.reach_max for leg in self.legs) + math.hypot(
             front.hip_x - rear.hip_x, front.hip_z - rear.hip_z
         )
         self.near = 2 * p.wheel_radius + bounds.legs
         self.trunk, self.trunk_x0, self.trunk_z0 = self._trunk_table()
-
-    def _hip_grid(self, ground: Ground, leg: Leg) -> tuple[Floats32, Floats32, Floats32]:
-        grid: tuple[Floats32, Floats32, Floats32] = hip_grid(
-            ground, self.planar, leg, self.centres, self.lattice, self.pulls, self.bounds
-        )
-        return grid
 
     def _trunk_table(self) -> tuple[NDArray[np.float32], int, int]:
         lat, c = self.lattice, self.centres

@@ -86,7 +86,44 @@ def _solve_band(a: Floats, b: Floats, width: int) -> None:
         b[i] = v / a[i, 0]
 
 
-@nb.njit(cache=True)
+@nb.njit(cache=True, nogil=True)
+def _uneven(body: Floats, unit: Floats, slow: float, even: float) -> float:
+    """Cost of first and second differences along the nodes."""
+    cost = 0.0
+    for a in range(3):
+        for k in range(1, len(body)):
+            e = (body[k, a] - body[k - 1, a]) * unit[a]
+            cost += slow * e * e
+        for k in range(1, len(body) - 1):
+            e = (body[k - 1, a] - 2.0 * body[k, a] + body[k + 1, a]) * unit[a]
+            cost += even * e * e
+    return cost
+
+
+@nb.njit(cache=True, nogil=True)
+def _smooth_terms(
+    body: Floats, unit: Floats, slow: float, even: float, h: Floats, grad: Floats
+) -> None:
+    """Add the derivatives of `_uneven` to the banded Hessian `h` and the gradient."""
+    second = np.array([1.0, -2.0, 1.0])
+    for a in range(3):
+        q = unit[a]
+        for k in range(1, len(body)):
+            e = (body[k, a] - body[k - 1, a]) * q
+            grad[3 * k + a] += slow * q * e
+            grad[3 * (k - 1) + a] -= slow * q * e
+            h[3 * k + a, 0] += slow * q * q
+            h[3 * (k - 1) + a, 0] += slow * q * q
+            h[3 * k + a, 3] -= slow * q * q
+        for k in range(1, len(body) - 1):
+            e = (body[k - 1, a] - 2.0 * body[k, a] + body[k + 1, a]) * q
+            for u in range(3):
+                grad[3 * (k - 1 + u) + a] += even * q * e * second[u]
+                for v in range(u + 1):
+                    h[3 * (k - 1 + u) + a, 3 * (u - v)] += even * q * q * second[u] * second[v]
+
+
+@nb.njit(cache=True, nogil=True)
 def polish(
     g: Ground,
     p: Planar,
@@ -119,64 +156,48 @@ def polish(
     """
     n = len(body)
     unit = np.array([1.0, 1.0, turn])
-    second = np.array([1.0, -2.0, 1.0])
     record, points = np.empty(RECORD), np.empty((2, 3, 2))
-    r, rp, jac = np.empty(TERMS), np.empty(TERMS), np.empty((TERMS, 3))
+    r, rp, jac = np.empty((n, TERMS)), np.empty(TERMS), np.empty((TERMS, 3))
     h, grad = np.zeros((3 * n, 7)), np.zeros(3 * n)
     kept_h, kept_grad, best = h.copy(), grad.copy(), body.copy()
     damping, least = 1e-3, np.inf
     x = np.empty(3)
     for _ in range(rounds):
-        h[:] = 0.0
-        grad[:] = 0.0
-        cost = 0.0
+        cost = _uneven(body, unit, slow, even)
         for k in range(n):
             evaluate(g, p, front, rear, body[k], wheels[k], look, points, record)
-            _residuals(record, body[k], wheels[k], spans[k], wish, r)
+            _residuals(record, body[k], wheels[k], spans[k], wish, r[k])
             for m in range(TERMS):
-                cost += r[m] * r[m]
-            for v in range(3):
-                x[:] = body[k]
-                x[v] += 1e-5
-                evaluate(g, p, front, rear, x, wheels[k], look, points, record)
-                _residuals(record, x, wheels[k], spans[k], wish, rp)
-                for m in range(TERMS):
-                    jac[m, v] = (rp[m] - r[m]) * 1e5
-            for a in range(3):
-                for m in range(TERMS):
-                    grad[3 * k + a] += jac[m, a] * r[m]
-                for b in range(a + 1):
-                    acc = 0.0
-                    for m in range(TERMS):
-                        acc += jac[m, a] * jac[m, b]
-                    h[3 * k + a, a - b] += acc
-        for a in range(3):
-            q = unit[a]
-            for k in range(1, n):
-                e = (body[k, a] - body[k - 1, a]) * q
-                cost += slow * e * e
-                grad[3 * k + a] += slow * q * e
-                grad[3 * (k - 1) + a] -= slow * q * e
-                h[3 * k + a, 0] += slow * q * q
-                h[3 * (k - 1) + a, 0] += slow * q * q
-                h[3 * k + a, 3] -= slow * q * q
-            for k in range(1, n - 1):
-                e = (body[k - 1, a] - 2.0 * body[k, a] + body[k + 1, a]) * q
-                cost += even * e * e
-                for u in range(3):
-                    grad[3 * (k - 1 + u) + a] += even * q * e * second[u]
-                    for v in range(u + 1):
-                        h[3 * (k - 1 + u) + a, 3 * (u - v)] += even * q * q * second[u] * second[v]
+                cost += r[k, m] * r[k, m]
+            if cost >= least * (1.0 - 1e-12):
+                break
         if cost < least * (1.0 - 1e-12):
             # One bad place counts little in a long course: ask for more where there are more nodes.
             settled = cost > least * (1.0 - 2e-3 * min(1.0, 20.0 / n))
             least = cost
             best[:] = body
             damping = max(damping * 0.4, 1e-6)
-            kept_h[:] = h
-            kept_grad[:] = grad
             if settled:
                 break
+            kept_h[:] = 0.0
+            kept_grad[:] = 0.0
+            for k in range(n):
+                if fixed[k]:
+                    continue
+                for v in range(3):
+                    x[:] = body[k]
+                    x[v] += 1e-5
+                    evaluate(g, p, front, rear, x, wheels[k], look, points, record)
+                    _residuals(record, x, wheels[k], spans[k], wish, rp)
+                    for m in range(TERMS):
+                        jac[m, v] = (rp[m] - r[k, m]) * 1e5
+                for a in range(3):
+                    for m in range(TERMS):
+                        kept_grad[3 * k + a] += jac[m, a] * r[k, m]
+                    for b in range(a + 1):
+                        for m in range(TERMS):
+                            kept_h[3 * k + a, a - b] += jac[m, a] * jac[m, b]
+            _smooth_terms(body, unit, slow, even, kept_h, kept_grad)
         else:
             damping *= 6.0
         if damping > 1e4:

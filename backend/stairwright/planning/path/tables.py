@@ -80,37 +80,74 @@ class LegTable(NamedTuple):
     last: Bytes
 
 
-@nb.njit(cache=True)
+def alike(vertices: Floats, centres: Floats, reach: float) -> tuple[Ints, Ints]:
+    """Samples whose terrain within `reach` looks the same from the wheel's centre.
+
+    Returns:
+        (k,) samples of which no two are alike, and (n,) which of those each sample is like.
+    """
+    first = np.searchsorted(vertices[:, 0], centres[:, 0] - reach)
+    last = np.searchsorted(vertices[:, 0], centres[:, 0] + reach, side="right")
+    kinds: dict[bytes, int] = {}
+    kept: list[int] = []
+    out = np.empty(len(centres), np.int32)
+    for i, (a, b) in enumerate(zip(first.tolist(), last.tolist(), strict=True)):
+        near = vertices[max(0, a - 1) : b + 1] - centres[i]
+        # A segment that enters from outside counts by where it crosses the border.
+        if a > 0:
+            d = near[1] - near[0]
+            near[0] += d * ((-reach - near[0, 0]) / d[0])
+        if b < len(vertices):
+            d = near[-1] - near[-2]
+            near[-1] += d * ((reach - near[-1, 0]) / d[0])
+        key = np.round(near * 1e7).astype(np.int64).tobytes()
+        if key not in kinds:
+            kinds[key] = len(kept)
+            kept.append(i)
+        out[i] = kinds[key]
+    return np.array(kept, np.int32), out
+
+
+@nb.njit(cache=True, nogil=True)
 def hip_grid(
     g: Ground, p: Planar, leg: Leg, centres: Floats, lat: Lattice, pulls: Pulls, b: Bounds
 ) -> tuple[Floats32, Floats32, Floats32]:
     """Cost, moment and world thigh angle per wheel sample and hip position, split by parity.
 
-    Arrays are (n, 2, 2, m, m): sample, parity of row and column, row // 2, column // 2, so that the
-    body lattice (every second hip position) reads neighbours in memory.
+    Arrays are (n, 2, 2, m, m), the last two (1, 2, 2, m, m): sample, parity of row and column,
+    row // 2, column // 2, so that the body lattice (every second hip position) reads neighbours in
+    memory. Moments [kg m] are about the wheel's centre.
     """
     n, size = len(centres), 2 * lat.half + 1
     m = size // 2 + 1
     fine = 0.5 * lat.step
     cost = np.full((n, 2, 2, m, m), INF, np.float32)
-    moment = np.zeros((n, 2, 2, m, m), np.float32)
-    angle = np.zeros((n, 2, 2, m, m), np.float32)
+    moment = np.zeros((1, 2, 2, m, m), np.float32)
+    angle = np.zeros((1, 2, 2, m, m), np.float32)
     near, far = leg.reach_min + b.reach, leg.reach_max - b.reach
     far = min(far, 0.9995 * (p.thigh + p.calf))
     span = leg.reach_max - leg.reach_min
     soft = 0.15 * (p.thigh + p.calf) / 2.0
     load = p.mass * 9.81 / 4.0 / p.leg_torque
-    for i in range(n):
-        wx, wz = centres[i, 0], centres[i, 1]
-        for v in range(size):
-            dz = (v - lat.half) * fine
-            for u in range(size):
-                dx = (u - lat.half) * fine
-                d = math.hypot(dx, dz)
-                if d < near or d > far:
-                    continue
+    for v in range(size):
+        dz = (v - lat.half) * fine
+        for u in range(size):
+            dx = (u - lat.half) * fine
+            d = math.hypot(dx, dz)
+            if d < near or d > far:
+                continue
+            ax, az = knee_point(-dx, -dz, p.thigh, p.calf, leg.knee)
+            f = max(0.0, leg.reach_min + 0.1 * span - d) + max(0.0, d - leg.reach_max + 0.1 * span)
+            f /= 0.1 * span
+            tau = load * load * ((dx + ax) ** 2 + dx * dx)
+            at = (0, v % 2, u % 2, v // 2, u // 2)
+            angle[at] = math.atan2(-ax, -az)
+            moment[at] = p.thigh_mass * (dx + p.thigh_com * ax)
+            moment[at] += p.calf_mass * (1.0 - p.calf_com) * (dx + ax)
+            base = 0.2 * f * f + pulls.torque * tau
+            for i in range(n):
+                wx, wz = centres[i, 0], centres[i, 1]
                 hx, hz = wx + dx, wz + dz
-                ax, az = knee_point(-dx, -dz, p.thigh, p.calf, leg.knee)
                 kx, kz = hx + ax, hz + az
                 c = link_clearance(g, hx, hz, kx, kz, p.thigh_radius, soft)
                 if c < b.links:
@@ -119,28 +156,31 @@ def hip_grid(
                 if c < b.links:
                     continue
                 e = max(0.0, soft - c) / soft
-                f = max(0.0, leg.reach_min + 0.1 * span - d) + max(
-                    0.0, d - leg.reach_max + 0.1 * span
-                )
-                f /= 0.1 * span
-                tau = load * load * ((wx - kx) ** 2 + dx * dx)
-                at = (i, v % 2, u % 2, v // 2, u // 2)
-                cost[at] = pulls.clearance * 0.25 * e * e + 0.2 * f * f + pulls.torque * tau
-                angle[at] = math.atan2(-ax, -az)
-                moment[at] = p.thigh_mass * (hx + p.thigh_com * ax) + p.wheel_mass * wx
-                moment[at] += p.calf_mass * (kx + p.calf_com * (wx - kx))
+                cost[i, v % 2, u % 2, v // 2, u // 2] = pulls.clearance * 0.25 * e * e + base
     return cost, moment, angle
 
 
 @nb.njit(cache=True, error_model="numpy", fastmath=True)
 def on_lattice(
     grid: tuple[Floats32, Floats32, Floats32],
+    like: Ints,
     leg: Leg,
+    mass: float,
     centres: Floats,
     lat: Lattice,
     slack: float,
 ) -> LegTable:
-    """Read a hip grid onto the body lattice for every pitch; thigh limits are applied here."""
+    """Read a hip grid onto the body lattice for every pitch; thigh limits are applied here.
+
+    Args:
+        grid: Of `hip_grid`.
+        like: (n,) which sample of the grid stands for a sample here.
+        leg: The leg.
+        mass: Of the leg pair with its wheels [kg].
+        centres: (n, 2) wheel centres [m].
+        lat: The body lattice.
+        slack: Of the thigh joints [rad].
+    """
     cost, moment, angle = grid
     n, m = len(centres), cost.shape[3]
     fine = 0.5 * lat.step
@@ -155,6 +195,7 @@ def on_lattice(
     soft = np.float32(0.15)
     zero, weight = np.float32(0.0), np.float32(0.2)
     for i in range(n):
+        carried = np.float32(mass * centres[i, 0])
         for t in range(lat.pitches):
             pitch = (t - lat.pitches // 2) * lat.turn
             c, s = math.cos(pitch), math.sin(pitch)
@@ -167,9 +208,9 @@ def on_lattice(
             x0[i, t], z0[i, t] = bx, bz
             shift = np.float32(pitch) + middle
             for j in range(m - v // 2):
-                src = cost[i, v % 2, u % 2, v // 2 + j]
-                ang = angle[i, v % 2, u % 2, v // 2 + j]
-                mos = moment[i, v % 2, u % 2, v // 2 + j]
+                src = cost[like[i], v % 2, u % 2, v // 2 + j]
+                ang = angle[0, v % 2, u % 2, v // 2 + j]
+                mos = moment[0, v % 2, u % 2, v // 2 + j]
                 width = min(lat.row, m - u // 2)
                 src, ang, mos = src[u // 2 :], ang[u // 2 :], mos[u // 2 :]
                 value, drag = out[i, t, j], mom[i, t, j]
@@ -180,7 +221,7 @@ def on_lattice(
                     e = max(zero, soft - room) / soft
                     fits = src[k] + weight * e * e
                     value[k] = fits if room >= zero else INF
-                    drag[k] = mos[k]
+                    drag[k] = mos[k] + carried
                 a, b = 0, width
                 while a < width and value[a] >= INF:
                     a += 1

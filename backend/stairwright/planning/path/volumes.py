@@ -1,4 +1,4 @@
-"""Moves between cells of the search, and the memory of the volumes that they link."""
+"""The volumes of the search's cells: their memory, and how they lie against each other."""
 
 from __future__ import annotations
 
@@ -16,30 +16,7 @@ from .tables import Floats32, Lattice
 Ints = NDArray[np.int32]
 Bytes = NDArray[np.uint8]
 
-# Wheel moves (front, rear); the first three roll forward.
-MOVES = np.array(
-    [[1, 1], [1, 0], [0, 1], [1, -1], [-1, 1], [-1, 0], [0, -1], [-1, -1]], dtype=np.int32
-)
-FORWARD = 3
-
 _KEPT = 64_000_000  # bytes of an array that is kept for the next search of this thread
-
-
-@nb.njit(cache=True, nogil=True)
-def origin(cells: Cells, c: int, m: int) -> int:
-    """The cell that move `m` into `c` comes from, or -1.
-
-    A wheel comes to touch a second face, or leaves it, while the other stands: what carries the
-    robot then changes at a place that the search has judged, not somewhere on a diagonal.
-    """
-    f, r = cells.front[c], cells.rear[c]
-    i, j = f - MOVES[m, 0], r - MOVES[m, 1]
-    if i < 0 or j < 0 or i >= len(cells.number) or j >= len(cells.number):
-        return -1
-    touch = cells.touch
-    if i != f and j != r and (touch[i] != touch[f] or touch[j] != touch[r]):
-        return -1
-    return int(cells.number[i, j])
 
 
 @nb.njit(cache=True, nogil=True)
