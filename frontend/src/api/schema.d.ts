@@ -13,7 +13,7 @@ export interface paths {
         };
         /**
          * Healthz
-         * @description Answers when the service can take requests.
+         * @description 200 when plans are answered at once; others are answered before that, only later.
          */
         get: operations["healthz_api_v1_healthz_get"];
         put?: never;
@@ -333,7 +333,7 @@ export interface paths {
         };
         /**
          * Job Events
-         * @description The job now and at every change until it is finished.
+         * @description The job now and at every change until it is finished, and its series as it grows.
          */
         get: operations["job_events_api_v1_jobs__job_id__events_get"];
         put?: never;
@@ -1178,7 +1178,7 @@ export interface components {
             rollout_id?: string | null;
             /**
              * Compare Plan Id
-             * @description a second plan, as a ghost
+             * @description accepted and not shown: the scene shows one plan
              */
             compare_plan_id?: string | null;
             /** Theme */
@@ -2348,6 +2348,8 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
+                /** @description an open session: sessions take turns in the queues */
+                "stairwright-session"?: string | null;
                 /** @description a repeated request with the same key does its work once */
                 "idempotency-key"?: string | null;
             };
@@ -2702,6 +2704,8 @@ export interface operations {
         parameters: {
             query?: never;
             header?: {
+                /** @description an open session: sessions take turns in the queues */
+                "stairwright-session"?: string | null;
                 /** @description a repeated request with the same key does its work once */
                 "idempotency-key"?: string | null;
             };
@@ -3147,7 +3151,10 @@ export interface operations {
     };
     job_events_api_v1_jobs__job_id__events_get: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description events named `series` as well */
+                series?: boolean;
+            };
             header?: {
                 "last-event-id"?: string | null;
             };
@@ -3158,13 +3165,20 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Events named `job`, each with the job as JSON */
+            /**
+             * @description Events named `job`, each with the job as JSON and its revision as the event's id; and,
+             *     while a rollout runs, events named `series` without an id, about ten a second, each with the samples
+             *     that are new since the last one: `{"from": number of the first, "time": [n], "pitch": [n],
+             *     "pitch_desired": [n], "progress": [n], "q": [n][12], "q_desired": [n][12],
+             *     "base_position": [n][3], "base_quaternion": [n][4]}`, at 25 samples a simulated second, rounded to
+             *     1e-5. A stream that is opened late or again begins with all samples so far.
+             */
             200: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/event-stream": unknown;
+                    "text/event-stream": string;
                 };
             };
             /** @description Nothing will change after the event that was seen last */
