@@ -50,7 +50,10 @@ const panels = computed(() => {
 const tint = computed<Tint | null>(() => {
   const shown = source.value.plan;
   const total = shown?.timing.total ?? 0;
-  if (running.value) return { from: 0, to: progress.value * total, kind: "done" };
+  if (running.value) {
+    const times = live.value?.series.time;
+    return { from: 0, to: times?.[times.length - 1] ?? progress.value * total, kind: "done" };
+  }
   const result = source.value.run;
   const end = result?.series.time[result.series.time.length - 1] ?? 0;
   if (hasFailed(result)) return { from: end, to: Math.max(end, total), kind: "failed" };

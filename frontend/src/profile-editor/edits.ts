@@ -152,7 +152,7 @@ export function addVertex(
   const a = points[i]!;
   const b = points[i + 1]!;
   const f = x === undefined || b[0] - a[0] < TINY ? 0.5 : (x - a[0]) / (b[0] - a[0]);
-  const p = tidy([a[0] + (b[0] - a[0]) * f, a[1] + (b[1] - a[1]) * f]);
+  const p = between(a, tidy([a[0] + (b[0] - a[0]) * f, a[1] + (b[1] - a[1]) * f]), b);
   return { points: [...points.slice(0, i + 1), p, ...points.slice(i + 1)] as Vec2[], index: i + 1 };
 }
 
@@ -182,9 +182,19 @@ export function moveVertices(
     if (after && !chosen.has(i + 1)) most = Math.min(most, after[0] - points[i]![0]);
   }
   const x = Math.min(most, Math.max(least, dx));
-  return points.map((p, i) =>
-    chosen.has(i) ? tidy([p[0] + x, p[1] + dz]) : ([p[0], p[1]] as Vec2),
-  );
+  return points.map((p, i): Vec2 => {
+    if (!chosen.has(i)) return [p[0], p[1]];
+    const before = chosen.has(i - 1) ? undefined : points[i - 1];
+    const after = chosen.has(i + 1) ? undefined : points[i + 1];
+    return between(before, tidy([p[0] + x, p[1] + dz]), after);
+  });
+}
+
+/** Rounding must not carry a corner past a neighbour that has more digits. */
+function between(before: Vec2 | undefined, p: Vec2, after: Vec2 | undefined): Vec2 {
+  const least = before?.[0] ?? Number.NEGATIVE_INFINITY;
+  const most = after?.[0] ?? Number.POSITIVE_INFINITY;
+  return [Math.min(most, Math.max(least, p[0])), p[1]];
 }
 
 /** Set the run or the rise of segment `i`; everything after it moves along. */
@@ -198,5 +208,8 @@ export function setDimension(
   const b = points[i + 1]!;
   const dx = which === "run" ? Math.max(0, value) - (b[0] - a[0]) : 0;
   const dz = which === "rise" ? value - (b[1] - a[1]) : 0;
-  return points.map((p, k): Vec2 => (k > i ? tidy([p[0] + dx, p[1] + dz]) : [p[0], p[1]]));
+  return points.map((p, k): Vec2 => {
+    const moved = k > i ? tidy([p[0] + dx, p[1] + dz]) : ([p[0], p[1]] as Vec2);
+    return k === i + 1 ? between(a, moved, undefined) : moved;
+  });
 }

@@ -2,7 +2,8 @@
 
 import { connected, retryIn, retryNow } from "../state/connection";
 import { drawing, isEmpty, selection } from "../state/drawing";
-import { plan, planB, preview, refusal, slow } from "../state/planning";
+import { plan, planB, planKept, preview, refusal, slow } from "../state/planning";
+import { activity, run } from "../state/rollouts";
 import { dismissHint, hintSeen, isNarrow, layers } from "../state/view";
 import { Icon } from "../ui/icon";
 import { canvasBox, projection } from "./viewport";
@@ -89,6 +90,7 @@ export function Refusal() {
 export function FirstHint() {
   const points = drawing.value.points;
   if (hintSeen.value || !plan.value || selection.value.length > 0 || points.length < 4) return null;
+  if (activity.value !== "idle" || run.value || !planKept.value) return null;
   const i = Math.min(
     points.length - 2,
     points.findIndex((p, k) => k > 0 && p[1] > points[k - 1]![1]),
@@ -100,7 +102,10 @@ export function FirstHint() {
   return (
     <div
       class="hint"
-      style={{ left: `${Math.min(box.right - 260, px(p[0]) + 18)}px`, top: `${py(p[1]) + 14}px` }}
+      style={{
+        left: `${Math.min(box.right - 260, px(p[0]) + 18)}px`,
+        top: `${Math.min(box.bottom - 100, py(p[1]) + 14)}px`,
+      }}
     >
       <b>Drag a corner: the poses follow.</b>
       <span>Then press Run rollout to see it driven.</span>

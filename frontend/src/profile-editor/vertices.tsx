@@ -23,7 +23,7 @@ const drawn = computed<number[]>(() => {
   const points = drawing.value.points;
   if (points.length <= MANY) return points.map((_, i) => i);
   const { px, py } = projection.value;
-  const chosen = selection.value[0] ?? Number.NaN;
+  const chosen = selection.value[0] ?? Number.NEGATIVE_INFINITY;
   const out: number[] = [];
   let last: Vec2 = [Number.NaN, Number.NaN];
   points.forEach((p, i) => {

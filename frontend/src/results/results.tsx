@@ -2,6 +2,7 @@
 
 import type { Metrics, Outcome, Plan, Rollout } from "../api/types";
 import { degrees, fixed, took } from "../geometry/format";
+import { live, livePlan } from "../state/live";
 import { plan, planB } from "../state/planning";
 import {
   activity,
@@ -67,14 +68,16 @@ function Content() {
 }
 
 function Running() {
-  const total = plan.value?.timing.total ?? 0;
+  const total = (livePlan.value ?? plan.value)?.timing.total ?? 0;
+  const times = live.value?.series.time ?? [];
+  const now = times[times.length - 1] ?? progress.value * total;
   return (
     <>
       <h2>
         <span class="spin" />
         Running
         <small>
-          {fixed(progress.value * total, 1)} of {fixed(total, 1)} s
+          {fixed(now, 1)} s, {fixed(progress.value * 100, 0)} %
         </small>
       </h2>
       <p>

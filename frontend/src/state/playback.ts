@@ -123,8 +123,12 @@ export function startClock(): void {
     }
   });
   // A running rollout takes the clock along: the robot is where it has got to.
+  let along = false;
   effect(() => {
-    if (!live.value || !shownRun.value) return;
+    const running = live.value !== null;
+    if (!shownRun.value || !(running || along)) return;
+    // The finished rollout is a little longer than what it had sent of itself.
+    along = running;
     playing.value = false;
     time.value = duration.value;
   });
