@@ -15,13 +15,19 @@ from .contact import GRAVITY, com_interval
 Floats = NDArray[np.float64]
 
 
+NOTHING_HOLDS = -1.0  # m; the margin where no CoM is in equilibrium, and the least that is stated
+
+
 @nb.njit(cache=True)
 def com_margin(points: Floats, normals: Floats, count: int, friction: float, com_x: float) -> float:
-    """How far the CoM may shift in x, the smaller way, with equilibrium [m]; negative outside."""
+    """How far the CoM may shift in x, the smaller way, with equilibrium [m]; negative outside.
+
+    It is finite: `NOTHING_HOLDS` where these contacts hold no CoM at all, and never below that.
+    """
     low, high = com_interval(points, normals, count, friction)
     if low > high:
-        return -np.inf
-    return min(com_x - low, high - com_x)
+        return NOTHING_HOLDS
+    return max(NOTHING_HOLDS, min(com_x - low, high - com_x))
 
 
 @nb.njit(cache=True)
