@@ -159,7 +159,7 @@ def install(app: FastAPI) -> None:
 
     @app.exception_handler(OSError)
     async def on_system(_: Request, error: OSError) -> Response:
-        if error.errno not in (errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.EROFS):
+        if error.errno not in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EMFILE, errno.EROFS):
             return await on_bug(_, error)
         logger.error("the system refused", exc_info=error)
         return _unavailable(f"the server has a problem: {error.strerror}").response()
