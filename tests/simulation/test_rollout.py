@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 
 import stairwright as sw
+from stairwright.control.settings import ControllerSettings
 from stairwright.errors import Cancelled, InputError
 from stairwright.planning.plan import Plan
+from stairwright.simulation.disturbance import Disturbance
 from stairwright.simulation.result import Rollout
-from stairwright.simulation.rollout import rollout
+from stairwright.simulation.rollout import _Run, rollout
 
 FLAT = {"name": "short-flat", "points": [[-0.6, 0.0], [0.6, 0.0]], "friction": 0.6}
 STAIR = {
@@ -154,6 +156,21 @@ def test_a_plan_from_another_world_ends_honestly(flat: Plan) -> None:
     poses = [pose.model_copy(update={"z_c": pose.z_c + 0.6}) for pose in flat.poses]
     run = rollout(flat.model_copy(update={"poses": poses}))
     assert run.outcome in ("success", "fell", "stuck", "collided", "diverged", "timeout")
+
+
+@pytest.mark.parametrize("solver", ["native", "daqp"])
+@pytest.mark.parametrize("value", [math.nan, math.inf, 1e30, 1e160])
+def test_a_diverged_run_has_a_finite_document(flat: Plan, solver: str, value: float) -> None:
+    settings = ControllerSettings(solver=solver)
+    run = _Run(flat, 0.6, settings, Disturbance(), 0, 100.0)
+    run._chunk(False)
+    run.data.qvel[7] = value
+    ending = run.simulate(None)
+    document = run.result(ending, False)
+    assert document.outcome == "diverged"
+    text = document.model_dump_json()
+    metrics = json.loads(text, parse_constant=lambda name: pytest.fail(name))["metrics"]
+    assert all(math.isfinite(number) for number in metrics.values())
 
 
 def test_bad_input_is_named(flat: Plan) -> None:

@@ -14,6 +14,19 @@ from .tick import tick
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+BEYOND = 1e6  # m, m/s, rad or rad/s, summed up: no robot gets there
+
+
+@nb.njit(cache=True)
+def diverged(qpos: Floats, qvel: Floats) -> bool:
+    """Whether the state is not one to compute anything from: not finite, or beyond all reason."""
+    total = 0.0
+    for value in qpos:
+        total += abs(value)
+    for value in qvel:
+        total += abs(value)
+    return not total < BEYOND
+
 
 @nb.njit(cache=True, nogil=True)
 def run(
@@ -57,7 +70,8 @@ def run(
     """Control steps `first` to `last`; returns where it stopped.
 
     It stops before the physics of a step with a contact to look at: one that is not a wheel's, or
-    any while a link is still `loaded`. Go on from there with `looked`.
+    any while a link is still `loaded`. Go on from there with `looked`. It ends at once when the
+    state has diverged.
 
     Args:
         function, model, data: See `stepping.addresses`.
@@ -71,6 +85,8 @@ def run(
     """
     sensed_qpos, sensed_qvel = np.empty(19), np.empty(18)
     for k in range(first, last):
+        if diverged(qpos, qvel):
+            return last
         if not (looked and k == first):
             perceive(qpos, qvel, draws, k, history, seen, sensed_qpos, sensed_qvel)
             wheels = tick(

@@ -29,6 +29,7 @@ STUCK_TIME = 4.0  # s
 STUCK_PROGRESS = 0.005  # m
 GRAZE_SHARE = 0.05  # of the weight
 LOAD_TIME = 0.02  # s
+_HUGE = 1e6  # N; larger forces come from states that are about to diverge
 
 
 @dataclass
@@ -56,7 +57,7 @@ class LinkLoads:
             self.contacts += 1
         for name in {*self.loads, *forces}:
             old = self.loads.get(name, 0.0)
-            load = old + share * (forces.get(name, 0.0) - old)
+            load = old + share * (min(forces.get(name, 0.0), _HUGE) - old)
             self.loads[name] = load
             if load > self.peak:
                 self.peak, self.where = load, (name, time)

@@ -45,6 +45,7 @@ Floats = NDArray[np.float64]
 CONTROL_STEPS = 2  # physics steps per control step: 500 Hz
 SETTLE = 0.4  # s at rest before the plan starts and after it ends
 CHUNK = 125  # control steps between reports of progress
+_HUGE = 1e6  # stands for what is not finite, or overflowed on the way there
 _DIVERGED = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
     mujoco.mjtWarning.mjWARN_BADQVEL,
@@ -209,9 +210,9 @@ class _Run:
             self._compiled_steps(moving)
         else:
             self._plain_steps(moving)
-        finite = np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all()
-        # MuJoCo starts anew, with a warning, when numbers leave the finite.
-        if not finite or any(data.warning[kind].number for kind in _DIVERGED):
+        # MuJoCo starts anew, with a warning, when it finds numbers that are not finite.
+        warned = any(data.warning[kind].number for kind in _DIVERGED)
+        if warned or loop.diverged(data.qpos, data.qvel):
             return "diverged", ""
         pitch_error, tilt = self.score[score.LAST_PITCH_ERROR], self.score[score.TILT]
         why = fallen(pitch_error, tilt, data.qpos[2], self.floor)
@@ -240,6 +241,8 @@ class _Run:
         assert self.controller is not None
         data = self.data
         for k in range(CHUNK):
+            if loop.diverged(data.qpos, data.qvel):
+                break
             wheels = self._tick(moving, *self.sensors.sense(data.qpos, data.qvel))
             self.recorder.take(data, self.clock, self.target, self.places)
             if data.sensordata[16] != wheels or self.loads.loads:
@@ -294,9 +297,8 @@ class _Run:
         plan, robot = self.plan, self.robot
         outcome, reason = judge(ending, self.loads, robot.mass * 9.81)
         series = self.recorder.series()
-        s = np.nan_to_num(
-            self.score, posinf=1e6, neginf=-1e6
-        )  # a diverged run still has a document
+        # A diverged run still has a document.
+        s = np.nan_to_num(self.score, posinf=_HUGE, neginf=-_HUGE)
         steps = max(1.0, s[score.STEPS])
         reached, total = ending.progress
         metrics = Metrics(
@@ -308,9 +310,9 @@ class _Run:
             wheel_torque_peak=s[score.WHEEL_TORQUE],
             energy=s[score.ENERGY],
             link_contacts=self.loads.contacts,
-            link_force_peak=self.loads.peak,
+            link_force_peak=min(self.loads.peak, _HUGE),
             self_contacts=self.loads.self_contacts,
-            end_error=min(ending.error, 1e6),
+            end_error=min(ending.error, _HUGE),
             progress=reached / total,
             speed_mean=reached / max(ending.time - SETTLE, self.dt),
             real_time_factor=ending.time / max(self.wall, 1e-9),

@@ -18,7 +18,8 @@ def stop_and_go(margin: float, speed: float = 0.3):
     s = np.repeat(np.linspace(0.0, 1.0, 300)[:, None], 2, axis=1)
     x = s[:, 0] + 0.03 * np.sin(4 * np.pi * s[:, 0])
     body = np.column_stack([x, np.full(300, ROBOT.nominal_height), np.zeros(300)])
-    wheels = np.stack([s + np.array([0.1235, -0.1235]), np.full_like(s, ROBOT.wheel.radius)], axis=-1)
+    centres = s + np.array([0.1235, -0.1235])
+    wheels = np.stack([centres, np.full_like(s, ROBOT.wheel.radius)], axis=-1)
     q = kinematics.inverse(ROBOT, body[:, 0], body[:, 1], body[:, 2], wheels)
     return pose_times(ROBOT, s, body, q, np.full(300, margin), speed), x
 
