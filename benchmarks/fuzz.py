@@ -148,13 +148,11 @@ def _odd(request: Request, chance: random.Random) -> None:
     if chance.random() < 0.1:
         head, _, last = request.path.rpartition("/")
         text = str(chance.choice(HOSTILE))[:200].encode("utf-8", "surrogatepass")
-        request.path = (
-            f"{head}/{quote(text, safe='')}"
-            if chance.random() < 0.7
-            else (
-                f"{head}/{last}{'&' if '?' in last else '?'}limit={quote(text)}&format={quote(text)}"
-            )
+        strange = f"{head}/{quote(text, safe='')}"
+        asked = (
+            f"{request.path}{'&' if '?' in last else '?'}limit={quote(text)}&format={quote(text)}"
         )
+        request.path = strange if chance.random() < 0.7 else asked
     if chance.random() < 0.1:
         name = chance.choice(["content-type", "idempotency-key", "accept-encoding", "if-none-match",
                               "last-event-id", "origin", "x-request-id", "cookie", "range",

@@ -113,3 +113,14 @@ def test_the_scenes_own_port_is_not_told(api: httpx.Client, session: str) -> Non
     assert set(made.json()) == {"id", "scene"}
     assert made.json() == again.json()
     api.delete(f"/sessions/{made.json()['id']}")
+
+
+def test_a_second_plan_can_be_compared(api: httpx.Client, session: str) -> None:
+    question = {"terrain": {"points": [[-1, 0], [0, 0], [0, 0.05], [1, 0.05]]}}
+    ids = [api.post("/plans", json={**question, "method": method}).json()["id"]
+           for method in ("critical", "nominal")]  # fmt: skip
+    scene = f"/sessions/{session}/scene"
+    body = {"plan_id": ids[0], "compare_plan_id": ids[1]}
+    assert api.put(scene, json=body).status_code == 204
+    assert api.put(scene, json={"compare_plan_id": None}).status_code == 204
+    assert api.put(scene, json={"compare_plan_id": "p-00"}).status_code == 404

@@ -196,3 +196,20 @@ def test_terrain_with_two_thousand_points_is_drawn(session):
     session.show(plan={**plan, "terrain": terrain.model_dump(mode="json")})
     session.playback(time=0.5)
     wait_for(lambda: "/robot/trunk" in nodes(session))
+
+
+def test_a_second_plan_is_shown_beside_the_first(session, plan):
+    other = example_plan(count=12).model_dump(mode="json")
+    session.show(plan=plan)
+    session.compare(other)
+    wait_for(lambda: "/compare/robot/trunk" in nodes(session))
+    assert "/compare/com_path" in nodes(session)
+    handle = session._server.scene._handle_from_node_name["/compare/robot/trunk"]
+    before = np.array(handle.batched_positions)
+    session.playback(progress=plan["poses"][-1]["progress"])
+    wait_for(lambda: np.abs(np.array(handle.batched_positions) - before).max() > 0.1)
+    session.set_layers({"compare": False})
+    assert not handle.visible
+    session.set_view(theme="light")
+    session.compare(None)
+    assert not any(node.startswith("/compare/robot/") for node in nodes(session))

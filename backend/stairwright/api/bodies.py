@@ -210,7 +210,7 @@ class SceneRequest(Model):
     plan_id: Id | None = None
     rollout_id: Id | None = None
     compare_plan_id: Id | None = Field(
-        None, description="accepted and not shown: the scene shows one plan"
+        None, description="a second plan, whose robot is shown translucent at the same place"
     )
     theme: Literal["dark", "light"] | None = None
     layers: Annotated[dict[SettingName, StrictBool], Field(max_length=32)] | None = None

@@ -50,6 +50,7 @@ class SceneSession:
         self._lock = threading.RLock()
         self._plan: Mapping[str, Any] | None = None
         self._rollout: Mapping[str, Any] | None = None
+        self._compared: Mapping[str, Any] | None = None
         self._motion: Motion | None = None
         self._terrain_name: str | None = None
         self._subject = np.array([0.0, 0.0, 0.33])
@@ -119,6 +120,7 @@ class SceneSession:
         with self._lock, self._server.atomic():
             if colours is not None and colours != self._stage.colours:
                 self._apply_theme(colours.theme)
+                self._draw_compared()
             self._stage.show_layers(wanted)
             if plan is None and rollout is not None:
                 plan = rollout.get("plan")
@@ -128,6 +130,19 @@ class SceneSession:
             self._panel.show(plan, rollout, self._motion, self._stage.colours)
             self._panel.show_layers(wanted)
         self._player.set(duration=duration)
+
+    def compare(self, plan: Mapping[str, Any] | None) -> None:
+        """Show a second plan's robot beside the first, at the same place; None shows none."""
+        self._touch()
+        with self._lock, self._server.atomic():
+            self._compared = plan
+            self._draw_compared()
+        self._player.set()  # draws the present moment anew
+
+    @property
+    def compared(self) -> str | None:
+        """Id of the second plan."""
+        return None if self._compared is None else str(self._compared["id"])
 
     def set_view(self, theme: str | None = None, layers: Mapping[str, bool] | None = None) -> None:
         """Change theme or layers and keep what is shown."""
@@ -213,6 +228,12 @@ class SceneSession:
             show_share_button=False,
             brand_color=colours.accent,
         )
+
+    def _draw_compared(self) -> None:
+        plan = self._compared
+        robot = None if plan is None else _robot_of(plan)
+        motion = None if plan is None or robot is None else from_plan(plan, robot)
+        self._stage.draw_rival(robot, motion)
 
     def _redraw(self) -> None:
         plan, rollout = self._plan, self._rollout

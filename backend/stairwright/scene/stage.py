@@ -18,6 +18,7 @@ from .moment_view import MomentView
 from .motion import Moment, Motion
 from .nodes import Nodes
 from .palette import DARK, Palette
+from .rival import Rival
 from .robot_nodes import RobotNodes
 
 Floats = NDArray[np.float64]
@@ -34,6 +35,7 @@ LAYERS = {
     "support": True,
     "forces": True,
     "problem": True,
+    "compare": True,
 }
 HALF_WIDTH = 0.5  # m, of the extruded terrain
 DEPTH = 0.25  # m, of solid below its lowest point
@@ -70,6 +72,7 @@ class Stage:
         self._nodes = Nodes(scene, self.layers)
         self._view: MomentView | None = None
         self._ghosts: RobotNodes | None = None
+        self._rival: Rival | None = None
         self._margins: tuple[Floats, Floats] | None = None  # progress, CoM margin
         self._problem: Mapping[str, Any] | None = None
         self._problem_from = np.inf
@@ -200,10 +203,21 @@ class Stage:
             self._problem_from = min(plan["problem"]["progress"], progress[-1]) - 1e-4
             self._draw_problem(plan["problem"])
 
+    def draw_rival(self, robot: Robot | None, motion: Motion | None) -> None:
+        """A second plan's robot beside the first; None takes it away."""
+        if self._rival is not None:
+            self._rival.remove()
+            self._rival = None
+        if robot is not None and motion is not None:
+            self._rival = Rival(self._scene, self._nodes, robot, motion)
+            self._rival.draw_path(self.colours)
+
     # --- every frame ---------------------------------------------------------------------------
 
     def draw_moment(self, progress: float, moment: Moment | None) -> None:
         """The robot at one moment, `progress` [m] along the course."""
+        if self._rival is not None:
+            self._rival.draw_at(progress, self.colours, self.layers["compare"])
         if self._view is None:
             return
         if moment is None or self._terrain is None:
@@ -221,6 +235,8 @@ class Stage:
             self._view.show()
         if self._ghosts is not None:
             self._ghosts.visible = self.layers["ghosts"]
+        if self._rival is not None:
+            self._rival.show(self.layers["compare"])
 
     def repaint(self, colours: Palette) -> None:
         """Take another palette; what hangs on it must be drawn again by the caller."""

@@ -374,7 +374,7 @@ export interface paths {
         get?: never;
         /**
          * Put Scene
-         * @description Show a plan, a rollout or both; change theme, layers or camera.
+         * @description Show a plan, a rollout or both, and a second plan beside them; theme, layers or camera.
          */
         put: operations["put_scene_api_v1_sessions__session_id__scene_put"];
         post?: never;
@@ -1178,7 +1178,7 @@ export interface components {
             rollout_id?: string | null;
             /**
              * Compare Plan Id
-             * @description accepted and not shown: the scene shows one plan
+             * @description a second plan, whose robot is shown translucent at the same place
              */
             compare_plan_id?: string | null;
             /** Theme */

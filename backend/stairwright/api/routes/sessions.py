@@ -39,7 +39,7 @@ async def post_session(services: Service, once: Idempotent) -> Response:
     responses=describe(404, 415),
 )
 async def put_scene(services: Service, session_id: SessionId, body: SceneRequest) -> None:
-    """Show a plan, a rollout or both; change theme, layers or camera."""
+    """Show a plan, a rollout or both, and a second plan beside them; theme, layers or camera."""
     scene = services.sessions.get(session_id)
     given = body.model_fields_set
     if given & {"plan_id", "rollout_id"}:
@@ -49,6 +49,8 @@ async def put_scene(services: Service, session_id: SessionId, body: SceneRequest
         await run_in_threadpool(scene.show, plan, rollout, body.theme, body.layers)
     elif given & {"theme", "layers"}:
         await run_in_threadpool(scene.set_view, body.theme, body.layers)
+    if "compare_plan_id" in given and body.compare_plan_id != scene.compared:
+        await run_in_threadpool(scene.compare, await _load(services, "plan", body.compare_plan_id))
     if body.camera is not None:
         await run_in_threadpool(scene.camera, body.camera)
 
