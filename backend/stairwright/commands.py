@@ -42,7 +42,7 @@ def rollout_command(given: Arguments) -> str | None:
 
         by_ending(ROLLOUT_FORMATS, given.output, "rollout")
     plan = _plan_or_file(given)
-    if len(plan.poses) < 2:
+    if not plan.executable:
         return _obstacle(plan) or "the plan has no poses to carry out"
     from .simulation.rollout import rollout
 
@@ -52,7 +52,9 @@ def rollout_command(given: Arguments) -> str | None:
         run.save(given.output)
     else:
         print(summary.of_rollout(run))
-    return None if run.success else f"{run.outcome}: {run.reason}"
+    if not run.success:
+        return f"{run.outcome}: {run.reason}"
+    return _obstacle(plan)  # a plan that ends at the obstacle can be carried out as far as that
 
 
 def _trials(given: Arguments) -> str | None:
@@ -60,7 +62,7 @@ def _trials(given: Arguments) -> str | None:
     if given.output and Path(given.output).suffix.lower() != ".json":
         raise InputError("trials can be written as .json only", ("output",))
     plan = _plan_or_file(given)
-    if len(plan.poses) < 2:
+    if not plan.executable:
         return _obstacle(plan) or "the plan has no poses to carry out"
     from .simulation.trials import trials
 

@@ -129,7 +129,7 @@ def _plan_of(question: Question, artefacts: str) -> Plan:
     else:
         content = Artefacts(Path(artefacts)).content(question["plan_digest"])
         plan = Plan.model_validate_json(content)
-    if len(plan.poses) < 2:
+    if not plan.executable:
         why = plan.problem.message if plan.problem else "the plan has no poses"
         raise InputError(f"nothing can be rolled out: {why}", ("plan",))
     return plan

@@ -1,12 +1,14 @@
 """What stops the robot: the single change that would open the way, where, and how large.
 
-Each candidate quantity is raised alone. Those that open the way are bisected to the least value
-that does; the one with the smallest relative change names the problem. The value is confirmed by
-planning again with it, so the answer is physically true, not a guess from the search's front.
+Each candidate quantity is raised alone, on the coarse lattice and with bounds that forgive what
+rounding takes: that gives the least value that may do. A candidate is only asked whether it opens
+the way at a smaller relative change than the best one so far. The smallest names the problem, after
+planning again with it: the answer is physically true, not a guess from the search's front.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -15,14 +17,16 @@ import numpy as np
 
 from stairwright.robot.description import Robot
 
-from .path.solve import QUICK, STRICT, Blocked, Course, Solved
+from .path.course import NoStand
+from .path.solve import BOLD, QUICK, Blocked, Course, Solved, pose_course
 from .plan import Limit, Problem
 
 Kind = Literal["reach", "clearance", "statics", "torque", "joint_limit"]
 
-_NEAR = 1.5  # a friction this many times the given one is believed without asking the others
-_STEPS = 5  # bisections
-_CONFIRM = (1.01, 1.06, 1.15, 1.3, 1.6)  # factors tried on the bisected value
+_FINE = 1.7  # lattice of the questions, coarser than that of plans
+_CLOSE = 0.02  # relative precision of the bisected value
+_CONFIRM = (1.005, 1.04, 1.1, 1.25, 1.6)  # factors tried on the bisected value
+_ASKED = 2  # candidates for which planning is tried
 
 
 @dataclass(frozen=True)
@@ -35,10 +39,32 @@ class Candidate:
     available: float
     limit: float
     change: Callable[[Course, float], Course]
+    given: str = ""  # what else the change needs
 
-    def at(self, share: float) -> float:
-        """The value a `share` (0..1) of the way from what there is to the limit, geometrically."""
-        return float(self.available * (self.limit / self.available) ** share)
+    def at(self, ratio: float) -> float:
+        """The value that differs from what there is by the factor `ratio` > 1."""
+        return self.available * ratio if self.limit > self.available else self.available / ratio
+
+    @property
+    def most(self) -> float:
+        """The factor at the limit."""
+        return max(self.limit / self.available, self.available / self.limit)
+
+    def opens(self, course: Course, ratio: float) -> bool:
+        """Whether a quick, forgiving search comes through with the quantity changed so."""
+        try:
+            changed = self.change(course, self.at(ratio))
+        except NoStand:
+            return False
+        return changed.find(_FINE, BOLD, cheap=False).quality > 0
+
+    def solves(self, course: Course, ratio: float) -> bool:
+        """Whether there is a certified plan with the quantity changed so."""
+        try:
+            changed = self.change(course, self.at(ratio))
+        except NoStand:
+            return False
+        return isinstance(changed.solve(QUICK), Solved)
 
 
 def explain(course: Course, blocked: Blocked) -> Problem:
@@ -48,20 +74,24 @@ def explain(course: Course, blocked: Blocked) -> Problem:
         course: The question without an answer.
         blocked: What its solution attempt returned.
     """
-    found: list[tuple[float, Candidate, float]] = []
-    for candidate in _candidates(course):
-        value = _least(course, candidate)
-        if value is None:
-            continue
-        ratio = max(value / candidate.available, candidate.available / value)
-        found.append((ratio, candidate, value))
-        if candidate.kind == "statics" and ratio <= _NEAR:
+    if blocked.opened:
+        torque = _torque(course, blocked)
+        if torque is not None:
+            return torque
+    candidates = _candidates(course)
+    for _ in range(_ASKED):
+        best: Candidate | None = None
+        ratio = math.inf
+        for candidate in candidates:
+            least = _least(course, candidate, ratio)
+            if least is not None:
+                best, ratio = candidate, least
+        if best is None:
             break
-    found.sort(key=lambda item: item[0])
-    for _, candidate, value in found:
-        confirmed = _confirm(course, candidate, value)
+        confirmed = _confirm(course, best, ratio)
         if confirmed is not None:
-            return _problem(course, blocked, candidate, confirmed)
+            return _problem(course, blocked, best, best.at(confirmed))
+        candidates.remove(best)
     return _hopeless(course, blocked)
 
 
@@ -77,7 +107,7 @@ def _candidates(course: Course) -> list[Candidate]:
     return [
         Candidate("statics", "friction", "1", course.friction, max(2.0, 2.5 * course.friction),
                   lambda c, v: replace(c, friction=v)),
-        Candidate("reach", "leg length", "m", legs, 1.8 * legs,
+        Candidate("reach", "leg length", "m", legs, 3.0 * legs,
                   lambda c, v: _with_robot(c, _longer(robot, v / legs))),
         Candidate("clearance", "trunk height", "m", robot.trunk.size[2], 0.1 * robot.trunk.size[2],
                   lambda c, v: _with_robot(c, _flatter(robot, v))),
@@ -85,14 +115,12 @@ def _candidates(course: Course) -> list[Candidate]:
                   lambda c, v: _with_robot(c, _wider(robot, "calf", v - ranges["calf"]))),
         Candidate("joint_limit", "thigh range", "rad", ranges["thigh"], ranges["thigh"] + 1.0,
                   lambda c, v: _with_robot(c, _wider(robot, "thigh", v - ranges["thigh"]))),
-        Candidate("torque", "leg torque", "Nm", robot.actuators.leg.torque,
-                  10 * robot.actuators.leg.torque,
-                  lambda c, v: _with_robot(c, _stronger(robot, v))),
     ]  # fmt: skip
 
 
 def _with_robot(course: Course, robot: Robot) -> Course:
-    return replace(course, robot=robot)
+    """The same question for another robot, which stands as it would."""
+    return pose_course(course.terrain, robot, course.friction, course.weights)
 
 
 def _changed(robot: Robot, changes: dict[str, dict[str, Any]]) -> Robot:
@@ -137,51 +165,49 @@ def _stronger(robot: Robot, torque: float) -> Robot:
     return _changed(robot, {"actuators": {"leg": leg}})
 
 
-def _opens(course: Course) -> bool:
-    """Whether the quick, strict search comes through: then there is a plan as a rule."""
-    return course.find(1.0, STRICT, cheap=False).quality > 0
-
-
-def _least(course: Course, candidate: Candidate) -> float | None:
-    """Least value of the candidate's quantity that opens the way; None if its limit does not."""
-    if candidate.kind == "torque":
-        return _least_torque(course, candidate)
-
-    def opens(value: float) -> bool:
-        return _opens(candidate.change(course, value))
-
-    if not opens(candidate.limit):
+def _least(course: Course, candidate: Candidate, below: float) -> float | None:
+    """Least factor on the candidate's quantity that opens the way, if it is less than `below`."""
+    low, high = 1.0, min(candidate.most, below / (1.0 + _CLOSE))
+    if high <= low or not candidate.opens(course, high):
         return None
-    low, high = 0.0, 1.0
-    for _ in range(_STEPS):
-        middle = 0.5 * (low + high)
-        if opens(candidate.at(middle)):
+    while high / low > 1.0 + _CLOSE:
+        middle = math.sqrt(low * high)
+        if candidate.opens(course, middle):
             high = middle
         else:
             low = middle
-    return candidate.at(high)
+    return high
 
 
-def _least_torque(course: Course, candidate: Candidate) -> float | None:
-    """The torque that the path needs if only torque stands in the way."""
-    if not _opens(course):
-        return None
-    strong = candidate.change(course, candidate.limit)
-    solved = strong.solve(QUICK)
-    if not isinstance(solved, Solved):
-        return None
-    used = max(candidate.limit - pose.margins.torque for pose in solved.poses)
-    return float(used) if used > candidate.available else None
-
-
-def _confirm(course: Course, candidate: Candidate, value: float) -> float | None:
-    """The least of a few values from `value` on with which a certified plan exists."""
-    up = candidate.limit > candidate.available
+def _confirm(course: Course, candidate: Candidate, ratio: float) -> float | None:
+    """The least of a few factors from `ratio` on with which a certified plan exists."""
+    before = 1.0
     for factor in _CONFIRM:
-        tried = value * factor if up else value / factor
-        if isinstance(candidate.change(course, tried).solve(QUICK), Solved):
-            return tried
+        tried = ratio * factor
+        if candidate.solves(course, tried):
+            middle = math.sqrt(before * tried)
+            wide = tried / before > 1.04 and before > 1.0
+            return middle if wide and candidate.solves(course, middle) else tried
+        before = tried
     return None
+
+
+def _torque(course: Course, blocked: Blocked) -> Problem | None:
+    """The problem if joint torque alone stands in the way."""
+    robot = course.robot
+    available = robot.actuators.leg.torque
+    limit = 10 * available
+    strong = _with_robot(course, _stronger(robot, limit)).solve(QUICK)
+    if not isinstance(strong, Solved):
+        return None
+    used = max(limit - pose.margins.torque for pose in strong.poses)
+    candidate = Candidate(
+        "torque", "leg torque", "Nm", available, limit,
+        lambda c, v: _with_robot(c, _stronger(robot, v)),
+    )  # fmt: skip
+    if used <= available or not candidate.solves(course, 1.001 * used / available):
+        return None
+    return _problem(course, blocked, candidate, 1.001 * used)
 
 
 def _place(course: Course, blocked: Blocked) -> tuple[tuple[float, float], float, str]:
@@ -198,14 +224,15 @@ def _problem(course: Course, blocked: Blocked, candidate: Candidate, value: floa
     at, progress, wheel = _place(course, blocked)
     unit = "" if candidate.unit == "1" else f" {candidate.unit}"
     message = (
-        f"needs {candidate.quantity} {value:.3g}{unit}, has {candidate.available:.3g}{unit}: "
+        f"needs {candidate.quantity} {value:.3g}{unit}{candidate.given}, "
+        f"has {candidate.available:.3g}{unit}: "
         f"the {wheel} wheels stop at x = {at[0]:.2f} m, z = {at[1]:.2f} m"
     )
     return Problem(
         kind=candidate.kind, at=at, progress=progress, message=message,
         limit=Limit(
-            needed=value, available=candidate.available, quantity=candidate.quantity,
-            unit=candidate.unit,
+            needed=value, available=candidate.available,
+            quantity=candidate.quantity + candidate.given, unit=candidate.unit,
         ),
     )  # fmt: skip
 
@@ -216,22 +243,17 @@ def _hopeless(course: Course, blocked: Blocked) -> Problem:
     robot = course.robot
     legs = robot.thigh.length + robot.calf.length
     grip = max(1.5, course.friction)
-    for factor in (1.25, 1.6, 2.2, 3.2):
-        bold = replace(course, friction=grip, robot=_longer(robot, factor))
-        if isinstance(bold.solve(QUICK), Solved):
-            message = (
-                f"needs leg length {legs * factor:.3g} m and friction {grip:.2g}, has {legs:.3g} m "
-                f"and {course.friction:.2g}: the {wheel} wheels stop at x = {at[0]:.2f} m, "
-                f"z = {at[1]:.2f} m"
-            )
-            break
-    else:
-        factor = 3.2
-        message = (
-            f"the {wheel} wheels stop at x = {at[0]:.2f} m, z = {at[1]:.2f} m, and neither legs of "
-            f"{legs * factor:.3g} m nor friction {grip:.2g} would change that"
-        )
-    return Problem(
-        kind="reach", at=at, progress=progress, message=message,
-        limit=Limit(needed=legs * factor, available=legs, quantity="leg length", unit="m"),
+    bold = Candidate(
+        "reach", "leg length", "m", legs, 3.0 * legs,
+        lambda c, v: replace(_with_robot(c, _longer(robot, v / legs)), friction=grip),
+        f" with friction {grip:.2g}",
     )  # fmt: skip
+    least = _least(course, bold, math.inf)
+    confirmed = _confirm(course, bold, least) if least is not None else None
+    if confirmed is not None:
+        return _problem(course, blocked, bold, bold.at(confirmed))
+    message = (
+        f"the {wheel} wheels stop at x = {at[0]:.2f} m, z = {at[1]:.2f} m, and neither legs of "
+        f"{bold.limit:.3g} m nor friction {grip:.2g} would change that"
+    )
+    return Problem(kind="reach", at=at, progress=progress, message=message)

@@ -115,6 +115,11 @@ class Plan(Model):
         """Whether the robot can do it, as far as the planner and the certificate can tell."""
         return self.status == "feasible"
 
+    @property
+    def executable(self) -> bool:
+        """Whether it can be tried: a path that ends at an obstruction cannot."""
+        return len(self.poses) >= 2 and (self.feasible or self.method != "path")
+
     def save(self, path: str) -> None:
         """Write the plan; the ending of `path` picks the format (json, csv, npz, mcap, mjcf)."""
         from stairwright.export.formats import save_plan  # exports lie to the right of planning

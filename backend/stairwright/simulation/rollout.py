@@ -82,7 +82,7 @@ def rollout(
     """
     if not isinstance(plan, Plan):
         plan = parse(Plan, dict(plan))
-    if len(plan.poses) < 2:
+    if not plan.executable:
         raise InputError("the plan has no poses to carry out", ("plan", "poses"))
     settings, deviations = parse_settings(controller), parse_disturbance(disturbance)
     truth = plan.friction if friction is None else friction

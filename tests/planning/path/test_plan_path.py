@@ -87,7 +87,8 @@ def test_friction_that_is_named_is_enough(robot):
     ramp = terrain([(-1.5, 0.0), (0.0, 0.0), (1.5, 1.05), (2.7, 1.05)])
     plan = sw.plan(ramp, robot, friction=0.4)
     assert not plan.feasible
-    assert plan.poses == []
+    assert plan.certificate is None
+    assert 0.0 < plan.poses[-1].progress < 1.8
     assert plan.problem.kind == "statics"
     assert plan.problem.limit.needed > 0.7
     assert plan.problem.limit.available == pytest.approx(0.4)

@@ -13,6 +13,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
 _BUCKET = 0.02  # m
+_PIERCED = 0.005  # m; depth of what a spike goes through that has no width to be deep in
 
 
 class Ground(NamedTuple):
@@ -122,12 +123,12 @@ def link_clearance(
             inside = True
     if best > 0.0 and not inside:
         return best - radius
-    depth = 1e-4
+    depth = 0.0
     for k in range(5):
         x, z = ax + 0.25 * k * (bx - ax), az + 0.25 * k * (bz - az)
         if z < height(g, x):
-            depth = max(depth, point_gap(g, x, z, 0.5))
-    return -radius - depth
+            depth = max(depth, point_gap(g, x, z, 0.5), 1e-4)
+    return -radius - (depth if depth > 0.0 else _PIERCED)
 
 
 @nb.njit(cache=True)
@@ -183,11 +184,10 @@ def box_clearance(
             best = min(best, near)
     if best > 0.0 and not below:
         return best
-    depth = max(depth, 1e-4)
     for k in range(4):
         pu = hl if k < 2 else -hl
         pv = hh if k % 2 == 0 else -hh
         x, z = cx + c * pu + s * pv, cz - s * pu + c * pv
         if z < height(g, x):
-            depth = max(depth, point_gap(g, x, z, 0.5))
-    return -depth
+            depth = max(depth, point_gap(g, x, z, 0.5), 1e-4)
+    return -(depth if depth > 0.0 else 4.0 * _PIERCED)

@@ -11,12 +11,11 @@ from stairwright.planning.plan import Limit, Plan, Problem
 from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
-from stairwright.terrain.wheel_path import WheelPath, wheel_path
+from stairwright.terrain.wheel_path import wheel_path
 
 from .assemble import make_plan
-from .course import NoStand, find_stands
-from .ground import make_ground
-from .solve import Course, Solved
+from .course import NoStand
+from .solve import Solved, pose_course
 
 
 def plan_path(terrain: Terrain, robot: Robot, friction: float, weights: PathWeights) -> Plan:
@@ -33,19 +32,17 @@ def plan_path(terrain: Terrain, robot: Robot, friction: float, weights: PathWeig
         weights: What to trade off.
 
     Returns:
-        The plan; on impossible terrain one with a `problem`.
+        The plan; on impossible terrain one with a `problem`, and the poses up to there.
     """
     begun = clock.perf_counter()
     try:
-        path = wheel_path(terrain, robot.wheel.radius)
-        stands = find_stands(terrain, robot, path)
+        course = pose_course(terrain, robot, friction, weights)
     except NoStand as error:
-        return _no_stand(terrain, robot, friction, weights, path, error, begun)
+        return _no_stand(terrain, robot, friction, weights, error, begun)
     except InputError as error:
         at = terrain.points[0]
         problem = Problem(kind="start", at=at, progress=0.0, message=str(error))
         return make_plan(terrain, robot, friction, weights, begun, problem=problem)
-    course = Course(terrain, robot, path, make_ground(path.vertices), stands, friction, weights)
     found = course.solve()
     if isinstance(found, Solved):
         plan = make_plan(
@@ -54,7 +51,9 @@ def plan_path(terrain: Terrain, robot: Robot, friction: float, weights: PathWeig
         return plan.model_copy(update={"certificate": found.certificate})
     from stairwright.planning.obstruction import explain  # it plans again, so it imports us
 
-    return make_plan(terrain, robot, friction, weights, begun, problem=explain(course, found))
+    problem = explain(course, found)
+    poses, keys, total = course.partial()
+    return make_plan(terrain, robot, friction, weights, begun, poses, keys, total, problem)
 
 
 def _no_stand(
@@ -62,10 +61,10 @@ def _no_stand(
     robot: Robot,
     friction: float,
     weights: PathWeights,
-    path: WheelPath,
     error: NoStand,
     begun: float,
 ) -> Plan:
+    path = wheel_path(terrain, robot.wheel.radius)
     place = path.contacts(np.array([min(max(error.s, 0.0), path.length)]))[0]
     problem = Problem(
         kind="start" if error.kind == "start" else "goal",

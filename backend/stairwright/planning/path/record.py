@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numba as nb
 import numpy as np
@@ -46,6 +46,14 @@ class Record:
     friction: float
     leg_limit: float
     wheel_limit: float
+
+    def until(self, count: int) -> Record:
+        """The record of the first `count` nodes."""
+        cut = {
+            name: getattr(self, name)[:count]
+            for name in ("poses", "com", "need", "forces", "torque", "wheel_torque")
+        }
+        return replace(self, **cut)
 
     @property
     def clearance(self) -> Floats:

@@ -22,10 +22,11 @@ from .record import Record, evaluate_path
 
 Floats = NDArray[np.float64]
 
-_HOP = 0.006  # m of path per node
+_HOP = 0.009  # m of path per node
 _BODY_SHARE = 0.3  # body motion counts this much against wheel travel in a node's spacing
 _CLEAR = 0.016  # m; clearance that the polish aims at
-_TRIES = (1.0, 0.5, 0.15)  # smoothing of one attempt after the other
+# Smoothing, and metres of path per node, of one attempt after the other.
+_TRIES = ((1.0, 0.009), (0.5, 0.006), (0.15, 0.006))
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,10 @@ class Refined:
     s: Floats
     body: Floats
     record: Record
+
+    def until(self, count: int) -> Refined:
+        """The first `count` nodes."""
+        return Refined(self.s[:count], self.body[:count], self.record.until(count))
 
 
 def refine(
@@ -56,8 +61,8 @@ def refine(
     for k in range(2):
         body[-k] = stands[k].body
     u = _spacing(s, body)
-    for soft in _TRIES:
-        n = max(40, int(u[-1] / (_HOP * scale(robot))))
+    for soft, spacing in _TRIES:
+        n = max(40, int(u[-1] / (spacing * scale(robot))))
         even = np.linspace(0.0, u[-1], n)
         hop = even[1]
         nodes_s = np.stack([np.interp(even, u, s[:, k]) for k in range(2)], axis=1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time as clock
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,17 +13,17 @@ from stairwright.planning.plan import Certificate, Plan, Pose
 from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
-from stairwright.terrain.wheel_path import WheelPath
+from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
 from .assemble import make_plan, make_poses
-from .course import Stand
-from .ground import Ground
+from .course import Stand, find_stands
+from .ground import Ground, make_ground
 from .lattice import Finding
 from .legs import Leg, make_legs
 from .record import LEGS_GAP
 from .refine import Refined, refine
 from .tables import Bounds
-from .windows import find_path
+from .windows import Searches, find_path
 
 Floats = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ RESERVE = 0.1  # friction that a plan does without where the terrain allows it
 # much less that a search without success settles the matter (hope).
 STRICT = Bounds(trunk=0.006, links=0.006, legs=LEGS_GAP, reach=0.003, thigh=0.0, com=0.005)
 BOLD = Bounds(trunk=-0.003, links=-0.003, legs=-0.003, reach=0.0, thigh=-0.02, com=-0.01)
-HOPE = Bounds(trunk=-0.012, links=-0.012, legs=-0.009, reach=-0.006, thigh=-0.06, com=-0.02)
+HOPE = Bounds(trunk=-0.009, links=-0.009, legs=-0.009, reach=-0.006, thigh=-0.06, com=-0.02)
 
 
 @dataclass(frozen=True)
@@ -53,11 +53,10 @@ COARSE = (Rung(2.0, STRICT), Rung(1.7, BOLD))
 LADDER = (
     *COARSE,
     Rung(1.7, BOLD, True),
-    Rung(1.0, STRICT),
+    Rung(1.4, BOLD),
     Rung(1.0, BOLD),
     Rung(1.0, BOLD, True),
     Rung(0.8, BOLD),
-    Rung(0.67, BOLD),
 )
 QUICK = COARSE  # enough to confirm that a relaxed problem has a plan
 _THIN = 0.01  # m; a path with a thinner CoM margin is compared with that of the next coarse rung
@@ -91,6 +90,18 @@ class Blocked:
     opened: bool
 
 
+def pose_course(terrain: Terrain, robot: Robot, friction: float, weights: PathWeights) -> Course:
+    """The planning question of `terrain` and `robot`.
+
+    Raises:
+        InputError: If the profile is too short for a wheel.
+        NoStand: If the robot cannot stand at its start or goal.
+    """
+    path = wheel_path(terrain, robot.wheel.radius)
+    stands = find_stands(terrain, robot, path)
+    return Course(terrain, robot, path, make_ground(path.vertices), stands, friction, weights)
+
+
 @dataclass
 class Course:
     """One planning question."""
@@ -102,6 +113,7 @@ class Course:
     stands: tuple[Stand, Stand]
     friction: float
     weights: PathWeights
+    searches: Searches = field(default_factory=dict)
 
     @property
     def reserve(self) -> float:
@@ -114,12 +126,17 @@ class Course:
         return make_legs(self.robot.planar)
 
     def find(
-        self, fine: float, bounds: Bounds, cheap: bool = True, roll_back: bool = False
+        self,
+        fine: float,
+        bounds: Bounds,
+        cheap: bool = True,
+        roll_back: bool = False,
+        partial: bool = False,
     ) -> Finding:
         """Search once; see `Search.find`."""
         return find_path(
             self.path, self.ground, self.robot, self.stands, self.weights, bounds, fine,
-            self.friction, self.reserve, cheap, roll_back,
+            self.friction, self.reserve, cheap, roll_back, partial, self.searches,
         )  # fmt: skip
 
     def solve(self, ladder: tuple[Rung, ...] = LADDER) -> Solved | Blocked:
@@ -150,6 +167,23 @@ class Course:
     def hopeful(self, fine: float) -> bool:
         """Whether a search that forgives more than rounding can hide comes through."""
         return self.find(fine, HOPE, cheap=False, roll_back=True).quality > 0
+
+    def partial(self) -> tuple[list[Pose], list[int], float]:
+        """Poses of the way as far as it goes, key poses and duration; nothing without a way."""
+        finding = self.find(COARSE[-1].fine, COARSE[-1].bounds, partial=True)
+        if finding.s is None or finding.body is None or len(finding.s) < 2:
+            return [], [], 0.0
+        last = Stand((float(finding.s[-1, 0]), float(finding.s[-1, 1])), finding.body[-1])
+        found = refine(
+            self.path, self.ground, self.robot, self.legs, (self.stands[0], last), finding.s,
+            finding.body, self.friction, self.reserve, self.weights,
+        )  # fmt: skip
+        bad = np.flatnonzero(found.record.room < 0.0)
+        if len(bad):
+            found = found.until(int(bad[0]))
+        if len(found.s) < 2:
+            return [], [], 0.0
+        return make_poses(self.path, self.robot, found, self.weights)
 
     def finish(self, finding: Finding) -> Solved | Floats:
         """Polish and certify; where that fails, the pair of arc lengths at the worst place."""

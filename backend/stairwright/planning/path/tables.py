@@ -221,6 +221,7 @@ def on_lattice(
                     e = max(zero, soft - room) / soft
                     fits = src[k] + weight * e * e
                     value[k] = fits if room >= zero else INF
+                for k in range(width):
                     drag[k] = mos[k] + carried
                 a, b = 0, width
                 while a < width and value[a] >= INF:

@@ -6,6 +6,8 @@ best now. Cost and memory grow with the length of the course, not with its squar
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from stairwright.planning.weights import PathWeights
@@ -14,12 +16,18 @@ from stairwright.terrain.wheel_path import WheelPath
 
 from .course import Stand, scale
 from .ground import Ground
-from .lattice import Finding, Search, make_lattice
+from .lattice import Finding, make_lattice
+from .search import Search
 from .tables import Bounds
 
 PITCHES = 1.9  # rad; largest pitch searched: the trunk may lean back past vertical
 _WINDOW = 5.0  # m, for legs of 0.4 m
 _AHEAD = 1.8  # m of a window that are searched again by the next
+
+
+# Tables of earlier searches of the same course, which the next rung or another friction can use.
+Searches = dict[tuple[Any, ...], Search]
+_KEPT = 8
 
 
 def find_path(
@@ -34,8 +42,14 @@ def find_path(
     reserve: float,
     cheap: bool = True,
     roll_back: bool = False,
+    partial: bool = False,
+    searches: Searches | None = None,
 ) -> Finding:
-    """The way from the first stand to the second; see `Search.find` for the arguments."""
+    """The way from the first stand to the second; see `Search.find` for the arguments.
+
+    With `partial` it is the way as far as it goes where there is none to the end.
+    """
+    kept: Searches = {} if searches is None else searches
     lattice = make_lattice(robot, PITCHES, fine)
     begin, end = stands
     size = scale(robot)
@@ -44,16 +58,23 @@ def find_path(
         stop = begin.wheels[0] + _WINDOW * size
         last = stop > end.wheels[0] - 0.5 * size
         until = end if last else Stand((stop, stop - 0.2 * size), end.body)
-        search = Search(path, ground, robot, begin, until, lattice, weights, bounds)
-        found = search.find(friction, reserve, bounds.com, cheap or not last, roll_back, not last)
+        key = (id(robot), fine, bounds, begin.wheels, until.wheels, tuple(begin.body.tolist()))
+        search = kept.get(key)
+        if search is None:
+            search = Search(path, ground, robot, begin, until, lattice, weights, bounds)
+            if len(kept) < _KEPT and fine > 1.0:
+                kept[key] = search
+        found = search.find(
+            friction, reserve, bounds.com, cheap or not last, roll_back, not last, partial
+        )
         quality, back = min(quality, found.quality), back or found.back
-        if found.quality == 0:
+        if found.quality == 0 and (not partial or found.s is None):
             return found
         if last and not cheap:
             return Finding(None, None, quality, None, back)
         assert found.s is not None
         assert found.body is not None
-        if last:
+        if last or found.quality == 0:
             rows_s.append(found.s)
             rows_body.append(found.body)
             break

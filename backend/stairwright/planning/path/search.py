@@ -1,0 +1,266 @@
+"""One lattice problem from start to goal: tables, cells, and the way through them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.planning.weights import PathWeights
+from stairwright.robot.description import Robot
+from stairwright.terrain.wheel_path import WheelPath
+
+from .cells import FORWARD, MOVES, Cells, World, build_cells
+from .cheapest import cheapest, trace
+from .course import Stand, sample_course, scale, stand_height
+from .flood import flood
+from .ground import Ground
+from .lattice import LAG, Finding
+from .legs import Leg, make_legs
+from .tables import (
+    Bounds,
+    Floats32,
+    Lattice,
+    LegTable,
+    Pulls,
+    alike,
+    hip_grid,
+    on_lattice,
+    trunk_grid,
+)
+from .volumes import Volumes, make_volumes
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+HipGrid = tuple[Floats32, Floats32, Floats32]
+
+_SWEEPS = 12  # most sweeps when wheels may roll back
+
+
+class Search:
+    """A lattice between two stands. Tables are built once; friction and margins may change."""
+
+    def __init__(
+        self,
+        path: WheelPath,
+        ground: Ground,
+        robot: Robot,
+        begin: Stand,
+        end: Stand,
+        lattice: Lattice,
+        weights: PathWeights,
+        bounds: Bounds,
+    ) -> None:
+        self.path, self.robot, self.lattice, self.bounds = path, robot, lattice, bounds
+        self.begin, self.end, self.weights = begin, end, weights
+        p = robot.planar
+        self.planar = p
+        self.legs = make_legs(p)
+        size = scale(robot)
+        self.s = sample_course(path, begin, end, lattice.step, size)
+        self.centres = np.ascontiguousarray(path.centres(self.s))
+        self.pulls = Pulls(
+            weights.com_margin, weights.clearance, weights.torque, weights.smoothness, weights.pitch
+        )
+        front, rear = self.legs
+        widest = max(leg.reach_max for leg in self.legs) + 0.2 * (p.thigh + p.calf)
+        kept, like = alike(path.vertices, self.centres, widest)
+
+        def table(leg: Leg, grid: HipGrid) -> LegTable:
+            mass = p.thigh_mass + p.calf_mass + p.wheel_mass
+            slack = 0.02 + bounds.thigh
+            built: LegTable = on_lattice(grid, like, leg, mass, self.centres, lattice, slack)
+            return built
+
+        def hips(leg: Leg) -> HipGrid:
+            grid: HipGrid = hip_grid(
+                ground, p, leg, self.centres[kept], lattice, self.pulls, bounds
+            )
+            return grid
+
+        grid = hips(rear)
+        self.rear_table = table(rear, grid)
+        mirrored = front._replace(hip_x=0.0, hip_z=0.0) != rear._replace(hip_x=0.0, hip_z=0.0)
+        self.front_table = table(front, hips(front) if mirrored else grid)
+        self.ground = ground
+        self.far = 2 * max(leg.reach_max for leg in self.legs) + math.hypot(
+            front.hip_x - rear.hip_x, front.hip_z - rear.hip_z
+        )
+        self.near = 2 * p.wheel_radius + bounds.legs
+        self.trunk, self.trunk_x0, self.trunk_z0 = self._trunk_table()
+
+    def _trunk_table(self) -> tuple[NDArray[np.float32], int, int]:
+        lat, c = self.lattice, self.centres
+        x0 = math.floor(c[:, 0].min() / lat.step) - lat.nx // 2 - 2
+        x1 = math.ceil(c[:, 0].max() / lat.step) + lat.nx // 2 + 2
+        z0 = math.floor(c[:, 1].min() / lat.step) + lat.low - 2
+        z1 = math.ceil(c[:, 1].max() / lat.step) + lat.low + lat.nz + 2
+        used = np.zeros((z1 - z0 + 1, x1 - x0 + 1), np.bool_)
+        half = lat.nx // 2 + 2
+        # Every window lies round the mean of two wheels at most `far` apart.
+        step = max(1, len(c) // 400)
+        for i in range(0, len(c), step):
+            close = np.flatnonzero(np.abs(c[:, 0] - c[i, 0]) <= self.far)
+            mean = 0.5 * (c[close] + c[i])
+            a = int(mean[:, 0].min() / lat.step) - half - x0
+            b = int(mean[:, 0].max() / lat.step) + half - x0
+            d = int(mean[:, 1].min() / lat.step) + lat.low - 2 - z0
+            e = int(mean[:, 1].max() / lat.step) + lat.low + lat.nz + 2 - z0
+            used[max(0, d) : e + 1, max(0, a) : b + 1] = True
+        grid = trunk_grid(self.ground, self.planar, lat, self.pulls, self.bounds, used, x0, z0)
+        return grid, x0, z0
+
+    def find(
+        self,
+        friction: float,
+        reserve: float,
+        com: float,
+        cheap: bool = True,
+        roll_back: bool = False,
+        open_end: bool = False,
+        partial: bool = False,
+    ) -> Finding:
+        """The way from start to goal at `friction`, wide at the `reserve` friction if possible.
+
+        Args:
+            friction: Coulomb friction.
+            reserve: Lower friction that is kept where the terrain allows it.
+            com: Least CoM margin [m].
+            cheap: Also trace the smoothest way; otherwise only the verdict is given.
+            open_end: Any pose with the front wheels at the last sample will do.
+            partial: Where there is no way to the goal, trace the one that gets farthest.
+            roll_back: Let wheels roll back where there is no way forward only.
+        """
+        p, lat = self.planar, self.lattice
+        i0, j0 = self._index(self.begin)
+        i1, j1 = self._index(self.end)
+        cells = build_cells(
+            self.path.pieces, self.path.corners, p.wheel_radius, self.s, self.centres,
+            0, len(self.s) - 1, self.near, self.far, lat, friction, reserve, LAG, com,
+        )  # fmt: skip
+        source, goal = int(cells.number[i0, j0]), int(cells.number[i1, j1])
+        exits = np.flatnonzero(cells.front == len(self.s) - 1)
+        goal = int(exits[0]) if open_end and len(exits) else goal
+        if source < 0 or goal < 0:
+            return Finding(None, None, 0, None)
+        w = self._world(com)
+        seed: Ints = self._seed(cells, source, self.begin)
+        target: Ints = self._seed(cells, goal, self.end)
+        v = make_volumes(len(cells.front), lat)
+        moves = FORWARD
+        flood(w, cells, v, source, seed, moves)
+        if open_end:
+            goal = int(exits[int(np.argmax(v.best[exits]))])
+            if v.best[goal] > 0:
+                target = self._widest(v, goal)
+        best, pose = self._best(v, goal, target)
+        if best == 0 and roll_back:
+            moves = len(MOVES)
+            for k in range(_SWEEPS):
+                if not flood(w, cells, v, source, seed, moves):
+                    break
+                best, pose = self._best(v, goal, target)
+                if best > 0 and k > 1:
+                    break
+        reached = None if best > 0 else self._farthest(cells, v)
+        if best == 0 and (not partial or reached is None):
+            return Finding(None, None, 0, reached)
+        if best > 0 and not cheap:
+            return Finding(None, None, best, None, moves > FORWARD)
+        if best == 0:
+            goal = int(cells.number[self._index(Stand(reached or (0.0, 0.0), self.end.body))])
+            pose = self._widest(v, goal)
+        wide = best or int(v.best[goal])
+        level = max(1, min(wide, 150) if wide > 100 else int(0.7 * wide))
+        pulls = np.array(
+            [
+                self.weights.com_margin,
+                self.weights.pitch,
+                stand_height(self.robot),
+                0.09 * scale(self.robot),
+            ]
+        )
+        smooth = 0.25 * self.weights.smoothness
+        for _ in range(1 if moves == FORWARD else 2 * _SWEEPS):
+            if not cheapest(w, cells, v, source, seed, moves, smooth, pulls, level):
+                break
+        rows = np.empty((4 * len(self.s) + 400, 5), np.int32)
+        last = self._cheapest_pose(self._window(v.value[v.slot[goal]]), pose)
+        count = trace(w, cells, v, source, goal, last, moves, smooth, rows)
+        if count < 0:
+            return Finding(None, None, 0, self._farthest(cells, v))
+        rows = rows[:count][::-1]
+        s = np.stack([self.s[rows[:, 0]], self.s[rows[:, 1]]], axis=1)
+        body = np.stack(
+            [rows[:, 4] * lat.step, rows[:, 3] * lat.step, rows[:, 2] * lat.turn], axis=1
+        )
+        return Finding(s, body, best, (float(s[-1, 0]), float(s[-1, 1])), moves > FORWARD)
+
+    def _world(self, com: float) -> World:
+        return World(
+            self.ground, self.planar, *self.legs, self.centres, self.s, self.lattice,
+            self.front_table, self.rear_table, self.trunk, self.trunk_x0, self.trunk_z0,
+            self.bounds.legs, com,
+        )  # fmt: skip
+
+    def _index(self, where: Stand) -> tuple[int, int]:
+        return (
+            int(np.argmin(np.abs(self.s - where.wheels[0]))),
+            int(np.argmin(np.abs(self.s - where.wheels[1]))),
+        )
+
+    def _seed(self, cells: Cells, c: int, where: Stand) -> Ints:
+        lat, body = self.lattice, where.body
+        seed = [
+            round(body[2] / lat.turn) + lat.pitches // 2 - cells.t0[c],
+            round(body[1] / lat.step) - cells.z0[c],
+            round(body[0] / lat.step) - cells.x0[c],
+        ]
+        sizes = (lat.nt, lat.nz, lat.nx)
+        return np.array(
+            [min(max(int(v), 0), n - 1) for v, n in zip(seed, sizes, strict=True)], np.int32
+        )
+
+    def _window(self, volume: NDArray[Any]) -> NDArray[Any]:
+        """(nt, nz, nx) view of a flat volume without its rim."""
+        lat = self.lattice
+        full = volume.reshape(lat.nt + 4, lat.nz + 4, lat.row)
+        return full[2:-2, 2:-2, 2 : 2 + lat.nx]
+
+    @staticmethod
+    def _near(pose: Ints) -> tuple[slice, ...]:
+        return tuple(slice(max(0, int(v) - 2), int(v) + 3) for v in pose)
+
+    def _best(self, v: Volumes, goal: int, target: Ints) -> tuple[int, Ints]:
+        """Best quality near the resting pose `target` at the goal, and that pose."""
+        if v.best[goal] == 0:
+            return 0, target
+        part = self._near(target)
+        near = self._window(v.width[v.slot[goal]])[part]
+        if near.size == 0 or near.max() == 0:
+            return 0, target
+        at = np.unravel_index(int(near.argmax()), near.shape)
+        pose = [int(k) + part[m].start for m, k in enumerate(at)]
+        return int(near.max()), np.array(pose, np.int32)
+
+    def _widest(self, v: Volumes, c: int) -> Ints:
+        """The pose of cell `c` with the widest way to it."""
+        inside = self._window(v.width[v.slot[c]])
+        at = np.unravel_index(int(inside.argmax()), inside.shape)
+        return np.array([int(k) for k in at], np.int32)
+
+    def _cheapest_pose(self, volume: NDArray[np.float32], pose: Ints) -> Ints:
+        part = self._near(pose)
+        at = np.unravel_index(int(volume[part].argmin()), volume[part].shape)
+        return np.array([int(k) + part[m].start for m, k in enumerate(at)], np.int32)
+
+    def _farthest(self, cells: Cells, v: Volumes) -> tuple[float, float] | None:
+        found = np.flatnonzero(v.best)
+        if len(found) == 0:
+            return None
+        sums = self.s[cells.front[found]] + self.s[cells.rear[found]]
+        c = found[int(np.argmax(sums))]
+        return float(self.s[cells.front[c]]), float(self.s[cells.rear[c]])
