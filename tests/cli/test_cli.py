@@ -71,6 +71,7 @@ def test_a_plan_is_summed_up_or_written(curb: Path, plan: Path) -> None:
     assert document["robot"] == "a1_wheeled_x"
 
 
+@pytest.mark.slow
 def test_a_plan_is_certified_exported_and_rolled_out(plan: Path) -> None:
     assert "passed" in run("certify", plan)
     for name in ("csv", "npz", "mcap", "mjcf"):
@@ -84,6 +85,7 @@ def test_a_plan_is_certified_exported_and_rolled_out(plan: Path) -> None:
     run("export", rollout, "--format", "html", "-o", plan.with_name("run.html"))
 
 
+@pytest.mark.slow
 def test_trials(plan: Path) -> None:
     out = plan.with_name("trials.json")
     status = main(["rollout", str(plan), "--trials", "2", "-o", str(out)])
@@ -153,6 +155,7 @@ def test_as_a_process_of_its_own() -> None:
     assert done.stderr.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_bench() -> None:
     text = run("bench", "flat", "--robot", "a1_wheeled", "--repeat", "1")
     assert "median ms" in text

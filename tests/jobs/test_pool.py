@@ -101,6 +101,7 @@ def test_a_worker_killed_at_work() -> None:
     tell(story)
 
 
+@pytest.mark.slow
 def test_a_worker_killed_while_idle_is_replaced() -> None:
     async def story(pool: WorkerPool) -> None:
         pid = await pool.run(os.getpid, deadline=10)
@@ -126,6 +127,7 @@ def test_cancelling_the_caller_kills_the_worker() -> None:
     tell(story)
 
 
+@pytest.mark.slow
 def test_cancelling_again_and_again_leaves_a_working_pool() -> None:
     async def story(pool: WorkerPool) -> None:
         for k in range(10):
@@ -161,6 +163,7 @@ def test_a_sealed_worker_opens_nothing() -> None:
     tell(story, limits=Limits(sealed=True))
 
 
+@pytest.mark.slow
 def test_no_task_is_lost_when_the_one_before_it_is_given_up() -> None:
     async def story(pool: WorkerPool) -> None:
         for k in range(40):
