@@ -82,7 +82,7 @@ def test_nothing_is_compiled_twice():
     for robot in sw.robots():
         for terrain in (stair(0.2), stair(1.2), ramp(0.3, 0.4), "flat", random_profile(2)):
             reference_or_none(sw.plan(terrain, robot, method="critical"))
-    kernels = (search.search, search.least_slack, nearest.nearest, places.rear_places, places.rooms)
+    kernels = (search.search, search.slacks, nearest.nearest, places.rear_places, places.rooms)
     assert [len(kernel.signatures) for kernel in kernels] == [1] * len(kernels)
 
 

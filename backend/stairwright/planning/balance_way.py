@@ -5,9 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.terrain.wheel_path import WheelPath
-
-from .sqp.cells import make_course
+from .sqp.cells import Course
 from .sqp.places import rooms
 
 Floats = NDArray[np.float64]
@@ -16,19 +14,20 @@ ROOM = 0.03  # m of CoM margin wanted on the way
 EASE = 0.06  # m of progress over which the CoM moves aside before and after it must
 
 
-def com_ways(path: WheelPath, friction: float, wheels: Floats) -> tuple[Floats, Floats]:
-    """Least and largest x (n,) of the CoM with room to spare [m]; infinite where nothing holds.
+def com_ways(course: Course, friction: float, wheels: Floats, spare: float) -> Floats:
+    """Least and largest x (n, 2) of the CoM with room to spare [m]; infinite where nothing holds.
 
     Args:
-        path: Wheel-centre curve.
+        course: The terrain.
         friction: Between wheels and terrain.
         wheels: (n, 2) arc lengths of front and rear wheels.
+        spare: Room wanted, or half of what there is [m].
     """
-    a, b = rooms(make_course(path), wheels, friction).T
+    a, b = rooms(course, wheels, friction).T
     held = a <= b
-    room = np.minimum(ROOM, np.where(held, b - a, 0.0) / 2)
+    room = np.minimum(spare, np.where(held, b - a, 0.0) / 2)
     # Where no CoM is held at all (both wheels on one wall), moving it is of no use.
-    return np.where(held, a + room, -np.inf), np.where(held, b - room, np.inf)
+    return np.stack([np.where(held, a + room, -np.inf), np.where(held, b - room, np.inf)], axis=1)
 
 
 def eased_shift(progress: Floats, com: Floats, low: Floats, high: Floats) -> Floats:

@@ -103,20 +103,23 @@ def _solve(
 ) -> tuple[list[_Knot], Problem | None]:
     knots: list[_Knot] = []
     rear = begin.wheels[1]
-    posture = np.array([begin.body[2], *search.standing])
+    before = _variables(_standing(search, begin))
     pairs: list[tuple[_Knot, _Knot]] = []
     fronts = front_places(obstacles, search.path.radius, end.wheels[0])
     for k, (obstacle, (first, second)) in enumerate(zip(obstacles, fronts, strict=True)):
+        rest = _rest(search, obstacles, k)
+        following = end if k + 1 == len(obstacles) else rest
+        after = None if following is None else _variables(_standing(search, following))
         moved = _moved_pair(search, obstacles, pairs, k) if len(pairs) > 1 else None
         if moved is not None and moved[0].wheels[1] >= rear:
             pair = moved
         else:
             span, up = (rear, end.wheels[1]), obstacle.height > 0
             places = (
-                Place(first, span, True, obstacle.steepest, up, posture),
-                Place(second, span, False, obstacle.steepest, up, posture),
+                Place(first, span, True, obstacle.steepest, up, before),
+                Place(second, span, False, obstacle.steepest, up, before),
             )
-            both = search.best_pair(*places)
+            both = search.best_pair(*places, after=after)
             for place, one in zip(places, both, strict=True):
                 if one is None or not one.solution.solved:
                     way = (place.front + place.rear[0] - sum(begin.wheels)) / 2
@@ -127,10 +130,10 @@ def _solve(
             del knots[-2:]
         pairs.append(pair)
         knots.extend(pair)
-        if (rest := _rest(search, obstacles, k)) is not None:
+        if rest is not None:
             knots.append(_standing(search, rest))
         rear = knots[-1].wheels[1]
-        posture = np.array([knots[-1].trunk[2], *knots[-1].joints])
+        before = _variables(knots[-1])
     return knots, None
 
 
@@ -146,6 +149,11 @@ def _rest(search: PoseSearch, obstacles: list[Obstacle], k: int) -> Stand | None
     front = rear + hips.front[0] - hips.rear[0]
     room = obstacles[k + 1].begin - TAIL * search.size
     return stand(search.path, search.robot, front, rear) if front <= room else None
+
+
+def _variables(knot: _Knot) -> Floats:
+    """The nine variables of a pose."""
+    return np.array([*knot.trunk, *knot.joints, *knot.wheels])
 
 
 def _knot(found: Found) -> _Knot:

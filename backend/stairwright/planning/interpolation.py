@@ -11,6 +11,7 @@ use ``joint``: their poses are placed so that it misses the curve by less than a
 from __future__ import annotations
 
 import itertools
+import math
 from typing import Literal
 
 import numpy as np
@@ -21,19 +22,20 @@ from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
-from .balance_way import com_ways, eased_shift
-from .clearance import clearance, legs_apart
+from .balance_way import ROOM, com_ways, eased_shift
 from .plan import Plan
-from .pose_search import APART, CLEARANCE, PoseSearch
+from .pose_search import PoseSearch
 from .reference import Reference
+from .sqp.nearest import BETWEEN
 from .supports import contact_forces, weight_of
 from .weights import CriticalWeights
 
 Floats = NDArray[np.float64]
 Mode = Literal["joint", "curve"]
 
-_ROUNDS = 4  # of asking for the CoM's place
-_NEAR = 1e-3  # m; such an error of the CoM is none
+_ROOMS = (0.015, 0.006, 0.002)  # m that the CoM keeps from where balance ends, if it must
+_SHARES = (0.75, 0.5, 0.25, 0.0)  # of the way that the CoM should move, where no move balances
+_FREE = (-np.inf, np.inf)
 _COARSE = 4  # samples between those where corrections are solved for
 
 
@@ -112,102 +114,104 @@ def _grid(knots: Floats, spacing: float) -> Floats:
 
 
 def _on_curve(
-    plan: Plan,
-    path: WheelPath,
-    progress: Floats,
-    trunk: Floats,
-    s: Floats,
-    q: Floats,
+    plan: Plan, path: WheelPath, progress: Floats, trunk: Floats, s: Floats, q: Floats
 ) -> tuple[Floats, Floats]:
     """Trunk (n, 3) and joints (n, 4) with the wheels on the curve, limits and clearance kept.
 
     Where a linear trunk is out of the legs' reach, touches the terrain or leaves the centre of
     mass where the friction cones cannot hold it, the nearest pose that does not takes its place;
-    critical poses beside such places move with them. Where there is none, the joints stay at
-    their limits and the wheels leave the curve.
+    critical poses beside such places move with them. Where no pose is balanced, balance gives way;
+    where none reaches, the wheels leave the curve, with joints between those beside.
     """
-    robot = plan.robot_description
-    solved, good = _legs(robot, path, trunk, s, q)
-    com = _com(robot, trunk, np.where(np.isfinite(solved), solved, q))[:, 0]
-    shift = eased_shift(progress, com, *com_ways(path, plan.friction, s))
-    if good.all() and not shift.any():
-        return trunk, solved
-
-    search = PoseSearch(robot, path, plan.friction, CriticalWeights())
-    # First at every few samples, the trunk's change linear between them; then where that fails.
-    asked = np.flatnonzero(~good | (shift != 0.0))
-    coarse = asked[(np.arange(len(asked)) % _COARSE == 0) | ~np.isin(asked + 1, asked)]
-    fixed = np.union1d(coarse, np.flatnonzero(good & (shift == 0.0)))
-    change = np.zeros_like(trunk)
-    start: Floats | None = None
-    for i in coarse:
-        found = _balanced(search, s[i], trunk[i], q[i], shift[i], com[i] + shift[i], start)
-        if found is not None:
-            change[i], start = found[:3] - trunk[i], found
-    for j in range(3):
-        change[:, j] = np.interp(np.arange(len(trunk)), fixed, change[fixed, j])
-    trunk = trunk + change
-    solved, good = _legs(robot, path, trunk, s, q)
-    for i in np.flatnonzero(~good):
-        start = np.concatenate([trunk[i - 1], solved[i - 1], s[i]]) if i and good[i - 1] else start
-        nearest = search.nearest(s[i], trunk[i], q[i], start)
-        if nearest.solved:
-            trunk[i], solved[i], start = nearest.x[:3], nearest.x[3:7], nearest.x
-            good[i] = True
+    search = PoseSearch(plan.robot_description, path, plan.friction, CriticalWeights())
+    ways = com_ways(search.course, search.friction, s, ROOM)
+    anywhere = np.tile([-np.inf, np.inf], (len(s), 1))
+    sound, solved = search.sound(np.concatenate([trunk, s], axis=1), anywhere)
+    com = _com(search.robot, trunk, np.where(np.isfinite(solved), solved, q))[:, 0]
+    shift = eased_shift(progress, com, *ways.T)
+    if not sound.all() or shift.any():
+        trunk = _moved(search, trunk, s, q, com, sound, shift)
+        poses = np.concatenate([trunk, s], axis=1)
+        sound, solved = search.sound(poses, anywhere, BETWEEN)
     places = np.arange(len(q))
-    if good.any():
-        for j in range(4):
-            solved[:, j] = np.interp(places, places[good], solved[good, j])
-    else:
-        solved = q
-    limits = kinematics.limits(robot)
+    if not sound.any():
+        return trunk, q
+    for j in range(4):
+        solved[:, j] = np.interp(places, places[sound], solved[sound, j])
+    limits = kinematics.limits(search.robot)
     return trunk, np.clip(solved, limits[:, 0], limits[:, 1])
 
 
-def _balanced(
+def _moved(
+    search: PoseSearch,
+    trunk: Floats,
+    s: Floats,
+    q: Floats,
+    com: Floats,
+    sound: NDArray[np.bool_],
+    shift: Floats,
+) -> Floats:
+    """Trunk (n, 3) moved to clear poses whose CoM, now at `com` (n,), is moved by `shift` (n,).
+
+    First at every few samples, its change linear between them; then where that does not do.
+    """
+    count = len(trunk)
+    edges = com_ways(search.course, search.friction, s, 0.0)
+    asked = np.flatnonzero(~sound | (shift != 0.0))
+    coarse = asked[(np.arange(len(asked)) % _COARSE == 0) | ~np.isin(asked + 1, asked)]
+    fixed = np.union1d(coarse, np.flatnonzero(sound & (shift == 0.0)))
+    change = np.zeros_like(trunk)
+    start: Floats | None = None
+    for i in coarse:
+        found = _nearest(search, s[i], trunk[i], q[i], com[i], shift[i], edges[i], start)
+        if found is not None:
+            change[i], start = found[:3] - trunk[i], found
+    for j in range(3):
+        change[:, j] = np.interp(np.arange(count), fixed, change[fixed, j])
+    moved = trunk + change
+    anywhere = np.tile([-np.inf, np.inf], (count, 1))
+    sound, solved = search.sound(np.concatenate([moved, s], axis=1), anywhere)
+    for i in np.flatnonzero(~sound):
+        start = np.concatenate([moved[i - 1], solved[i - 1], s[i]]) if i and sound[i - 1] else start
+        found = _nearest(search, s[i], trunk[i], q[i], com[i], shift[i], edges[i], start)
+        if found is not None:
+            moved[i], solved[i], start = found[:3], found[3:7], found
+            sound[i] = True
+    return moved
+
+
+def _nearest(
     search: PoseSearch,
     wheels: Floats,
     trunk: Floats,
     q: Floats,
+    com: float,
     shift: float,
-    com_x: float,
+    way: Floats,
     start: Floats | None,
 ) -> Floats | None:
-    """Variables (9,) of the clear pose nearest to `trunk` whose CoM is moved by `shift`, if any."""
-    target = trunk.copy()
-    target[0] += shift
-    best: Floats | None = None
-    for _ in range(_ROUNDS):
-        found = search.nearest(wheels, target, q, start)
-        if not found.solved:
-            break
-        best = start = found.x
-        # Legs move less than the trunk, so the CoM does: ask for what is still missing.
-        missing = com_x - _com(search.robot, best[None, :3], best[None, 3:7])[0, 0]
-        if shift == 0.0 or abs(missing) < _NEAR:
-            break
-        target[0] += 1.5 * missing
-    return best
+    """Variables (9,) of the clear pose nearest to `trunk` with its CoM moved by `shift`, if any.
+
+    Where the legs do not allow that, by as much of it as they do; balance ends at `way` (2,).
+    """
+    wanted = np.concatenate([trunk, q])
+    for move in _moves(com, shift, way) if shift else (0.0,):
+        place = com + move
+        wanted[0] = trunk[0] + move
+        low, high = (place, np.inf) if shift > 0.0 else (-np.inf, place)
+        found = search.nearest(wheels, wanted, start, (low, high) if move else _FREE)
+        if found.solved:
+            return found.x
+    return None
 
 
-def _legs(
-    robot: Robot, path: WheelPath, trunk: Floats, s: Floats, q: Floats
-) -> tuple[Floats, NDArray[np.bool_]]:
-    """Joints (n, 4) to the wheels' places (NaN out of reach), and which poses (n,) are sound."""
-    limits = kinematics.limits(robot)
-    wheels = path.centres(s.ravel()).reshape(-1, 2, 2)
-    solved = kinematics.inverse(robot, trunk[:, 0], trunk[:, 1], trunk[:, 2], wheels)
-    solved = q + (solved - q + np.pi) % (2 * np.pi) - np.pi
-    good = np.all((solved >= limits[:, 0] - 1e-9) & (solved <= limits[:, 1] + 1e-9), axis=1)
-    for i in np.flatnonzero(good):
-        good[i] = _clear(robot, path, trunk[i], solved[i])
-    return solved, good
-
-
-def _clear(robot: Robot, path: WheelPath, trunk: Floats, q: Floats) -> bool:
-    pose = (float(trunk[0]), float(trunk[1]), float(trunk[2]))
-    gap, _ = clearance(robot, path.vertices, pose, q)
-    return gap >= CLEARANCE - 1e-6 and legs_apart(robot, pose, q) >= APART - 1e-6
+def _moves(com: float, shift: float, way: Floats) -> list[float]:
+    """Moves of the CoM to try [m]: all of it, then with less and less room, then part of it."""
+    need = way[0] - com if shift > 0.0 else way[1] - com  # to where the room ends
+    inward = math.copysign(1.0, shift)
+    edges = [need + inward * room for room in _ROOMS]
+    less = [move for move in edges if 0.0 < move / shift < 1.0]
+    return [shift, *less, *(share * shift for share in _SHARES)]
 
 
 def _com(robot: Robot, trunk: Floats, q: Floats) -> Floats:

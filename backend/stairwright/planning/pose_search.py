@@ -15,6 +15,7 @@ from stairwright.terrain.wheel_path import WheelPath
 from .solver import Solution
 from .sqp import places, search
 from .sqp.cells import make_course
+from .sqp.joined import imbalance
 from .sqp.nearest import nearest
 from .sqp.search import COST, ENOUGH, GRID, MARGIN, TOLERANCE, TURN, VIOLATION, WANTED, Rules, Wish
 from .sqp.state import make_body
@@ -26,8 +27,10 @@ CLEARANCE = 0.012  # m between trunk or links and the terrain at a critical pose
 APART = 0.006  # m between front and rear leg
 TRIES = 4  # places where many first guesses are tried when the usual ones find nothing
 FREE = 1e3  # m; a bound that bounds nothing
+_TIPPED = 20.0  # 1/m; what lost balance on the way weighs against room for the CoM
 _TURN = 0.05  # 1/rad^2; what turning the joints weighs against room for the CoM
 _NOTHING = np.full(5, np.nan)
+_ANYWHERE = np.array([[-np.inf, np.inf]])
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,7 @@ class Place:
             both must hold the robot together.
         climbs: Whether the obstacle goes up. Eq 20 keeps the robot from falling backward there; on
             the way down it does not apply, the robot would fall forward.
-        posture: (5,) pitch and joints of the pose before [rad].
+        before: (9,) variables of the pose before: x, z, pitch, joints, arc lengths of the wheels.
     """
 
     front: float
@@ -50,7 +53,12 @@ class Place:
     ahead: bool
     face: float
     climbs: bool
-    posture: Floats
+    before: Floats
+
+    @property
+    def posture(self) -> Floats:
+        """Pitch and joints (5,) of the pose before [rad]."""
+        return self.before[2:7]
 
     @property
     def wish(self) -> Wish:
@@ -110,25 +118,47 @@ class PoseSearch:
         self.span = (2 * robot.wheel.radius + APART, 2 * reach + wheelbase)
         self._usual = 1.4 * wheelbase
 
-    def best_pair(self, first: Place, second: Place) -> tuple[Found | None, Found | None]:
-        """The poses before and after a face; the rear wheel crosses no steep ground between."""
+    def best_pair(
+        self, first: Place, second: Place, after: Floats | None = None
+    ) -> tuple[Found | None, Found | None]:
+        """The poses before and after a face; the rear wheel crosses no steep ground between.
+
+        Of all pairs with room for the CoM the first one wins whose poses the robot can go through
+        without losing its balance; without any, the one that loses least.
+
+        Args:
+            first: Where the front wheel arrives at the face.
+            second: Where it is past it.
+            after: (9,) the known pose that follows, if any.
+        """
         best: tuple[float, Found, Found | None] | None = None
         for gentle in (True, False):
             options = sorted(self.search(first, gentle), key=lambda found: -found.score)
             for one in options[:ENOUGH]:
-                rear = float(one.solution.x[8])
-                stop = self._steep_ahead(rear) if gentle else second.rear[1]
-                stop = min(stop, second.rear[1])
-                place = replace(second, rear=(rear, stop), posture=one.solution.x[2:7])
-                later = max(self.search(place, gentle), key=lambda found: found.score, default=None)
-                value = one.score + (later.score if later else -10.0)
-                if best is None or value > best[0]:
-                    best = value, one, later
-                if later is not None and later.margin >= 0.99 * WANTED:
-                    return one, later
+                tipped = self.imbalance(first.before, one.solution.x)
+                for later in self._later(one, second, gentle):
+                    value = one.score - _TIPPED * tipped
+                    value += later.score if later else -10.0
+                    if later is not None:
+                        lost = self.imbalance(one.solution.x, later.solution.x)
+                        if after is not None:
+                            lost += self.imbalance(later.solution.x, after)
+                        value -= _TIPPED * lost
+                        if tipped + lost == 0.0 and later.margin >= 0.99 * WANTED:
+                            return one, later
+                    if best is None or value > best[0]:
+                        best = value, one, later
             if best is not None and best[2] is not None:
                 break
         return (best[1], best[2]) if best else (None, None)
+
+    def _later(self, one: Found, second: Place, gentle: bool) -> list[Found | None]:
+        """Poses that may follow `one`, best first; a list of None where there are none."""
+        rear = float(one.solution.x[8])
+        stop = min(self._steep_ahead(rear), second.rear[1]) if gentle else second.rear[1]
+        place = replace(second, rear=(rear, stop), before=one.solution.x)
+        found = sorted(self.search(place, gentle), key=lambda other: -other.score)
+        return [*found[:ENOUGH]] or [None]
 
     def search(self, place: Place, gentle: bool = True) -> list[Found]:
         """All solved poses with the front wheel at a place, one for each rear wheel place tried.
@@ -163,27 +193,52 @@ class PoseSearch:
         )  # fmt: skip
         return _found(x, numbers)
 
-    def nearest(self, wheels: Floats, trunk: Floats, q: Floats, start: Floats | None) -> Solution:
+    def nearest(
+        self,
+        wheels: Floats,
+        wanted: Floats,
+        start: Floats | None,
+        com: tuple[float, float] = (-math.inf, math.inf),
+    ) -> Solution:
         """The pose with the wheels at given places that is nearest to a trunk pose.
 
         Limits and clearances hold; eq 20 does not apply between critical poses.
 
         Args:
             wheels: (2,) arc lengths of front and rear wheels [m].
-            trunk: (3,) x, z [m] and pitch [rad] wanted.
-            q: (4,) joints wanted, which count little.
+            wanted: (7,) x, z [m], pitch and joints [rad]; the joints count little.
             start: (9,) another first guess.
+            com: Least and largest x of the centre of mass [m].
         """
         x = np.empty(9)
         value, violation = nearest(
-            self.body, self.course, self.rules, wheels, trunk, q, _start(start), x
+            self.body, self.course, self.rules, wheels, wanted, com, _start(start), x
         )
         return Solution(x, float(value), float(violation), "sqp")
 
+    def imbalance(self, begin: Floats, end: Floats) -> float:
+        """By how much the CoM lies outside balance between two poses (9,), at worst [m]."""
+        return float(imbalance(self.body, self.course, self.rules, begin, end))
+
     def clear(self, trunk: tuple[float, float, float], wheels: tuple[float, float]) -> bool:
         """Whether a pose with the wheels at given arc lengths keeps limits and clearances."""
-        slack = search.least_slack(self.body, self.course, self.rules, np.array([*trunk, *wheels]))
-        return bool(slack >= -TOLERANCE)
+        sound, _ = self.sound(np.array([[*trunk, *wheels]]), _ANYWHERE)
+        return bool(sound[0])
+
+    def sound(
+        self, poses: Floats, coms: Floats, clearance: float = CLEARANCE
+    ) -> tuple[NDArray[np.bool_], Floats]:
+        """Whether poses keep limits, clearances and balance (n,), and their joints (n, 4).
+
+        Args:
+            poses: (n, 5) x, z, pitch, arc lengths of front and rear wheels.
+            coms: (n, 2) least and largest x of the centre of mass [m].
+            clearance: Of trunk and links from the terrain [m].
+        """
+        joints = np.empty((len(poses), 4))
+        rules = self.rules._replace(clearance=clearance)
+        slack = search.slacks(self.body, self.course, rules, poses, coms, joints)
+        return slack >= -TOLERANCE, joints
 
     def rear_places(self, place: Place, gentle: bool = False) -> Floats:
         """Arc lengths of the rear wheel where ground and friction allow a pose, likeliest first."""

@@ -16,8 +16,7 @@ from .clearance import least_clearance
 from .plan import Margins, Pose
 from .sqp.cells import Course, make_course
 from .sqp.places import CONTACTS, contacts, room
-from .sqp.search import com_x, com_z
-from .sqp.state import HIP, POINTS, Body, make_body, new_state, place, stand_on
+from .sqp.state import HIP, POINTS, Body, com, make_body, new_state, place, stand_on
 from .supports import contact_forces, gentlest_forces, torque_margin, weight_of
 
 Floats = NDArray[np.float64]
@@ -104,11 +103,11 @@ def _measure(
         x, z, nx, nz = curve_at(course.pieces, course.radius, y[3 + leg])
         at[0, leg, 0], at[0, leg, 1] = x - course.radius * nx, z - course.radius * nz
         n[0, leg, 0], n[0, leg, 1] = nx, nz
-    centre = com_x(body, st)
+    centre = com(st, 0)
     record[_WHEELS:_CONTACTS] = st.points[HIP + 4 : HIP + 6].ravel()
     record[_CONTACTS:_FORCES] = at.ravel()
     record[_FORCES:_COM] = contact_forces(weight, np.array([centre]), at, n).ravel()
-    record[_COM], record[_COM + 1] = centre, com_z(body, st)
+    record[_COM], record[_COM + 1] = centre, com(st, 1)
     collision[:] = st.points[POINTS:]
 
     points, normals = np.empty((CONTACTS, 2)), np.empty((CONTACTS, 2))

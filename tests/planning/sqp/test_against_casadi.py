@@ -39,7 +39,7 @@ def both(seed, links, count=6):
         start = np.concatenate([wanted, [front, rear]])
         numbers = np.concatenate([wanted, rules.weights, dimensions(robot), window])
         theirs = pose_solver(layout, links, cells).solve(numbers, bounds, [start])
-        task = Task(wanted, rules.weights, lower, upper, 0.012, 0.006, 0.0, links)
+        task = Task(wanted, rules.weights, lower, upper, 0.012, 0.006, 0.0, links, -np.inf, np.inf)
         x = np.empty(9)
         cost, violation, _ = solve_pose(search.body, search.course, task, start[[0, 1, 2, 7, 8]], x)
         yield search, (x, cost, violation), theirs
@@ -78,8 +78,8 @@ def test_same_poses(name):
     path = wheel_path(sw.load_terrain(name), robot.wheel.radius)
     ours, theirs = (kind(robot, path, 0.6, weights) for kind in (PoseSearch, CasadiSearch))
     obstacle = find_obstacles(path, 0.3, path.length - 0.3)[0]
-    posture = np.array([0.0, *ours.standing])
-    place = Place(obstacle.begin, (0.3, path.length), True, obstacle.steepest, True, posture)
+    before = np.array([0.0, 0.33, 0.0, *ours.standing, 0.5, 0.25])
+    place = Place(obstacle.begin, (0.3, path.length), True, obstacle.steepest, True, before)
     rears = ours.rear_places(place, True)
     same = 0
     for rear in rears:

@@ -7,7 +7,7 @@ import stairwright as sw
 from stairwright.planning.pose_search import PoseSearch
 from stairwright.planning.sqp import rows as r
 from stairwright.planning.sqp import solve
-from stairwright.planning.sqp.state import new_state, place
+from stairwright.planning.sqp.state import com, make_body, new_state, place
 from stairwright.planning.weights import CriticalWeights
 from stairwright.robot import kinematics
 from stairwright.terrain.wheel_path import wheel_path
@@ -34,7 +34,7 @@ def problem(seed, links=True):
     rules = search.rules
     task = r.Task(
         random.normal(size=7), random.uniform(0.1, 3, 7), rules.lower, rules.upper,
-        0.012, 0.006, 0.0, links,
+        0.012, 0.006, 0.0, links, y[0] - 0.02, y[0] + 0.03,
     )  # fmt: skip
     return search, task, y, state
 
@@ -57,6 +57,8 @@ def row_value(search, task, state, rows, k):
         return sign * state.y[3 + i] - offset
     if kind == r.BEHIND:
         return points[i, 0] - state.contact[0] - offset
+    if kind == r.COM:
+        return sign * com(state, 0) - offset
     if kind == r.PLANE:
         return nx * points[i, 0] + nz * points[i, 1] - offset
     tip = np.array([nx, nz]) if kind == r.ACROSS and i < 0 else points[i]
@@ -119,3 +121,11 @@ def test_points_are_those_of_the_kinematics(seed):
     assert np.allclose(frames.wheels, search.path.centres(y[3:]), atol=1e-12)
     points = kinematics.collision_points(search.robot, x, z, pitch, state.q)
     assert np.allclose(state.points[10:], points, atol=1e-12)
+    centre = kinematics.com(search.robot, x, z, frames)
+    assert [com(state, 0), com(state, 1)] == pytest.approx(centre, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", sw.robots())
+def test_standing_joints(name):
+    robot = sw.load_robot(name)
+    assert make_body(robot).standing == pytest.approx(kinematics.standing_joints(robot), abs=1e-12)

@@ -1,4 +1,4 @@
-"""The clear pose nearest to one that is wanted, with the wheels at given places."""
+"""The sound pose nearest to one that is wanted, with the wheels at given places."""
 
 from __future__ import annotations
 
@@ -22,34 +22,35 @@ _WEIGHTS = (100.0, 30.0, 3.0, 0.05, 0.05, 0.05, 0.05)  # 1/m^2, 1/rad^2
 
 @nb.njit(cache=True)
 def nearest(
-    body: Body, course: Course, rules: Rules, wheels: Floats, trunk: Floats, q: Floats,
-    start: Floats, x: Floats,
+    body: Body, course: Course, rules: Rules, wheels: Floats, wanted: Floats,
+    com: tuple[float, float], start: Floats, x: Floats,
 ) -> tuple[float, float]:  # fmt: skip
-    """Cost and violation of the pose nearest to `trunk` and `q`; eq 20 does not apply.
+    """Cost and violation of the pose nearest to `wanted`; eq 20 does not apply.
 
     Args:
         body: The robot.
         course: The terrain.
         rules: Bounds; with the full clearance if that is possible, else with `BETWEEN`.
         wheels: (2,) arc lengths of the wheels.
-        trunk: (3,) wanted x, z, pitch.
-        q: (4,) wanted joints, which count little.
+        wanted: (7,) x, z, pitch, joints; the joints count little.
+        com: Least and largest x of the centre of mass [m].
         start: (5,) another first guess, or nan.
         x: (9,) filled with the pose.
     """
-    lower, upper, wanted = rules.lower.copy(), rules.upper.copy(), np.empty(7)
+    lower, upper = rules.lower.copy(), rules.upper.copy()
     lower[7:], upper[7:] = wheels, wheels
-    wanted[:3], wanted[3:] = trunk, q
     weights, guess, trial = np.array(_WEIGHTS), np.empty(5), np.empty(9)
     best, least = np.inf, np.inf
     x[:] = np.nan
     for clearance in (rules.clearance, BETWEEN):
-        task = Task(wanted, weights, lower, upper, clearance, rules.apart, -np.inf, True)
+        task = Task(
+            wanted, weights, lower, upper, clearance, rules.apart, -np.inf, True, com[0], com[1]
+        )
         least = np.inf
         for k in range(2):
             guess[:] = start
             if k == 1:
-                guess[:3] = trunk
+                guess[:3] = wanted[:3]
             guess[3:] = wheels
             if math.isnan(guess[0]):
                 continue

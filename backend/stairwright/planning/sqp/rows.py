@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .cells import Course
-from .state import ANGLES, HIP, KNEE, POINTS, WHEEL, Body, State
+from .state import ANGLES, HIP, KNEE, POINTS, WHEEL, Body, State, com
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-JOINT, PLACE, BEHIND, PLANE, ACROSS, APART = 0, 1, 2, 3, 4, 5
+JOINT, PLACE, BEHIND, PLANE, ACROSS, APART, COM = 0, 1, 2, 3, 4, 5, 6
 U = ANGLES + 4  # length of u
 MOST = 1000  # rows kept; what lies beyond is still measured
 LOOK = 0.15  # m; rows with more slack do not guide a step
@@ -38,6 +38,7 @@ class Task(NamedTuple):
         apart: Least distance of the front leg from the rear one.
         hip: Least distance of the rear contact behind the rear hip (eq 20), or -inf.
         links: Keep whole links clear instead of the collision points (eq 21).
+        com_low, com_high: Where the centre of mass must be along x; infinite where it is free.
     """
 
     reference: Floats
@@ -48,6 +49,8 @@ class Task(NamedTuple):
     apart: float
     hip: float
     links: bool
+    com_low: float
+    com_high: float
 
 
 class Rows(NamedTuple):
@@ -111,6 +114,12 @@ def collect(body: Body, course: Course, task: Task, st: State, rows: Rows) -> tu
         value = st.points[HIP + 1, 0] - st.contact[0] - task.hip
         least = min(least, value)
         count = _add(rows, count, BEHIND, HIP + 1, -1, -1, 1.0, 0.0, 1.0, task.hip, value)
+    for side in range(2):
+        sign, bound = (1.0, task.com_low) if side == 0 else (-1.0, task.com_high)
+        if math.isfinite(bound):
+            value = sign * (com(st, 0) - bound)
+            least = min(least, value)
+            count = _add(rows, count, COM, -1, -1, -1, 0.0, 0.0, sign, sign * bound, value)
     count, least = _ground(body, course, task, st, rows, count, least)
     return _legs(body, task, st, rows, count, least)
 
@@ -333,6 +342,10 @@ def gradient(st: State, rows: Rows, k: int, out: Floats) -> None:
         _pull(st, i, nx, nz, out)
         if kind == BEHIND:
             out[8] -= st.contact[1]
+    elif kind == COM:
+        out[0] += sign * st.shares[0]
+        for k in range(6):
+            _pull(st, HIP + k, sign * st.shares[1 + k // 2], 0.0, out)
     elif kind == ACROSS:
         turn = rows.what[k, 3]
         ax, az = sign * st.normals[turn, 0], sign * st.normals[turn, 1]
@@ -377,6 +390,9 @@ def add_curvature(st: State, rows: Rows, k: int, factor: float, H: Floats) -> No
     nx, nz, sign = rows.numbers[k, 0], rows.numbers[k, 1], rows.numbers[k, 2]
     if kind in (BEHIND, PLANE):
         _bend(st, i, factor * nx, factor * nz, H)
+    elif kind == COM:
+        for k in range(6):
+            _bend(st, HIP + k, factor * sign * st.shares[1 + k // 2], 0.0, H)
     elif kind == ACROSS:
         turn = rows.what[k, 3]
         ax = factor * sign * st.normals[turn, 0]

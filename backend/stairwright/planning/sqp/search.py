@@ -15,7 +15,7 @@ from .cells import Course
 from .places import ground_below, room
 from .rows import Task, collect, new_rows
 from .solve import solve_pose
-from .state import HIP, KNEE, WHEEL, Body, State, new_state, place
+from .state import Body, State, com, new_state, place
 
 Floats = NDArray[np.float64]
 
@@ -143,8 +143,9 @@ def solve_at(
     for pull in range(_PULLS):
         reference(body, course, middle, wanted)
         task = Task(
-            wanted, rules.weights, lower, upper, rules.clearance, rules.apart, hip, rules.links
-        )
+            wanted, rules.weights, lower, upper, rules.clearance, rules.apart, hip, rules.links,
+            -np.inf, np.inf,
+        )  # fmt: skip
         value, violation = _first_solution(
             body, course, task, wish, rear, first, patient and pull == 0, trial
         )
@@ -206,41 +207,33 @@ def _first_solution(
 
 
 @nb.njit(cache=True)
-def least_slack(body: Body, course: Course, rules: Rules, y: Floats) -> float:
-    """Least slack of joint limits and clearances of a pose `y` (5,); -inf out of reach."""
-    lower, upper, none = rules.lower.copy(), rules.upper.copy(), np.zeros(7)
-    lower[7:], upper[7:] = y[3:], y[3:]
-    task = Task(none, none, lower, upper, rules.clearance, rules.apart, -np.inf, rules.links)
-    st = new_state(body, rules.links)
-    if not place(body, course, y, st):
-        return -np.inf
-    return collect(body, course, task, st, new_rows())[1]
+def slacks(
+    body: Body, course: Course, rules: Rules, poses: Floats, coms: Floats, joints: Floats
+) -> Floats:
+    """Least slack (n,) of limits, clearances and balance [m or rad]; -inf out of reach.
 
-
-@nb.njit(cache=True)
-def com_x(body: Body, st: State) -> float:
-    """x of the centre of mass of the whole robot [m]."""
-    p = body.planar
-    total = p.trunk_mass * st.y[0]
-    for leg in range(2):
-        hip, knee = st.points[HIP + leg, 0], st.points[KNEE + leg, 0]
-        wheel = st.points[WHEEL + leg, 0]
-        total += p.thigh_mass * (hip + p.thigh_com * (knee - hip)) + p.wheel_mass * wheel
-        total += p.calf_mass * (knee + p.calf_com * (wheel - knee))
-    return float(total / p.mass)
-
-
-@nb.njit(cache=True)
-def com_z(body: Body, st: State) -> float:
-    """z of the centre of mass of the whole robot [m]."""
-    p = body.planar
-    total = p.trunk_mass * st.y[1]
-    for leg in range(2):
-        hip, knee = st.points[HIP + leg, 1], st.points[KNEE + leg, 1]
-        wheel = st.points[WHEEL + leg, 1]
-        total += p.thigh_mass * (hip + p.thigh_com * (knee - hip)) + p.wheel_mass * wheel
-        total += p.calf_mass * (knee + p.calf_com * (wheel - knee))
-    return float(total / p.mass)
+    Args:
+        body: The robot.
+        course: The terrain.
+        rules: Limits and clearances; eq 20 is left out.
+        poses: (n, 5) x, z, pitch, arc lengths of the wheels.
+        coms: (n, 2) least and largest x of the centre of mass [m].
+        joints: (n, 4) filled with the joints, nan out of reach.
+    """
+    out, rows, st, none = np.empty(len(poses)), new_rows(), new_state(body, True), np.zeros(7)
+    for i in range(len(poses)):
+        if not place(body, course, poses[i], st):
+            out[i], joints[i] = -np.inf, np.nan
+            continue
+        lower, upper = rules.lower.copy(), rules.upper.copy()
+        lower[7:], upper[7:] = poses[i, 3:], poses[i, 3:]
+        task = Task(
+            none, none, lower, upper, rules.clearance, rules.apart, -np.inf, True,
+            coms[i, 0], coms[i, 1],
+        )  # fmt: skip
+        out[i] = collect(body, course, task, st, rows)[1]
+        joints[i] = st.q
+    return out
 
 
 @nb.njit(cache=True)
@@ -254,7 +247,7 @@ def com_shift(
     y = np.empty(5)
     y[:3], y[3:] = x[:3], x[7:]
     place(body, course, y, st)
-    com = com_x(body, st)
+    at = com(st, 0)
     low, high = room(course, x[7], x[8], friction)
     # Just after the first pose the face alone carries the front wheel; on the way down it still
     # does just before the second one, and there the CoM has the least time to move on.
@@ -266,5 +259,5 @@ def com_shift(
     if low > high:
         return 0.0, -np.inf
     spare = min(WANTED, (high - low) / 2)
-    wanted = min(max(com, low + spare), high - spare)
-    return wanted - com, min(com - low, high - com)
+    wanted = min(max(at, low + spare), high - spare)
+    return wanted - at, min(at - low, high - at)

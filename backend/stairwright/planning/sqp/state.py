@@ -49,17 +49,21 @@ class Body(NamedTuple):
 
 def make_body(robot: Robot) -> Body:
     """The numbers of a robot."""
-    from stairwright.robot import kinematics
-
     p, points = robot.planar, robot.collision_points
+    legs, drop = make_legs(p), p.wheel_radius - p.nominal_height
+    standing = []
+    for leg in legs:  # wheels below the hips, trunk level
+        x, z = knee_point(0.0, drop - leg.hip_z, p.thigh, p.calf, leg.knee)
+        standing.append(thigh_joint(x, z, 0.0, leg))
+        standing.append(calf_joint(0.0, drop - leg.hip_z, p.thigh, p.calf, leg.knee))
     size = np.array([2 * p.half_length, 2 * p.half_height])
     return Body(
         p,
-        *make_legs(p),
+        *legs,
         np.asarray(points.trunk, float).reshape(-1, 2) * size,
         np.asarray(points.thigh, float),
         np.asarray(points.calf, float),
-        kinematics.standing_joints(robot),
+        np.array(standing),
     )
 
 
@@ -79,6 +83,7 @@ class State(NamedTuple):
         contact: (2,) x of the rear contact, and its derivative by s_rear.
         turns: (4, 5) derivative of the four link angles by y.
         reached: (2,) 1 where the leg reaches its wheel.
+        shares: (4,) of the mass that count at the trunk, and at each hip, knee and wheel.
     """
 
     y: Floats
@@ -91,6 +96,7 @@ class State(NamedTuple):
     contact: Floats
     turns: Floats
     reached: Floats
+    shares: Floats
 
 
 @nb.njit(cache=True)
@@ -102,8 +108,26 @@ def new_state(body: Body, links: bool) -> State:
     return State(
         np.zeros(5), np.zeros(5), np.zeros(4), np.zeros((n, 2)), np.zeros((n, ANGLES, 2)),
         np.zeros((6, 2)), np.zeros((2, 3)), np.zeros(2), np.zeros((4, 5)),
-        np.zeros(2),
+        np.zeros(2), _shares(body.planar),
     )  # fmt: skip
+
+
+@nb.njit(cache=True)
+def _shares(p: Planar) -> Floats:
+    thigh, calf = p.thigh_mass / p.mass, p.calf_mass / p.mass
+    hip, wheel = thigh * (1.0 - p.thigh_com), calf * p.calf_com + p.wheel_mass / p.mass
+    knee = thigh * p.thigh_com + calf * (1.0 - p.calf_com)
+    return np.array([p.trunk_mass / p.mass, hip, knee, wheel])
+
+
+@nb.njit(cache=True)
+def com(st: State, axis: int) -> float:
+    """Centre of mass of the whole robot along x (0) or z (1) [m]."""
+    total = st.shares[0] * st.y[axis]
+    for leg in range(2):
+        for k in range(3):
+            total += st.shares[1 + k] * st.points[HIP + 2 * k + leg, axis]
+    return float(total)
 
 
 @nb.njit(cache=True)

@@ -1,0 +1,81 @@
+"""Whether the robot keeps its balance between two poses, as both wheels roll on evenly."""
+
+from __future__ import annotations
+
+import math
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from .cells import Course
+from .nearest import nearest
+from .places import room
+from .search import TOLERANCE, Rules
+from .state import Body, com, new_state, place
+
+Floats = NDArray[np.float64]
+
+_STEP = 0.01  # m between places looked at
+_TRIES = 6  # places where the even motion tips that are solved for
+_SPARE = 0.002  # m that the CoM keeps from where balance ends
+
+
+@nb.njit(cache=True)
+def imbalance(body: Body, course: Course, rules: Rules, begin: Floats, end: Floats) -> float:
+    """How far the CoM of the even motion lies where no clear pose keeps balance [m]; 0 if nowhere.
+
+    Where the even motion tips, the clear pose nearest to it that does not is looked for: at the
+    worst place, and at a few others.
+
+    Args:
+        body: The robot.
+        course: The terrain.
+        rules: Limits and clearances.
+        begin: (9,) variables of the first pose.
+        end: (9,) of the second one.
+    """
+    ways = end[7:] - begin[7:]
+    n = max(1, math.ceil(max(ways[0], ways[1]) / _STEP))
+    missing = np.zeros(n)
+    st, y = new_state(body, True), np.empty(5)
+    for i in range(1, n):
+        _even(begin, end, i / n, y)
+        low, high = room(course, y[3], y[4], rules.friction)
+        if low > high:
+            missing[i] = np.inf
+        elif place(body, course, y, st):
+            at = com(st, 0)
+            missing[i] = max(0.0, low - at, at - high)
+    tipping = np.flatnonzero(missing > 0.0)
+    if len(tipping) == 0:
+        return 0.0
+    worst, start, x = 0.0, np.full(5, np.nan), np.empty(9)
+    wanted, wheels = np.empty(7), np.empty(2)
+    for k in range(_TRIES + 1):
+        i = tipping[np.argmax(missing[tipping])]
+        if k > 0:
+            i = tipping[(len(tipping) - 1) * (k - 1) // (_TRIES - 1)]
+        share = i / n
+        for j in range(7):
+            wanted[j] = begin[j] + share * (end[j] - begin[j])
+        wheels[:] = begin[7:] + share * ways
+        low, high = room(course, wheels[0], wheels[1], rules.friction)
+        spare = min(_SPARE, 0.5 * (high - low))
+        if low <= high:
+            way = (low + spare, high - spare)
+            _, violation = nearest(body, course, rules, wheels, wanted, way, start, x)
+            if violation <= TOLERANCE:
+                continue
+        worst = max(worst, missing[i])
+        if k == 0:
+            break
+    return worst
+
+
+@nb.njit(cache=True)
+def _even(begin: Floats, end: Floats, share: float, y: Floats) -> None:
+    """Unknowns (5,) at a share of the way, trunk and wheels in proportion."""
+    for j in range(5):
+        k = j if j < 3 else j + 4
+        y[j] = begin[k] + share * (end[k] - begin[k])
