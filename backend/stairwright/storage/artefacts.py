@@ -12,7 +12,7 @@ import contextlib
 import gzip
 import hashlib
 import os
-import tempfile
+import threading
 import time
 from pathlib import Path
 
@@ -124,15 +124,19 @@ def _checked(path: Path, digest: str) -> bytes:
 
 
 def _write(target: Path, content: bytes, *, durable: bool) -> None:
-    target.parent.mkdir(exist_ok=True)
-    handle, partial = tempfile.mkstemp(suffix=_PARTIAL, dir=target.parent)
+    partial = f"{target}.{os.getpid()}-{threading.get_ident()}{_PARTIAL}"
     try:
-        with os.fdopen(handle, "wb") as file:
+        try:
+            file = open(partial, "wb")  # noqa: PTH123, SIM115 - somebody waits for this
+        except FileNotFoundError:
+            target.parent.mkdir(exist_ok=True)
+            file = open(partial, "wb")  # noqa: PTH123, SIM115
+        with file:
             file.write(content)
-            file.flush()
             if durable:
+                file.flush()
                 os.fsync(file.fileno())
-        Path(partial).replace(target)
+        os.replace(partial, target)  # noqa: PTH105
     except BaseException:
         Path(partial).unlink(missing_ok=True)
         raise

@@ -6,17 +6,32 @@ import json
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
-from sqlalchemy import func, select, update
+from sqlalchemy import Engine, Select, Table, bindparam, func, select, update
 from sqlalchemy.dialects.sqlite import insert
-from sqlalchemy.orm import Session, sessionmaker
+from sqlalchemy.orm import sessionmaker
 
 from .artefacts import Artefacts
 from .tables import StoredDocument
 
 Kind = Literal["plan", "rollout"]
 _FRESH = 3600.0  # s; a use is written down again only after this time
+
+
+# Built once, without the session's bookkeeping: somebody waits for these.
+_ROWS = cast(Table, StoredDocument.__table__)
+_BY_ID = select(_ROWS).where(_ROWS.c.id == bindparam("id"), _ROWS.c.kind == bindparam("kind"))
+_BY_QUESTION = (
+    select(_ROWS)
+    .where(*(_ROWS.c[name] == bindparam(name) for name in ("question", "engine", "kind")))
+    .limit(1)
+)
+_NEW = insert(_ROWS).values({column.name: bindparam(column.name) for column in _ROWS.c})
+_PUT = _NEW.on_conflict_do_update(
+    index_elements=["id"],
+    set_={column.name: _NEW.excluded[column.name] for column in _ROWS.c if column.name != "id"},
+)
 
 
 @dataclass(frozen=True)
@@ -31,37 +46,35 @@ class Entry:
     created: float
 
 
-def _entry(row: StoredDocument) -> Entry:
+def _entry(row: Any) -> Entry:
     return Entry(row.id, row.kind, row.digest, row.size, json.loads(row.summary), row.created)
 
 
 class Documents:
     """The shelf of plans and rollouts."""
 
-    def __init__(self, sessions: sessionmaker[Session], artefacts: Artefacts) -> None:
-        self._sessions = sessions
+    def __init__(self, engine: Engine, artefacts: Artefacts) -> None:
+        self._engine = engine
+        self._sessions = sessionmaker(engine, expire_on_commit=False)
         self._artefacts = artefacts
 
     def get(self, kind: Kind, document_id: str) -> Entry | None:
         """The document of this id, None if there is none (any more)."""
-        condition = (StoredDocument.id == document_id, StoredDocument.kind == kind)
-        return self._find(*condition)
+        return self._find(_BY_ID, id=document_id, kind=kind)
 
     def answer(self, kind: Kind, question: str, engine: str) -> Entry | None:
         """A stored answer to the same question by the same code."""
-        return self._find(
-            StoredDocument.question == question,
-            StoredDocument.engine == engine,
-            StoredDocument.kind == kind,
-        )
+        return self._find(_BY_QUESTION, question=question, engine=engine, kind=kind)
 
-    def _find(self, *condition: Any) -> Entry | None:
-        with self._sessions.begin() as session:
-            row = session.scalars(select(StoredDocument).where(*condition).limit(1)).first()
+    def _find(self, statement: Select[Any], **values: str) -> Entry | None:
+        with self._engine.connect() as connection:
+            row = connection.execute(statement, values).first()
             if row is None or not self._artefacts.has(row.digest):
                 return None
             if time.time() - row.used > _FRESH:
-                row.used = time.time()
+                used = update(_ROWS).where(_ROWS.c.id == row.id).values(used=time.time())
+                connection.execute(used)
+                connection.commit()
             return _entry(row)
 
     def put(
@@ -78,6 +91,7 @@ class Documents:
         """Write down a document whose content is among the artefacts already."""
         now = time.time()
         values: dict[str, Any] = {
+            "id": document_id,
             "kind": kind,
             "question": question,
             "engine": engine,
@@ -87,9 +101,8 @@ class Documents:
             "created": now,
             "used": now,
         }
-        statement = insert(StoredDocument).values(id=document_id, **values)
-        with self._sessions.begin() as session:
-            session.execute(statement.on_conflict_do_update(index_elements=["id"], set_=values))
+        with self._engine.begin() as connection:
+            connection.execute(_PUT, values)
         return Entry(document_id, kind, digest, size, dict(summary), now)
 
     def resize(self, sizes: Mapping[str, int]) -> None:

@@ -32,7 +32,7 @@ class Store:
         sessions = sessionmaker(self.engine, expire_on_commit=False)
         self.artefacts = Artefacts(folder / "artefacts")
         self.terrains = SavedTerrains(sessions)
-        self.documents = Documents(sessions, self.artefacts)
+        self.documents = Documents(self.engine, self.artefacts)
         self._unsettled = set(self.artefacts.unsettled())  # a process that died may leave some
         self.jobs = JobLog(sessions)
         self.idempotency = IdempotencyKeys(sessions)
