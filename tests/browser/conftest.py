@@ -4,15 +4,32 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Locator, Page
 
+    from tests.conftest import Server
+
+DESK = {"width": 1440, "height": 900}
 PLANNED = ".app[data-plan=feasible], .app[data-plan=infeasible]"
 TERRAIN = re.compile(r"^Terrain\s")
+DROP = """([name, text]) => {
+  const transfer = new DataTransfer();
+  transfer.items.add(new File([text], name));
+  for (const type of ["dragover", "drop"]) {
+    document.querySelector(".canvas").dispatchEvent(
+      new DragEvent(type, { dataTransfer: transfer, bubbles: true, cancelable: true }));
+  }
+}"""
+PASTE = """text => {
+  const data = new DataTransfer();
+  data.setData("text/plain", text);
+  document.dispatchEvent(
+    new ClipboardEvent("paste", { clipboardData: data, bubbles: true }));
+}"""
 PATIENCE = 120_000  # ms; for a rollout or a proof that there is no way, on a busy machine
 
 
@@ -42,6 +59,29 @@ class Product:
         # Let a change that was just made reach the page's state first.
         self.page.evaluate("() => new Promise(done => requestAnimationFrame(() => done(0)))")
         self.page.locator(PLANNED).wait_for(timeout=PATIENCE)
+        return self
+
+    def fresh(self, terrain: str = "three-stairs-up") -> Product:
+        """Back to a preset, without a reload: pages that tests share begin here."""
+        self.page.mouse.move(5, 5)
+        self.page.keyboard.press("Escape")
+        return self.choose_terrain(terrain)
+
+    def paste(self, text: str) -> Product:
+        """Paste text where no field has the focus."""
+        self.page.evaluate(PASTE, text)
+        return self
+
+    def drop(self, name: str, text: str) -> Product:
+        """Drop a file on the canvas."""
+        self.page.evaluate(DROP, [name, text])
+        return self
+
+    def has_corners(self, count: int) -> Product:
+        """Wait until so many corners are drawn."""
+        self.page.wait_for_function(
+            "n => document.querySelectorAll('[data-vertex]').length === n", arg=count
+        )
         return self
 
     def choose_terrain(self, name: str) -> Product:
@@ -104,6 +144,14 @@ def product(page: Page) -> Iterator[Product]:
     assert opened.errors == []
 
 
+@pytest.fixture(scope="module")
+def shared(browser: Browser, server: Server) -> Iterator[Product]:
+    """One page for a module's tests that do not need a first visit: opening one is dear."""
+    with browser.new_context(base_url=server.url, viewport=DESK, accept_downloads=True) as context:
+        opened = Product(context.new_page()).open()
+        yield opened
+
+
 @pytest.fixture
 def product_with_scene(page: Page) -> Product:
     """The page with its 3-D scene."""
@@ -111,10 +159,8 @@ def product_with_scene(page: Page) -> Product:
 
 
 @pytest.fixture
-def second(browser: Browser, server: Any) -> Iterator[Product]:
+def second(browser: Browser, server: Server) -> Iterator[Product]:
     """Another user on another machine."""
     context: BrowserContext
-    with browser.new_context(
-        base_url=server.url, viewport={"width": 1440, "height": 900}
-    ) as context:
+    with browser.new_context(base_url=server.url, viewport=DESK) as context:
         yield Product(context.new_page())

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import itertools
+import json
+import math
 import re
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import pytest
@@ -15,21 +18,14 @@ if TYPE_CHECKING:
 
 pytestmark = [pytest.mark.browser]
 
-DROP = """([name, text]) => {
-  const transfer = new DataTransfer();
-  transfer.items.add(new File([text], name));
-  for (const type of ["dragover", "drop"]) {
-    document.querySelector(".canvas").dispatchEvent(
-      new DragEvent(type, { dataTransfer: transfer, bubbles: true, cancelable: true }));
-  }
-}"""
 
-PASTE = """text => {
-  const data = new DataTransfer();
-  data.setData("text/plain", text);
-  document.dispatchEvent(
-    new ClipboardEvent("paste", { clipboardData: data, bubbles: true }));
-}"""
+@pytest.fixture
+def product(shared: Product) -> Iterator[Product]:
+    """The page that these tests share, showing three stairs."""
+    shared.errors.clear()
+    yield shared.fresh()
+    assert shared.errors == []
+
 
 # Keys faster than the page can draw; returns the corner with the focus after each.
 PRESS_AT_ONCE = """keys => keys.map(key => {
@@ -40,7 +36,6 @@ PRESS_AT_ONCE = """keys => keys.map(key => {
 
 
 def test_a_drag_is_one_undo_step_and_snaps_to_the_grid(product: Product) -> None:
-    product.open()
     before = product.corner(6)
     product.drag(6, 31, -17, steps=12).planned()
     moved = product.corner(6)
@@ -53,13 +48,11 @@ def test_a_drag_is_one_undo_step_and_snaps_to_the_grid(product: Product) -> None
 
 
 def test_x_cannot_pass_a_neighbour(product: Product) -> None:
-    product.open()
     product.drag(3, -400, 0).planned()
     assert product.corner(3)[0] >= product.corner(2)[0]
 
 
 def test_keyboard_alone_moves_adds_and_deletes(product: Product) -> None:
-    product.open()
     x, z = product.corner(6)
     product.vertex(6).focus()
     product.page.keyboard.press("ArrowRight")
@@ -79,7 +72,6 @@ def test_keyboard_alone_moves_adds_and_deletes(product: Product) -> None:
 
 
 def test_keys_in_one_task_find_the_corner_that_has_the_focus(product: Product) -> None:
-    product.open()
     count = product.corners()
     product.vertex(count - 2).focus()
     found = product.page.evaluate(PRESS_AT_ONCE, ["Insert", "Delete", "Delete", "ArrowUp"])
@@ -88,7 +80,6 @@ def test_keys_in_one_task_find_the_corner_that_has_the_focus(product: Product) -
 
 
 def test_numbers_can_be_typed(product: Product) -> None:
-    product.open()
     product.vertex(6).focus()
     field = product.page.get_by_label("z of the corner in metres")
     field.fill("0,4")
@@ -105,7 +96,6 @@ def test_numbers_can_be_typed(product: Product) -> None:
 
 
 def test_several_corners_move_together(product: Product) -> None:
-    product.open()
     before = [product.corner(i) for i in range(product.corners())]
     product.vertex(0).focus()
     product.page.keyboard.press("Control+a")
@@ -116,7 +106,6 @@ def test_several_corners_move_together(product: Product) -> None:
 
 @pytest.mark.parametrize(("key", "corners"), [("s", 2), ("r", 2), ("p", 1)])
 def test_tools_draw_on_an_empty_canvas(product: Product, key: str, corners: int) -> None:
-    product.open()
     product.page.get_by_role("button", name=TERRAIN).click()
     product.page.get_by_role("button", name="New", exact=True).click()
     assert product.status == "none"
@@ -134,34 +123,89 @@ def test_tools_draw_on_an_empty_canvas(product: Product, key: str, corners: int)
 
 
 def test_stairs_by_the_code(product: Product) -> None:
-    product.open().choose_terrain("flat")
+    product.choose_terrain("flat")
     product.page.get_by_role("button", name=re.compile("^Snapping")).click()
     product.page.get_by_role("menuitemradio", name="Industrial").click()
     box = product.page.locator(".ed").bounding_box()
     assert box is not None
     product.page.mouse.click(box["x"] + 500, box["y"] + 300)
     product.planned()
+    product.page.get_by_role("button", name=re.compile("^Snapping")).click()
+    product.page.get_by_role("menuitemradio", name="Free rise and run").click()
     faces = [product.corner(i) for i in range(product.corners())]
     assert any(b[1] - a[1] == pytest.approx(0.2) for a, b in itertools.pairwise(faces))
 
 
 def test_files_are_dropped_and_text_is_pasted(product: Product) -> None:
-    product.open()
     text = "x,z\n-1.5,0\n0,0\n0,0.1\n2,0.1\n"
-    product.page.evaluate(DROP, ["kerb.csv", text])
-    product.page.wait_for_function("() => document.querySelectorAll('[data-vertex]').length === 4")
+    product.drop("kerb.csv", text).has_corners(4)
     assert product.planned().corner(2) == (0.0, pytest.approx(0.1))
-    product.page.evaluate(PASTE, text.replace("0.1", "0.12"))
+    product.paste(text.replace("0.1", "0.12"))
     product.page.wait_for_function(
         "() => document.querySelector('[data-vertex=\"2\"]').ariaLabel.includes('0.120')"
     )
-    product.page.evaluate(DROP, ["broken.csv", "a,b\nnot,numbers\n"])
+    product.drop("broken.csv", "a,b\nnot,numbers\n")
     product.page.locator(".import-error").wait_for()
     assert product.corners() == 4
+    product.page.get_by_role("button", name="Dismiss").click()
+    points = [[-1.5, 0], [0, 0], [0, 0.1], [0.4, 0.1], [0.4, 0.2], [2, 0.2]]
+    product.paste(json.dumps({"points": points})).has_corners(6).planned()
+    product.paste("points:\n- [-1.5, 0]\n- [0.6, 0]\n- [1.2, 0.1]\n- [3, 0.1]\nfriction: 0.5\n")
+    assert product.has_corners(4).planned().corner(2) == (1.2, pytest.approx(0.1))
+
+
+def test_a_mesh_is_cut_into_a_profile(product: Product) -> None:
+    product.drop("kerb.stl", _box(0.0, 2.0, 0.12))
+    dialog = product.page.get_by_role("dialog", name=re.compile("^Cut kerb.stl"))
+    dialog.get_by_label("Plane at y in metres").fill("5")
+    dialog.get_by_role("button", name="Import").click()
+    dialog.get_by_role("alert").wait_for()  # nothing to cut there
+    dialog.get_by_label("Plane at y in metres").fill("0.1")
+    dialog.get_by_label("Metres per unit of the file").fill("0.5")
+    dialog.get_by_role("button", name="Import").click()
+    dialog.wait_for(state="detached")
+    product.planned()
+    heights = {product.corner(i)[1] for i in range(product.corners())}
+    assert max(heights) - min(heights) == pytest.approx(0.06, abs=2e-3)
+
+
+def _box(x0: float, x1: float, height: float) -> str:
+    """A kerb with ground before and behind it, as ASCII STL."""
+
+    def quad(*corners: tuple[float, float, float]) -> str:
+        a, b, c, d = (f"vertex {x} {y} {z}\n" for x, y, z in corners)
+        facet = "facet normal 0 0 0\nouter loop\n{}endloop\nendfacet\n"
+        return facet.format(a + b + c) + facet.format(a + c + d)
+
+    def strip(a: tuple[float, float], b: tuple[float, float]) -> str:
+        return quad((a[0], -1, a[1]), (b[0], -1, b[1]), (b[0], 1, b[1]), (a[0], 1, a[1]))
+
+    line = [(x0 - 3, 0.0), (x0, 0.0), (x0, height), (x1, height), (x1, 0.0), (x1 + 3, 0.0)]
+    faces = "".join(strip(a, b) for a, b in itertools.pairwise(line))
+    return f"solid kerb\n{faces}endsolid kerb\n"
+
+
+def test_thousands_of_corners_are_thinned_and_all_in_reach(product: Product) -> None:
+    # The drawing is looked at, not the plan.
+    product.page.route("**/plans", lambda route: route.fulfill(status=422, json={"detail": "no"}))
+    try:
+        line = [f"{0.002 * i},{0.002 * math.sin(0.1 * i)}" for i in range(1998)]
+        product.paste("x,z\n-1.5,0\n" + "\n".join(line) + "\n6,0\n")
+        product.page.locator(".app[data-plan=refused]").wait_for()
+        assert 50 < product.corners() < 400
+        product.page.locator("[data-vertex]").nth(20).focus()
+        at = product.focused()
+        assert at is not None
+        for i in range(1, 4):
+            product.page.keyboard.press("Tab")
+            assert product.focused() == at + i
+        product.page.keyboard.press("Delete")
+        assert product.focused() == at + 2
+    finally:
+        product.page.unroute("**/plans")
 
 
 def test_a_terrain_is_saved_and_deleted(product: Product) -> None:
-    product.open()
     product.drag(6, 0, -20).planned()
     product.page.get_by_role("button", name=TERRAIN).click()
     product.page.get_by_label("Save as").fill("my stairs")
@@ -172,7 +216,6 @@ def test_a_terrain_is_saved_and_deleted(product: Product) -> None:
 
 
 def test_wheel_zooms_and_fit_returns(product: Product) -> None:
-    product.open()
     zoom = product.page.locator(".zoom")
     assert zoom.inner_text() == "100 %"
     product.page.locator(".ed").hover(position={"x": 500, "y": 250})
@@ -182,8 +225,32 @@ def test_wheel_zooms_and_fit_returns(product: Product) -> None:
     assert zoom.inner_text() == "100 %"
 
 
+def test_two_fingers_zoom_and_change_nothing(product: Product) -> None:
+    before = [product.corner(i) for i in range(product.corners())]
+    box = product.vertex(3).bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    touch = product.page.context.new_cdp_session(product.page)
+
+    def fingers(kind: str, apart: float) -> None:
+        points = [{"x": x, "y": y, "id": 0}, {"x": x + apart, "y": y - apart, "id": 1}]
+        touch.send(
+            "Input.dispatchTouchEvent",
+            {"type": kind, "touchPoints": [] if kind == "touchEnd" else points},
+        )
+
+    fingers("touchStart", 80)
+    for apart in (100, 130, 160):
+        fingers("touchMove", apart)
+    fingers("touchEnd", 160)
+    product.page.wait_for_function(
+        "() => Number(document.querySelector('.zoom').innerText.replace(' %', '')) > 150"
+    )
+    assert [product.corner(i) for i in range(product.corners())] == before
+    product.page.get_by_role("button", name="Fit to view").click()
+
+
 def test_weights_replan_and_reset(product: Product) -> None:
-    product.open()
     slider = product.page.get_by_role("slider", name="Speed")
     slider.press("PageUp")
     reset = product.page.get_by_role("button", name="Reset Speed")
@@ -195,3 +262,5 @@ def test_weights_replan_and_reset(product: Product) -> None:
     product.page.get_by_role("radio", name="Paper: critical poses").click()
     product.planned()
     product.page.get_by_role("slider", name="Posture").wait_for()
+    product.page.get_by_role("radio", name="Path").click()
+    product.planned()

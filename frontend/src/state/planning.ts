@@ -248,6 +248,7 @@ export function startPlanning(): () => void {
     if (key === shownKey.peek()) {
       // Back to what is shown already (undo, reset): what was asked meanwhile must not replace it.
       forget();
+      refusal.value = null;
       return;
     }
     startWaiting();

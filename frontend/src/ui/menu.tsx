@@ -42,7 +42,15 @@ export function Menu(props: MenuProps) {
     addEventListener("pointerdown", outside, true);
     const intoFrame = () => document.activeElement?.tagName === "IFRAME" && setOpen(false);
     addEventListener("blur", intoFrame);
+    // An item that is deleted takes the focus along; the panel still closes by key.
+    const orphaned = (event: KeyboardEvent) => {
+      if (event.key !== "Escape" || document.activeElement !== document.body) return;
+      setOpen(false);
+      trigger.current?.focus();
+    };
+    addEventListener("keydown", orphaned);
     return () => {
+      removeEventListener("keydown", orphaned);
       removeEventListener("pointerdown", outside, true);
       removeEventListener("blur", intoFrame);
     };
