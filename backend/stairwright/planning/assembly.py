@@ -21,6 +21,7 @@ def assemble(
     *,
     seconds: float,
     critical: list[int] | None = None,
+    motion: Problem | None = None,
 ) -> Plan:
     """The document of a plan whose poses are timed by eqs 25-26, with a certificate of its poses.
 
@@ -34,6 +35,7 @@ def assemble(
         problem: What stops the robot, if anything.
         seconds: Time that planning took [s].
         critical: Indices of key poses.
+        motion: What is known to stop the motion between the poses.
     """
     numbers = weights.model_dump()
     plan = Plan(
@@ -53,4 +55,7 @@ def assemble(
         timing=Timing(total=poses[-1].time if poses else 0.0, rule="paper"),
         solve_time=seconds,
     )
-    return plan if not poses else plan.model_copy(update={"certificate": certify(plan, "poses")})
+    if not poses:
+        return plan
+    certificate = certify(plan, "poses").model_copy(update={"motion": motion})
+    return plan.model_copy(update={"certificate": certificate})

@@ -8,6 +8,8 @@ and moved along.
 
 from __future__ import annotations
 
+import itertools
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,6 +68,10 @@ def plan_critical(
     search = solver(robot, path, friction, weights)
     obstacles = find_obstacles(path, begin.wheels[1], end.wheels[0])
     found, problem = _solve(search, obstacles, begin, end)
+    if problem is not None:
+        # Balance on the way to one pose can lead to where the next one is out of reach.
+        other, left = _solve(search, obstacles, begin, end, balance=False)
+        found, problem = (other, None) if left is None else (found, problem)
     knots = [_standing(search, begin), *found]
     if problem is None:
         knots.append(_standing(search, end))
@@ -81,6 +87,7 @@ def plan_critical(
         poses,
         problem,
         critical=[i for i, knot in enumerate(knots) if knot.optimal],
+        motion=_tipping(search, knots, poses),
         seconds=now() - started,
     )
 
@@ -99,8 +106,9 @@ def _standing(search: PoseSearch, stand: Stand) -> _Knot:
 
 
 def _solve(
-    search: PoseSearch, obstacles: list[Obstacle], begin: Stand, end: Stand
+    search: PoseSearch, obstacles: list[Obstacle], begin: Stand, end: Stand, balance: bool = True
 ) -> tuple[list[_Knot], Problem | None]:
+    """Poses between the ends; with `balance` such as the robot can go through without tipping."""
     knots: list[_Knot] = []
     rear = begin.wheels[1]
     before = _variables(_standing(search, begin))
@@ -119,7 +127,7 @@ def _solve(
                 Place(first, span, True, obstacle.steepest, up, before),
                 Place(second, span, False, obstacle.steepest, up, before),
             )
-            both = search.best_pair(*places, after=after)
+            both = search.best_pair(*places, after, balance)
             for place, one in zip(places, both, strict=True):
                 if one is None or not one.solution.solved:
                     way = (place.front + place.rear[0] - sum(begin.wheels)) / 2
@@ -197,3 +205,23 @@ def _poses(search: PoseSearch, knots: list[_Knot], speed: float) -> list[Pose]:
 def _unbalanced(search: PoseSearch, poses: list[Pose]) -> Problem | None:
     worst = min(poses, key=lambda pose: pose.margins.com)
     return None if worst.margins.com >= 0.0 else statics_problem(search, worst)
+
+
+def _tipping(search: PoseSearch, knots: list[_Knot], poses: list[Pose]) -> Problem | None:
+    """The worst loss of balance between two poses, where no clear pose on the way prevents it."""
+    variables = [_variables(knot) for knot in knots]
+    lost = [search.imbalance(a, b) for a, b in itertools.pairwise(variables)]
+    if not any(lost):
+        return None
+    k = int(np.argmax(lost))
+    what = (
+        f"balance needs the centre of mass {lost[k] * 1e3:.0f} mm from where it can be"
+        if math.isfinite(lost[k])
+        else f"friction {search.friction:g} holds the robot nowhere"
+    )
+    return Problem(
+        kind="statics",
+        at=poses[k].contacts[0],
+        progress=poses[k].progress,
+        message=f"On the way from this pose to the next {what}: only the poses are certified.",
+    )

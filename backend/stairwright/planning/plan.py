@@ -86,6 +86,9 @@ class Certificate(Model):
 
     passed: bool
     scope: Literal["motion", "poses"] = "motion"
+    motion: Problem | None = Field(
+        None, description="what stops the motion between poses, where only these are certified"
+    )
     checks: list[Check] = []
 
 

@@ -119,7 +119,7 @@ class PoseSearch:
         self._usual = 1.4 * wheelbase
 
     def best_pair(
-        self, first: Place, second: Place, after: Floats | None = None
+        self, first: Place, second: Place, after: Floats | None = None, balance: bool = True
     ) -> tuple[Found | None, Found | None]:
         """The poses before and after a face; the rear wheel crosses no steep ground between.
 
@@ -130,22 +130,22 @@ class PoseSearch:
             first: Where the front wheel arrives at the face.
             second: Where it is past it.
             after: (9,) the known pose that follows, if any.
+            balance: Whether balance on the way counts.
         """
         best: tuple[float, Found, Found | None] | None = None
         for gentle in (True, False):
             options = sorted(self.search(first, gentle), key=lambda found: -found.score)
             for one in options[:ENOUGH]:
-                tipped = self.imbalance(first.before, one.solution.x)
+                tipped = self.imbalance(first.before, one.solution.x) if balance else 0.0
                 for later in self._later(one, second, gentle):
-                    value = one.score - _TIPPED * tipped
-                    value += later.score if later else -10.0
-                    if later is not None:
-                        lost = self.imbalance(one.solution.x, later.solution.x)
+                    lost = tipped
+                    if later is not None and balance:
+                        lost += self.imbalance(one.solution.x, later.solution.x)
                         if after is not None:
                             lost += self.imbalance(later.solution.x, after)
-                        value -= _TIPPED * lost
-                        if tipped + lost == 0.0 and later.margin >= 0.99 * WANTED:
-                            return one, later
+                    value = one.score + (later.score if later else -10.0) - _TIPPED * lost
+                    if later is not None and lost == 0.0 and later.margin >= 0.99 * WANTED:
+                        return one, later
                     if best is None or value > best[0]:
                         best = value, one, later
             if best is not None and best[2] is not None:

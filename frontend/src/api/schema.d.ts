@@ -513,6 +513,8 @@ export interface components {
              * @enum {string}
              */
             scope: "motion" | "poses";
+            /** @description what stops the motion between poses, where only these are certified */
+            motion?: components["schemas"]["Problem"] | null;
             /**
              * Checks
              * @default []
