@@ -21,8 +21,11 @@ import time
 from pathlib import Path
 
 import httpx
+import viser
 from report import Row, percentile, publish
 from service import STAIR, Service, long_rollout, serve, wait_for
+from websockets import Subprotocol
+from websockets.sync.client import connect
 
 HEAVY = {
     "points": [[-1.0, 0.0]]
@@ -199,6 +202,29 @@ def full_disk() -> Row:
     return Row("disk full", "stairwright", spent, note=told)
 
 
+def slow_viewer(seconds: float) -> Row:
+    """A viewer that connects and reads nothing while the scene plays: memory, and other people."""
+    with serve() as service, httpx.Client(base_url=service.api, timeout=60) as api:
+        plan = api.post("/plans", json={"terrain": "single-stair-036", "method": "critical"}).json()
+        session = api.post("/sessions").json()
+        api.put(f"/sessions/{session['id']}/scene", json={"plan_id": plan["id"]})
+        address = service.url.replace("http", "ws") + session["scene"]
+        protocol = Subprotocol(f"viser-v{viser.__version__}")
+        with connect(address, subprotocols=[protocol], max_queue=1, max_size=None, close_timeout=1):
+            times, memory = [], []
+            begun = time.perf_counter()
+            while time.perf_counter() - begun < seconds:
+                api.put(f"/sessions/{session['id']}/playback", json={"time": 0.0, "playing": True})
+                asked = time.perf_counter()
+                api.get("/terrains").raise_for_status()
+                times.append(1e3 * (time.perf_counter() - asked))
+                memory.append(service.memory())
+                time.sleep(0.5)
+    note = f"another's requests meanwhile; memory {memory[2]:.0f} MiB, then {memory[-1]:.0f} MiB"
+    return Row(f"a viewer reads nothing for {seconds:g} s", "stairwright",
+               statistics.median(times), percentile(times, 0.95), note=note)  # fmt: skip
+
+
 def run(quick: bool = False, kills: int | None = None) -> list[Row]:
     """All rows."""
     repeat = 3 if quick else 20
@@ -209,7 +235,7 @@ def run(quick: bool = False, kills: int | None = None) -> list[Row]:
         wait_for(api, api.post("/rollouts", json={"terrain": STAIR}).json()["id"], "done")
         rows = [cancelling(service, api, repeat), giving_up(service, repeat)]
         rows += deaths(service, api, repeat)
-    rows += [locked_database(), full_disk()]
+    rows += [locked_database(), full_disk(), slow_viewer(5.0 if quick else 60.0)]
     return [*rows, killing(kills or (3 if quick else 100))]
 
 
