@@ -4,17 +4,31 @@ from __future__ import annotations
 
 import csv
 import io
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import httpx
 import pytest
 
+from .conftest import PATIENCE
+
 if TYPE_CHECKING:
     from .conftest import Product
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
+# Notes each time on the slider while a rollout runs.
+WATCH = """() => {
+  window.seen_ = [];
+  const app = document.querySelector(".app");
+  const note = () => {
+    const time = Number(document.querySelector(".scrub").ariaValueNow);
+    const followed = document.querySelector(".tag2")?.innerText.startsWith("rollout");
+    if (app.dataset.run === "running" && followed && time !== seen_.at(-1)) seen_.push(time);
+  };
+  new MutationObserver(note).observe(app, { subtree: true, childList: true, attributes: true });
+}"""
 OUTCOMES = {"success", "fell", "stuck", "collided", "diverged", "timeout"}
 
 
@@ -33,16 +47,32 @@ def _download(product: Product, section: str, name: str, folder: Path) -> Path:
     return target
 
 
-def test_draw_plan_run_and_download(product: Product, server: Any, tmp_path: Path) -> None:
-    product.open().choose_terrain("ramp-30deg-025")
-    before = product.corner(2)
-    product.drag(2, 24, 0).planned()
-    after = product.corner(2)
-    assert after[0] > before[0]
-    assert product.status == "feasible"
+@dataclass(frozen=True)
+class Story:
+    """A page on which a corner was dragged, and the plan was run."""
 
-    outcome = product.run()
+    product: Product
+    corner: tuple[float, float]
+    outcome: str
+
+
+@pytest.fixture(scope="module")
+def story(shared: Product) -> Story:
+    """Drawn, planned and run once for all tests that look at what came of it."""
+    shared.fresh("ramp-30deg-025")
+    before = shared.corner(2)
+    shared.drag(2, 24, 0).planned()
+    after = shared.corner(2)
+    assert after[0] > before[0]
+    assert shared.status == "feasible"
+    outcome = shared.run()
     assert outcome in OUTCOMES
+    assert shared.errors == []
+    return Story(shared, after, outcome)
+
+
+def test_draw_plan_run_and_download(story: Story, server: Any, tmp_path: Path) -> None:
+    product, after, outcome = story.product, story.corner, story.outcome
     assert product.page.locator(".res h2").inner_text()
     product.page.get_by_role("slider", name="Time").press("End")
 
@@ -70,22 +100,19 @@ def test_draw_plan_run_and_download(product: Product, server: Any, tmp_path: Pat
     assert float(series[-1]["pitch_rad"]) == pytest.approx(rollout["series"]["pitch"][-1], abs=1e-6)
 
 
-def test_every_export_downloads(product: Product, tmp_path: Path) -> None:
-    product.open()
-    product.run()
+def test_every_export_downloads(story: Story, tmp_path: Path) -> None:
     names = {"plans": ("JSON", "CSV", "NPZ", "MCAP", "MJCF")}
     names["rollouts"] = ("HTML", "JSON", "CSV", "NPZ", "MCAP")
     for section, formats in names.items():
         for name in formats:
-            assert _download(product, section, name, tmp_path).stat().st_size > 500, name
+            assert _download(story.product, section, name, tmp_path).stat().st_size > 500, name
 
 
-def test_results_of_an_edited_profile_are_called_previous(product: Product) -> None:
-    product.open()
-    product.run()
+def test_results_of_an_edited_profile_are_called_previous(story: Story) -> None:
+    product = story.product
     heading = product.page.locator(".res h2")
     assert "seed 0" in heading.inner_text()
-    product.vertex(3).focus()
+    product.vertex(2).focus()
     product.page.keyboard.press("ArrowUp")
     product.planned()
     assert "previous plan" in heading.inner_text()
@@ -94,9 +121,8 @@ def test_results_of_an_edited_profile_are_called_previous(product: Product) -> N
     assert "seed 0" in heading.inner_text()
 
 
-def test_timeline_moves_robot_and_cursors_together(product: Product) -> None:
-    product.open()
-    product.run()
+def test_timeline_moves_robot_and_cursors_together(story: Story) -> None:
+    product = story.product
     timeline = product.page.get_by_role("slider", name="Time")
     robot = product.page.locator(".rb.cur .tr").first
     cursor = product.page.locator(".tcur").first
@@ -114,10 +140,29 @@ def test_timeline_moves_robot_and_cursors_together(product: Product) -> None:
     )
 
 
-def test_compare_puts_b_beside_a(product: Product) -> None:
-    product.open("/").choose_terrain("ramp-30deg-025")
-    product.page.get_by_role("switch", name="Compare A with B").click()
+def test_a_running_rollout_draws_itself(shared: Product) -> None:
+    shared.fresh("stairs-us-7-11")
+    shared.page.evaluate(WATCH)
+    assert shared.run() in OUTCOMES
+    seen = shared.page.evaluate("window.seen_")
+    assert len(seen) >= 2, "stretches of the series while it ran"
+    assert seen == sorted(seen)
+    # The finished rollout took the place of what it had sent of itself.
+    end = float(shared.page.get_by_role("slider", name="Time").get_attribute("aria-valuenow") or 0)
+    assert end >= seen[-1] > 0
+
+
+def test_compare_puts_b_beside_a(shared: Product) -> None:
+    product = shared.fresh("ramp-30deg-025")
+    switch = product.page.get_by_role("switch", name="Compare A with B")
+    switch.click()
     product.page.locator(".rb.cmp").wait_for()
     product.run()
-    product.page.locator(".res thead").get_by_text("B", exact=True).wait_for(timeout=60_000)
+    product.page.locator(".res thead").get_by_text("B", exact=True).wait_for(timeout=PATIENCE)
     assert product.page.locator(".res td.b").count() == product.page.locator(".res td.a").count()
+    # B's pitch is a line of its own, and every plot is there as a table too.
+    product.page.get_by_role("button", name="Pitch, nose-up as a table").click()
+    product.page.get_by_role("columnheader", name="B actual").wait_for()
+    product.page.keyboard.press("Escape")
+    switch.click()
+    product.page.locator(".rb.cmp").wait_for(state="detached")
