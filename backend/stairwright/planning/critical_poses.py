@@ -68,7 +68,7 @@ def plan_critical(
     search = solver(robot, path, friction, weights)
     obstacles = find_obstacles(path, begin.wheels[1], end.wheels[0])
     found, problem = _solve(search, obstacles, begin, end)
-    if problem is not None:
+    if problem is not None and len(found) > 1:  # there was a choice before
         # Balance on the way to one pose can lead to where the next one is out of reach.
         other, left = _solve(search, obstacles, begin, end, balance=False)
         found, problem = (other, None) if left is None else (found, problem)

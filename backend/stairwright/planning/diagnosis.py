@@ -172,12 +172,15 @@ def _least(
     most: float,
 ) -> float | None:
     """Least relaxation with which some rear wheel place has a pose; None if `most` has none."""
+    start: Floats | None = None
 
     def works(amount: float) -> bool:
-        nonlocal rears
+        nonlocal rears, start
         for i, rear in enumerate(rears):
             rules = relax(search.rules, amount)
-            if search.solve(place, float(rear), rules=rules, patient=True).solution.solved:
+            found = search.solve(place, float(rear), rules=rules, start=start)
+            if found.solution.solved:
+                start = found.solution.x
                 rears = np.concatenate([rears[i : i + 1], np.delete(rears, i)])
                 return True
         return False

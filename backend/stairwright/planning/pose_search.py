@@ -176,7 +176,13 @@ class PoseSearch:
         return [one for one in hard if one.solution.solved]
 
     def solve(
-        self, place: Place, rear: float, *, patient: bool = False, rules: Rules | None = None
+        self,
+        place: Place,
+        rear: float,
+        *,
+        patient: bool = False,
+        rules: Rules | None = None,
+        start: Floats | None = None,
     ) -> Found:
         """The optimal pose with the rear wheel near `rear`.
 
@@ -185,10 +191,11 @@ class PoseSearch:
             rear: Arc length [m].
             patient: Try many first guesses where the usual ones find nothing.
             rules: Bounds other than those of the plan.
+            start: (9,) a first guess before the usual ones.
         """
         x, numbers = np.empty(9), np.empty(4)
         search.solve_at(
-            self.body, self.course, rules or self.rules, place.wish, rear, _NOTHING, patient,
+            self.body, self.course, rules or self.rules, place.wish, rear, _start(start), patient,
             x, numbers,
         )  # fmt: skip
         return _found(x, numbers)
