@@ -40,7 +40,7 @@ SettingName = Annotated[str, Field(max_length=64, pattern=r"^[a-z0-9_]+$")]
 Number = Annotated[float, Field(strict=True, ge=-1e9, le=1e9)]
 SettingValue = StrictBool | Number | Annotated[str, Field(max_length=64)]
 Weights = Annotated[
-    dict[SettingName, Number],
+    dict[SettingName, StrictBool | Number],
     Field(max_length=32, description="cost weights by name, see GET /settings"),
 ]
 Controller = Annotated[

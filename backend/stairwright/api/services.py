@@ -18,6 +18,7 @@ from stairwright.library import load_robot, load_terrain, robots, terrains
 from stairwright.storage.store import Store
 
 from .metrics import Metrics
+from .replanning import Replanning
 from .sessions import Sessions, load_scenes
 from .settings import Settings
 
@@ -26,6 +27,7 @@ logger = logging.getLogger(__name__)
 COLLECT_EVERY = 3600.0  # s
 SETTLE_EVERY = 2.0  # s
 START_DEADLINE = 300.0  # s; kernels may have to be compiled
+LATEST_READY = 20.0  # s; whoever asks while kernels are still being compiled has to wait for them
 FIRST_SECOND = 1.0  # s
 UPLOAD_MEMORY = 2048  # MiB
 UPLOAD_DEADLINE = 20.0  # s
@@ -62,7 +64,9 @@ class Services:
             self.store, self.rollout_pool, settings.queue_limit, settings.rollout_deadline
         )
         self.uploading = asyncio.Semaphore(1)
-        self.sessions = Sessions(settings.session_limit, settings.session_idle)
+        self.sessions = Sessions(
+            settings.session_limit, settings.session_idle, Replanning(self.planning)
+        )
         self._tasks: list[asyncio.Task[None]] = []
         self.ready = False  # until a plan can be answered without waiting for workers to start
         self._show_gauges()
@@ -90,6 +94,7 @@ class Services:
     async def _start_the_rest(self) -> None:
         """What nobody waits for in the first second must not compete with what somebody does."""
         await asyncio.to_thread(_read_what_questions_need)
+        asyncio.get_running_loop().call_later(LATEST_READY, setattr, self, "ready", True)
         with contextlib.suppress(Failure):
             await self.plan_pool.run(work.rehearse, deadline=START_DEADLINE)
         self.ready = True

@@ -8,11 +8,14 @@ import logging
 import secrets
 import threading
 import time
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from starlette.concurrency import run_in_threadpool
 
 from .problems import Problem, not_found
+from .replanning import Replanning
 
 if TYPE_CHECKING:
     from stairwright.scene.session import SceneSession
@@ -25,7 +28,8 @@ LOOK_EVERY = 15.0  # s between looks for idle scenes
 class Sessions:
     """Open scenes by id. An id cannot be guessed, and knowing it is what gives access."""
 
-    def __init__(self, limit: int, idle: float) -> None:
+    def __init__(self, limit: int, idle: float, replanning: Replanning) -> None:
+        self._replanning = replanning
         self._limit = limit
         self._idle = idle
         self._scenes: dict[str, SceneSession] = {}
@@ -51,7 +55,8 @@ class Sessions:
         name = secrets.token_urlsafe(18)
         self._opening += 1
         try:
-            self._scenes[name] = await run_in_threadpool(_new_scene, name)
+            replan = self._replanning.for_scene(partial(self.get, name), name)
+            self._scenes[name] = await run_in_threadpool(_new_scene, name, replan)
         finally:
             self._opening -= 1
         return name
@@ -106,10 +111,10 @@ def load_scenes() -> None:
     threading.Thread(target=importlib.import_module, args=(name,), daemon=True).start()
 
 
-def _new_scene(name: str) -> SceneSession:
+def _new_scene(name: str, replan: Callable[[dict[str, float]], None]) -> SceneSession:
     try:
         from stairwright.scene.session import SceneSession
     except ImportError:
         logger.exception("the 3D scene cannot be loaded")
         raise Problem(503, "this service has no 3D scene", kind="no-scene") from None
-    return SceneSession(name)
+    return SceneSession(name, replan)

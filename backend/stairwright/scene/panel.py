@@ -7,6 +7,8 @@ import time as clock
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, get_args
 
+from viser import GuiCheckboxHandle
+
 from stairwright.planning.weights import MODELS
 
 from .camera import Preset
@@ -131,26 +133,41 @@ class Panel:
                     self._weights[name] = self._weight(about)
             self._weights_folder.visible = bool(self._weights)
         for name, value in values.items():
-            if name in self._weights:
-                self._weights[name].value = round(math.log10(value), 2)
+            weight = self._weights.get(name)
+            truth = isinstance(weight, GuiCheckboxHandle)
+            if weight is not None:
+                weight.value = bool(value) if truth else round(math.log10(value), 2)
 
     def _weight(self, about: Mapping[str, Any]) -> Any:
-        low, high = math.log10(about["minimum"]), math.log10(about["maximum"])
-        slider = self._gui.add_slider(
-            f"{about['title']}, log₁₀",
-            round(low, 2),
-            round(high, 2),
-            0.01,
-            round(math.log10(about["default"]), 2),
-            hint=f"{about['description']} [{about['unit']}]",
-        )
+        """A tick box for a truth value, else a logarithmic slider: weights are scales."""
+        weight: Any
+        if about["type"] == "boolean":
+            weight = self._gui.add_checkbox(
+                about["title"], about["default"], hint=about["description"]
+            )
+        else:
+            low, high = math.log10(about["minimum"]), math.log10(about["maximum"])
+            weight = self._gui.add_slider(
+                f"{about['title']}, log₁₀",
+                math.ceil(100 * low) / 100,  # never beyond the bounds
+                math.floor(100 * high) / 100,
+                0.01,
+                round(math.log10(about["default"]), 2),
+                hint=f"{about['description']} [{about['unit']}]",
+            )
 
-        @slider.on_update
+        @weight.on_update
         def _(event: Any) -> None:
             if event.client_id is not None and self._replan is not None:
-                self._replan({n: 10.0**s.value for n, s in self._weights.items()})
+                self._replan(self._weights_now())
 
-        return slider
+        return weight
+
+    def _weights_now(self) -> dict[str, float]:
+        return {
+            name: float(each.value) if isinstance(each, GuiCheckboxHandle) else 10.0**each.value
+            for name, each in self._weights.items()
+        }
 
 
 def _summary(plan: Mapping[str, Any] | None, rollout: Mapping[str, Any] | None) -> str:

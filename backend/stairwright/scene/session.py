@@ -140,6 +140,11 @@ class SceneSession:
         self._player.set()  # draws the present moment anew
 
     @property
+    def plan(self) -> Mapping[str, Any] | None:
+        """The plan that is shown."""
+        return self._plan
+
+    @property
     def compared(self) -> str | None:
         """Id of the second plan."""
         return None if self._compared is None else str(self._compared["id"])
