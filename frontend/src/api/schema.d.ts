@@ -902,7 +902,7 @@ export interface components {
              * @default {}
              */
             weights: {
-                [key: string]: number;
+                [key: string]: boolean | number;
             };
         };
         /**
@@ -1148,7 +1148,7 @@ export interface components {
              * @default {}
              */
             weights: {
-                [key: string]: number;
+                [key: string]: boolean | number;
             };
             /**
              * Friction
