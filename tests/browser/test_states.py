@@ -220,6 +220,15 @@ def test_axe_finds_nothing_serious(shared: Product, theme: str, width: int) -> N
         page.set_viewport_size(DESK)
 
 
+# Whether the middle of an element can be pressed.
+UNCOVERED = """selector => {
+  const item = document.querySelector(selector);
+  const box = item.getBoundingClientRect();
+  const x = box.x + box.width / 2;
+  return item.contains(document.elementFromPoint(x, box.y + box.height / 2));
+}"""
+
+
 def test_narrow_pages_have_tabs(shared: Product) -> None:
     page = shared.fresh().page
     page.set_viewport_size({"width": 800, "height": 900})
@@ -235,5 +244,8 @@ def test_narrow_pages_have_tabs(shared: Product) -> None:
             assert tab.get_attribute("aria-pressed") == "true"
             assert [each for each in (scene, editor) if each.is_visible()] in ([shown], [])
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+        page.get_by_role("button", name=re.compile("^Robot")).click()
+        assert page.evaluate(UNCOVERED, ".robots .item:last-child"), "menus are not cut off"
+        page.keyboard.press("Escape")
     finally:
         page.set_viewport_size(DESK)

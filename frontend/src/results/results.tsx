@@ -134,11 +134,11 @@ function rows(): Row[] {
     },
     {
       title: "Torque",
-      ...(limit ? { unit: `of ${fixed(limit, 1)} Nm` } : {}),
-      of: (m) => fixed(m.torque_peak, 1),
+      ...(limit ? { unit: `of ${fixed(limit, 1)}` } : {}),
+      of: (m) => `${fixed(m.torque_peak, 1)} Nm`,
       bad: (m) => limit !== undefined && m.torque_peak >= limit - 0.05,
     },
-    { title: "Energy", unit: "J", of: (m) => fixed(m.energy, 0) },
+    { title: "Energy", of: (m) => `${fixed(m.energy, 0)} J` },
     { title: "Link contacts", of: (m) => String(m.link_contacts), bad: (m) => m.link_contacts > 0 },
     {
       title: "Speed",

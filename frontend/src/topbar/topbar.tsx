@@ -1,6 +1,8 @@
 /** The top bar: what is planned, what came of it, and what to do with it. */
 
 import { useState } from "preact/hooks";
+import type { RobotDocument } from "../api/types";
+import { fixed } from "../geometry/format";
 import { drawing, isEdited } from "../state/drawing";
 import { robotName, robots } from "../state/setup";
 import { theme, toggleTheme } from "../state/view";
@@ -58,7 +60,7 @@ function RobotMenu() {
     </>
   );
   return (
-    <Menu label="Robot" named button={button} buttonClass="fld">
+    <Menu label="Robot" named button={button} buttonClass="fld" panelClass="robots">
       {(close) =>
         robots.value.map((robot) => (
           <MenuItem
@@ -72,12 +74,21 @@ function RobotMenu() {
             <span class="two">
               {robot.name}
               <small>{robot.description}</small>
+              <small class="facts">{facts(robot)}</small>
             </span>
           </MenuItem>
         ))
       }
     </Menu>
   );
+}
+
+/** What decides how high it gets. */
+function facts(robot: RobotDocument): string {
+  const { trunk, thigh, calf, wheel } = robot;
+  const mass = trunk.mass + 4 * (thigh.mass + calf.mass + wheel.mass);
+  const leg = thigh.length + calf.length;
+  return `${fixed(mass, 1)} kg · legs ${fixed(leg, 2)} m · wheels ⌀ ${fixed(2 * wheel.radius, 2)} m`;
 }
 
 const SHOWN = 2000;
