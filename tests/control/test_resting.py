@@ -15,10 +15,10 @@ WEIGHT, RADIUS = 116.0, 0.05
 
 
 def resting(path: WheelPath, places, com, friction: float = 0.6):
-    out = np.zeros((len(places), 4))
+    out = np.zeros((len(places), 5))
     ground = (path.pieces, path.corners, path.radius)
     resting_forces(*ground, WEIGHT, friction, np.array(places), np.array(com), out)
-    return out.reshape(-1, 2, 2)
+    return out[:, :4].reshape(-1, 2, 2)
 
 
 def path_of(*points: tuple[float, float]) -> WheelPath:

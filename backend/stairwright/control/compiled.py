@@ -18,7 +18,7 @@ from . import balance, rigid_body
 from .contact import locate, support, wheel_traction
 from .controller import gains
 from .qp import solve_native
-from .setpoint import RATES, SURGES
+from .setpoint import RATES, SHARE, SURGES
 from .settings import ControllerSettings
 
 Floats = NDArray[np.float64]
@@ -47,6 +47,7 @@ _NAMES = (
     "trunk_inertia",
     "leg_inertia",
     "friction",
+    "friction_share",
     "joint_stiffness",
     "joint_damping",
     "wheel_damping",
@@ -69,7 +70,7 @@ _NAMES = (
     "wheel_speed",
 )
 PARAMETERS = np.dtype([(name, float) for name in _NAMES])
-"""Everything constant during a rollout. SI units; `friction` is the share that the QP may use."""
+"""Everything constant during a rollout. SI units."""
 
 
 def parameters(robot: Robot, friction: float, settings: ControllerSettings) -> NDArray[np.void]:
@@ -93,7 +94,7 @@ def parameters(robot: Robot, friction: float, settings: ControllerSettings) -> N
         "calf_com": robot.calf.com,
         "trunk_inertia": robot.trunk.inertia[1],
         "leg_inertia": robot.thigh.inertia[1] + robot.calf.inertia[1] + robot.wheel.inertia[1],
-        "friction": settings.friction_share * friction,
+        "friction": friction,
         "joint_stiffness": own.joint_stiffness,
         "joint_damping": own.joint_damping,
         "wheel_damping": own.wheel_damping,
@@ -125,7 +126,7 @@ def contact_control(
     """Torques (12,) before the motors' limits; updates the memory in place.
 
     `record` is of `parameters`, `pieces` and `corners` of the `WheelPath`, `qpos` (19,) and `qvel`
-    (18,) are measured, `target` (29,) is a row in the order of `setpoint`, `yaw_rate` is commanded.
+    (18,) are measured, `target` (30,) is a row in the order of `setpoint`, `yaw_rate` is commanded.
     The memory is `places` (4,), `forces` (8,) and `learnt` (1,).
     """
     p = record[0]
@@ -176,6 +177,7 @@ def contact_control(
     com_vx = qvel[0] + r00 * bx + r01 * by + r02 * bz
     com_vz = qvel[2] + r20 * bx + r21 * by + r22 * bz
 
+    usable = max(p.friction_share, target[SHARE]) * p.friction
     # World points (x, z), faces, and the map from contact forces to the body's wrench (eqs 3-7).
     world = np.empty((4, 6))
     held = np.empty((4, 8))
@@ -189,7 +191,7 @@ def contact_control(
             world[i, 2 * k + 1] = qpos[2] + r20 * px + r21 * side + r22 * pz
         places[i] = locate(pieces, R, world[i, 4], world[i, 5], places[i])
         planned = target[0] if i < 2 else target[1]
-        support(pieces, R, corners, places[i], planned, p.friction, held[i])
+        support(pieces, R, corners, places[i], planned, usable, held[i])
         nx, nz, friction[i], reach = held[i, 0], held[i, 1], held[i, 2], held[i, 3]
         lx, lz = world[i, 4] - reach * nx - com_x, world[i, 5] - reach * nz - com_z
         A[0, 2 * i], A[1, 2 * i], A[2, 2 * i] = nz, -nx, lz * nz + lx * nx

@@ -87,7 +87,7 @@ class Controller:
     def _contact(self, state: Measurement, target: Setpoint) -> Floats:
         robot, settings, radius = self.robot, self.settings, self.path.radius
         planned = target.wheel_progress[LEG_PAIR]
-        usable = settings.friction_share * self.friction
+        usable = max(settings.friction_share, target.friction_share) * self.friction
         held = np.empty((4, 8))
         for row, here, there in zip(held, self.places, planned, strict=True):
             support(self.path.pieces, radius, self.path.corners, here, there, usable, row)

@@ -41,7 +41,7 @@ def resting_forces(
     com: Floats,
     out: Floats,
 ) -> None:
-    """Forces of the ground on each wheel pair at rest, into `out` (n, 4) [N].
+    """Forces of the ground on each wheel pair at rest, into `out` [N].
 
     Args:
         pieces: Of the `WheelPath`, as `corners` [m] and `radius` [m].
@@ -49,7 +49,8 @@ def resting_forces(
         friction: Coulomb friction of the plan.
         places: (n, 2) arc length of the wheel pairs, front and rear [m].
         com: (n, 2) centre of mass [m].
-        out: Filled with front x, z and rear x, z in world axes.
+        out: (n, 5) filled with front x, z and rear x, z in world axes, and the share of the
+            friction that they keep to.
     """
     held, A, S = np.empty(8), np.empty((3, 8)), (1.0, 1.0, _MOMENT)
     H, g, mu, forces = np.empty((8, 8)), np.empty(8), np.empty(4), np.zeros(8)
@@ -81,6 +82,7 @@ def resting_forces(
                 missed += S[r] * total * total
             if missed < (_HELD * weight) ** 2:
                 break
+        out[k, 4] = share
         for pair in range(2):
             nx, nz = normals[pair, 0], normals[pair, 1]
             t = forces[4 * pair] + forces[4 * pair + 2]

@@ -19,7 +19,8 @@ TRUNK = slice(9, 11)
 RATES = 11  # the rate of column k is column RATES + k
 FORCES = slice(22, 26)
 SURGES = 26  # accelerations of pitch and CoM, the columns from `PITCH` on
-WIDTH = 29
+SHARE = 29  # of the friction that the static forces need
+WIDTH = 30
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,7 @@ class Setpoint:
         forces: (2, 2) static force of each wheel pair, world x and z [N].
         pitch_acceleration: [rad/s^2].
         com_acceleration: (2,) [m/s^2].
+        friction_share: part of the friction that the static forces need.
         yaw_rate: commanded [rad/s].
     """
 
@@ -56,11 +58,12 @@ class Setpoint:
     forces: Floats
     pitch_acceleration: float
     com_acceleration: Floats
+    friction_share: float = 0.0
     yaw_rate: float = 0.0
 
     @classmethod
     def from_row(cls, row: Floats, yaw_rate: float = 0.0) -> Setpoint:
-        """The set point held by a row (29,) in the module's order."""
+        """The set point held by a row (30,) in the module's order."""
         rates = row[RATES : 2 * RATES]
         return cls(
             wheel_progress=row[WHEELS],
@@ -76,5 +79,6 @@ class Setpoint:
             forces=row[FORCES].reshape(2, 2),
             pitch_acceleration=float(row[SURGES]),
             com_acceleration=row[SURGES + 1 : SURGES + 3],
+            friction_share=float(row[SHARE]),
             yaw_rate=yaw_rate,
         )

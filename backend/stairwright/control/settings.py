@@ -108,7 +108,13 @@ class ControllerSettings(Model):
         1e-4, 0.0, 1.0, "1", "Beta", "Weight of the change of forces (eq 11)", "linear"
     )
     friction_share: float = _number(
-        0.9, 0.1, 1.0, "1", "Friction used", "Part of the friction that the QP may use", "linear"
+        0.9,
+        0.1,
+        1.0,
+        "1",
+        "Friction used",
+        "Part of the friction that the QP may use; all of it where the plan itself needs more",
+        "linear",
     )
     force_limit: float = _number(
         150.0, 20.0, 1000.0, "N", "Force limit", "Largest normal force of a wheel (eq 12)", "log"

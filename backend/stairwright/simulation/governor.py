@@ -23,6 +23,7 @@ from stairwright.control.setpoint import (
     JOINTS,
     PITCH,
     RATES,
+    SHARE,
     SURGES,
     TRUNK,
     WHEELS,
@@ -51,7 +52,7 @@ class Track:
     Attributes:
         start: Progress of the first row [m].
         step: Progress between rows [m].
-        rows: (n, 29) set points; rates are per metre of progress, accelerations per its square.
+        rows: (n, 30) set points; rates are per metre of progress, accelerations per its square.
         speeds: (n,) allowed speed of the progress [m/s].
     """
 
@@ -116,14 +117,16 @@ def track(
             low, reference.progress, column
         )
         rows[:, RATES + k] = rise / (high - low)
-    for k in range(SURGES, WIDTH):
+    for k in range(SURGES, SHARE):
         rate = rows[:, RATES + PITCH + k - SURGES]
         low, high = np.maximum(grid - RATE_REACH, first), np.minimum(grid + RATE_REACH, last)
         rows[:, k] = (np.interp(high, grid, rate) - np.interp(low, grid, rate)) / (high - low)
     places, com = np.ascontiguousarray(rows[:, WHEELS]), np.ascontiguousarray(rows[:, COM])
     ground = (path.pieces, path.corners, path.radius)
     weight = robot.mass * GRAVITY
-    resting_forces(*ground, weight, friction, places, com, rows[:, FORCES])
+    resting = np.empty((count, 5))
+    resting_forces(*ground, weight, friction, places, com, resting)
+    rows[:, FORCES], rows[:, SHARE] = resting[:, :4], resting[:, 4]
     speeds = _speeds(reference, grid, rows, robot, settings)
     return Track(first, grid[1] - grid[0], rows, speeds)
 
@@ -178,7 +181,7 @@ def advance(
     clock: Floats,
     target: Floats,
 ) -> None:
-    """Advance the plan by one control step and write the set point into `target` (29,).
+    """Advance the plan by one control step and write the set point into `target` (30,).
 
     `start`, `step`, `rows` and `speeds` are of the `Track`; `leash` is how far the plan may run
     ahead [m]; `places` (4,) are where the wheels are, NaN before the first measurement; `moving`
@@ -219,7 +222,7 @@ def advance(
     # Speeding up or slowing down as the plan wants it, not as the leash does: that is noise.
     allowed = speeds[k] + share * (speeds[k + 1] - speeds[k])
     gain = rate * rate / allowed * (speeds[k + 1] - speeds[k]) / step if rate > 0.0 else 0.0
-    for j in range(SURGES, WIDTH):
+    for j in range(SURGES, SHARE):
         target[j] = target[j] * rate * rate + target[RATES + PITCH + j - SURGES] * gain
     for j in range(RATES, 2 * RATES):
         target[j] *= rate

@@ -95,6 +95,46 @@ def test_friction_that_is_named_is_enough(robot):
     assert sw.plan(ramp, robot, friction=plan.problem.limit.needed).feasible
 
 
+def test_what_is_infeasible_shows_how_far_it_gets():
+    plan = sw.plan(terrain([(-1.5, 0.0), (0.0, 0.0), (0.0, 1.3), (1.5, 1.3)]), friction=0.6)
+    assert not plan.feasible
+    assert not plan.executable
+    assert len(plan.poses) > 10
+    assert all(min(pose.margins.model_dump().values()) >= 0.0 for pose in plan.poses)
+    assert plan.poses[-1].x_c < 0.2
+    assert certify(plan.model_copy(update={"problem": None})).passed
+
+
+def scaled(name, legs, trunk, wheel):
+    """A robot with other dimensions."""
+    data = sw.load_robot(name).model_dump()
+    for part in ("thigh", "calf"):
+        data[part]["length"] *= legs
+    data["nominal_height"] *= legs
+    data["trunk"]["size"] = [v * trunk for v in data["trunk"]["size"]]
+    for end in ("front", "rear"):
+        data["hips"][end] = [v * trunk for v in data["hips"][end]]
+    data["wheel"]["radius"] *= wheel
+    return data
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("size", [(1.4, 1.0, 1.0), (1.0, 0.7, 1.0), (0.8, 1.2, 1.4)])
+def test_robots_of_other_dimensions(robot, size):
+    rise = 0.25 * size[0]
+    stair = terrain([(-1.5, 0.0), (0.0, 0.0), (0.0, rise), (1.5, rise)])
+    plan = sw.plan(stair, scaled(robot, *size), friction=0.6)
+    assert plan.feasible
+    assert plan.certificate.passed
+
+
+def test_a_spike_without_width_is_an_obstacle():
+    tall = terrain([(-1.5, 0.0), (0.0, 0.0), (0.0, 1.2), (0.0, 0.0), (1.5, 0.0)])
+    assert not sw.plan(tall, friction=0.6).feasible
+    low = terrain([(-1.5, 0.0), (0.0, 0.0), (0.0, 0.05), (0.0, 0.0), (1.5, 0.0)])
+    assert sw.plan(low, friction=0.6).feasible
+
+
 def test_short_first_flat_is_a_start_problem():
     plan = sw.plan(terrain([(-0.1, 0.0), (0.0, 0.0), (0.0, 0.3), (2.0, 0.3)]), friction=0.6)
     assert plan.problem.kind == "start"

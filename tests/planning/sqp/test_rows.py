@@ -7,6 +7,7 @@ import stairwright as sw
 from stairwright.planning.pose_search import PoseSearch
 from stairwright.planning.sqp import rows as r
 from stairwright.planning.sqp import solve
+from stairwright.planning.sqp.gaps import collect
 from stairwright.planning.sqp.state import com, make_body, new_state, place
 from stairwright.planning.weights import CriticalWeights
 from stairwright.robot import kinematics
@@ -73,7 +74,7 @@ def row_value(search, task, state, rows, k):
 def test_gradients(seed, links):
     search, task, y, state = problem(seed, links)
     rows = r.new_rows()
-    count, least = r.collect(search.body, search.course, task, state, rows)
+    count, least = collect(search.body, search.course, task, state, rows)
     assert count > 0
     assert least <= rows.value[:count].min() + 1e-12
     free = np.arange(5)
@@ -92,7 +93,7 @@ def test_gradients(seed, links):
 def test_hessian_of_the_lagrangian(seed, links):
     search, task, y, state = problem(seed, links)
     rows = r.new_rows()
-    count, _ = r.collect(search.body, search.course, task, state, rows)
+    count, _ = collect(search.body, search.course, task, state, rows)
     force = np.random.default_rng(seed).uniform(0, 2, count)
 
     def slope(at):

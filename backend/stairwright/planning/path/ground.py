@@ -128,7 +128,7 @@ def link_clearance(
         x, z = ax + 0.25 * k * (bx - ax), az + 0.25 * k * (bz - az)
         if z < height(g, x):
             depth = max(depth, point_gap(g, x, z, 0.5), 1e-4)
-    return -radius - (depth if depth > 0.0 else _PIERCED)
+    return -radius - (depth if depth > 2e-4 else _PIERCED)
 
 
 @nb.njit(cache=True)

@@ -16,6 +16,9 @@ from .ground import Ground, box_clearance, link_clearance, point_segment, segmen
 Floats = NDArray[np.float64]
 
 
+LEGS_GAP = 0.005  # m; front and rear leg stay this far apart
+
+
 class Leg(NamedTuple):
     """One leg pair: hip in the trunk frame, knee side, joint ranges.
 
@@ -38,6 +41,12 @@ def make_legs(p: Planar) -> tuple[Leg, Leg]:
 
     def leg(hip_x: float, hip_z: float, knee: float, limits: tuple[float, ...]) -> Leg:
         thigh_min, thigh_max, calf_min, calf_max = limits
+        other = (p.hip_rear_x, p.hip_rear_z)
+        if (hip_x, hip_z) == other:
+            other = (p.hip_front_x, p.hip_front_z)
+        thigh_min, thigh_max = _past_hip(
+            p, other[0] - hip_x, other[1] - hip_z, thigh_min, thigh_max
+        )
         bends = sorted((abs(calf_min), abs(calf_max)))
         near, far = (
             math.sqrt(max(0.0, p.thigh**2 + p.calf**2 + 2 * p.thigh * p.calf * math.cos(bend)))
@@ -59,6 +68,25 @@ def make_legs(p: Planar) -> tuple[Leg, Leg]:
             (p.thigh_rear_min, p.thigh_rear_max, p.calf_rear_min, p.calf_rear_max),
         ),
     )
+
+
+def _past_hip(p: Planar, dx: float, dz: float, low: float, high: float) -> tuple[float, float]:
+    """The part of a thigh's range, with the leg straight down, that the other hip leaves it.
+
+    A thigh that is longer than the hips are apart cannot swing past the other leg's hip, which lies
+    at (dx, dz) from its own. A lattice would step over that.
+    """
+    apart, room = math.hypot(dx, dz), 2.0 * p.thigh_radius + LEGS_GAP
+    if apart <= room or apart >= p.thigh + room:
+        return low, high
+    towards, half = math.atan2(-dx, -dz), math.asin(room / apart)
+    for turn in (-2.0 * math.pi, 0.0, 2.0 * math.pi):
+        a, b = towards + turn - half, towards + turn + half
+        if a > 0.0 and low <= 0.0:
+            high = min(high, a)
+        elif b < 0.0 and high >= 0.0:
+            low = max(low, b)
+    return low, high
 
 
 @nb.njit(cache=True)

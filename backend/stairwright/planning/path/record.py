@@ -15,11 +15,9 @@ from stairwright.terrain.wheel_path import WheelPath, curve_at
 
 from .contacts import wheel_contacts
 from .ground import Ground
-from .legs import COM_X, LEGS, LINKS, RECORD, SLACK, TRUNK, Leg, evaluate
+from .legs import COM_X, LEGS, LEGS_GAP, LINKS, RECORD, SLACK, TRUNK, Leg, evaluate
 
 Floats = NDArray[np.float64]
-
-LEGS_GAP = 0.005  # m; front and rear leg stay this far apart
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,7 @@ from .assemble import make_plan, make_poses
 from .course import Stand, find_stands
 from .ground import Ground, make_ground
 from .lattice import Finding
-from .legs import Leg, make_legs
-from .record import LEGS_GAP
+from .legs import LEGS_GAP, Leg, make_legs
 from .refine import Refined, refine
 from .tables import Bounds
 from .windows import Searches, find_path

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from stairwright.terrain.wheel_path import curve_at
 
 from .cells import Course
+from .gaps import collect
 from .places import ground_below, room
-from .rows import Task, collect, new_rows
+from .rows import Task, new_rows
 from .solve import solve_pose
 from .state import Body, State, com, new_state, place
 

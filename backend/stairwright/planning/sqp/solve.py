@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from stairwright.terrain.wheel_path import curve_at
 
 from .cells import Course
+from .gaps import collect
 from .qp import SOLVED, solve_qp
-from .rows import Rows, Task, U, add_curvature, collect, gradient, new_rows
+from .rows import Rows, Task, U, add_curvature, gradient, new_rows
 from .state import WHEEL, Body, State, new_state, place
 
 Floats = NDArray[np.float64]

@@ -1,0 +1,61 @@
+"""Tables of the search: what may be shared, and what the kernels promise."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from stairwright.library import load_robot
+from stairwright.planning.path.ground import box_clearance, link_clearance, make_ground
+from stairwright.planning.path.kernels import dilate, gather, reach
+from stairwright.planning.path.lattice import make_lattice
+from stairwright.planning.path.tables import alike
+
+
+def stairs(n):
+    corners = [(-2.0, 0.0), (0.0, 0.0)]
+    for k in range(n):
+        corners += [(0.4 * k, 0.2 * (k + 1)), (0.4 * (k + 1), 0.2 * (k + 1))]
+    corners[-1] = (corners[-1][0] + 2.0, corners[-1][1])
+    return np.array(corners)
+
+
+def test_samples_on_equal_steps_are_alike():
+    vertices = stairs(6)
+    centres = np.array([[0.1 + 0.4 * k, 0.25 + 0.2 * k] for k in range(6)])
+    kept, like = alike(vertices, centres, 0.45)
+    assert like[2] == like[3]  # far from both ends of the flight
+    assert like[5] != like[2]  # no step follows
+    assert len(kept) == like.max() + 1
+
+
+def test_level_samples_far_from_everything_are_alike():
+    centres = np.stack([np.linspace(-1.4, -0.8, 7), np.full(7, 0.05)], axis=1)
+    kept, like = alike(stairs(1), centres, 0.5)
+    assert len(kept) == 1
+    assert not like.any()
+
+
+def test_dilation_of_a_part_equals_that_of_the_whole():
+    lat = make_lattice(load_robot("a1_wheeled"), 1.9, 2.0)
+    size, edge = (lat.nt + 4) * (lat.nz + 4) * lat.row, reach(lat)
+    rng = np.random.default_rng(2)
+    source = np.zeros(size, np.uint8)
+    at = rng.integers(size // 3, size // 2, 20)
+    source[at] = rng.integers(1, 255, 20)
+    lo, hi = int(at.min()), int(at.max()) + 1
+    answers = []
+    for first, last in ((lo - edge, hi + edge), (0, size)):
+        pad, out = np.zeros(size, np.uint8), np.zeros(size, np.uint8)
+        gather(source, lo, hi, 0, pad)
+        dilate(pad, out, max(0, first), min(size, last), lat)
+        answers.append(out)
+    assert np.array_equal(*answers)
+    assert answers[0].max() == source.max()
+
+
+@pytest.mark.parametrize("height", [0.4, 2.0])
+def test_a_spike_through_trunk_or_link_is_deep(height):
+    ground = make_ground(np.array([[-1.0, 0.0], [0.0, 0.0], [0.0, height], [0.0, 0.0], [1.0, 0.0]]))
+    assert link_clearance(ground, -0.1, 0.3, 0.1, 0.31, 0.01, 0.05) < -0.012
+    assert box_clearance(ground, 0.0, 0.3, 1.0, 0.0, 0.12, 0.06, 0.05) < -0.009
