@@ -30,7 +30,8 @@ RESERVE = 0.1  # friction that a plan does without where the terrain allows it
 
 # What lattice poses keep: a little more than the final bounds (strict); as much less as rounding to
 # the lattice may take from a pose that is really possible (bold: the polish must repair it); or so
-# much less that a search without success settles the matter (hope).
+# much less that a search without success settles the matter (hope; the polish repairs many of its
+# finds, and sooner than a finer lattice would spare it the work).
 STRICT = Bounds(trunk=0.006, links=0.006, legs=LEGS_GAP, reach=0.003, thigh=0.0, com=0.005)
 BOLD = Bounds(trunk=-0.003, links=-0.003, legs=-0.003, reach=0.0, thigh=-0.02, com=-0.01)
 HOPE = Bounds(trunk=-0.009, links=-0.009, legs=-0.009, reach=-0.006, thigh=-0.06, com=-0.02)
@@ -52,10 +53,9 @@ COARSE = (Rung(2.0, STRICT), Rung(1.7, BOLD))
 LADDER = (
     *COARSE,
     Rung(1.7, BOLD, True),
-    Rung(1.4, BOLD),
-    Rung(1.0, BOLD),
-    Rung(1.0, BOLD, True),
-    Rung(0.8, BOLD),
+    Rung(1.7, HOPE),
+    Rung(1.4, HOPE),
+    Rung(1.0, HOPE),
 )
 QUICK = COARSE  # enough to confirm that a relaxed problem has a plan
 _THIN = 0.01  # m; a path with a thinner CoM margin is compared with that of the next coarse rung
