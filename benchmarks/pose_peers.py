@@ -5,9 +5,11 @@ from __future__ import annotations
 import importlib.util
 import shutil
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
+from octave_peer import Octave
 from pose_tasks import Nlp, Numbers, Task
 from scipy.optimize import minimize
 
@@ -151,6 +153,11 @@ def _drake() -> Solver:
     return _each(one)
 
 
+@cache
+def _octave(executable: str) -> Solver:
+    return _each(Octave(executable, _MOST))
+
+
 _QUIET = {"print_time": False, "error_on_fail": False}
 _SQP = {
     **_QUIET, "qpsol": "daqp", "qpsol_options": {"error_on_fail": False}, "max_iter": 50,
@@ -173,5 +180,5 @@ def peers() -> dict[str, Solver | str]:
         "SciPy SLSQP, exact derivatives": _slsqp(exact=True),
         "SciPy SLSQP, finite differences": _slsqp(exact=False),
         "Drake SNOPT": _drake() if drake else "not installed",
-        "Octave sqp": "not installed" if octave is None else "installed; not driven from here",
+        "Octave sqp, exact derivatives": _octave(octave) if octave else "not installed",
     }

@@ -27,7 +27,11 @@ from stairwright.terrain.profile import Terrain
 from stairwright.terrain.stairs import stair
 
 ROBOTS = ("a1_wheeled", "a1_wheeled_x")
-SLOW = {"SciPy SLSQP, finite differences": 30, "Drake SNOPT": 60}
+SLOW = {
+    "SciPy SLSQP, finite differences": 30,
+    "Drake SNOPT": 60,
+    "Octave sqp, exact derivatives": 10,
+}
 _NUDGE = 0.004  # m that a corner is moved for a warm start
 
 

@@ -3,8 +3,8 @@
     python benchmarks/run.py [NAME ...] [--quick] [--keep FOLDER]
 
 Prints each table, writes the figures as JSON and a plot of the ratios, and renews the tables in
-docs/performance.md. With `--quick`, a smoke test of minutes, or when only some are named, the
-document is left alone.
+docs/performance.md. When only some are named, the others keep the figures that they have. With
+`--quick`, a smoke test of minutes, the document is left alone.
 """
 
 from __future__ import annotations
@@ -101,10 +101,13 @@ def main() -> int:
         folder.mkdir(parents=True, exist_ok=True)
         results = {name: measure(name, folder, given.quick) for name in names}
     done = {name: result for name, result in results.items() if result is not None}
-    if len(done) == len(TITLES) and not given.quick:
-        FIGURES.write_text(json.dumps(done, indent=1) + "\n", encoding="utf-8")
-        DOCUMENT.write_text(renew(DOCUMENT.read_text(encoding="utf-8"), done), encoding="utf-8")
-        draw(done, PLOT)
+    if done and not given.quick:
+        before = json.loads(FIGURES.read_text(encoding="utf-8")) if FIGURES.is_file() else {}
+        known = before | done
+        figures = {name: known[name] for name in TITLES if name in known}
+        FIGURES.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
+        DOCUMENT.write_text(renew(DOCUMENT.read_text(encoding="utf-8"), figures), encoding="utf-8")
+        draw(figures, PLOT)
         print(f"\nwrote {DOCUMENT}, {PLOT} and {FIGURES}", file=sys.stderr)
     return 0 if len(done) == len(names) else 1
 
