@@ -7,6 +7,8 @@ import contextlib
 import logging
 from functools import partial
 
+from fastapi.concurrency import run_in_threadpool
+
 from stairwright.jobs import work
 from stairwright.jobs.engine import planning_engine, rollout_engine
 from stairwright.jobs.failures import Failure, problem
@@ -93,7 +95,7 @@ class Services:
 
     async def _start_the_rest(self) -> None:
         """What nobody waits for in the first second must not compete with what somebody does."""
-        await asyncio.to_thread(_read_what_questions_need)
+        await run_in_threadpool(_read_what_questions_need)  # which warms FastAPI's threads too
         asyncio.get_running_loop().call_later(LATEST_READY, setattr, self, "ready", True)
         with contextlib.suppress(Failure):
             await self.plan_pool.run(work.rehearse, deadline=START_DEADLINE)
