@@ -117,6 +117,7 @@ class PoseSearch:
         wheelbase = robot.hips.front[0] - robot.hips.rear[0]
         self.span = (2 * robot.wheel.radius + APART, 2 * reach + wheelbase)
         self._usual = 1.4 * wheelbase
+        self._lost: dict[bytes, float] = {}  # balance lost between two poses, once judged
 
     def best_pair(
         self, first: Place, second: Place, after: Floats | None = None, balance: bool = True
@@ -225,7 +226,10 @@ class PoseSearch:
 
     def imbalance(self, begin: Floats, end: Floats) -> float:
         """By how much the CoM lies outside balance between two poses (9,), at worst [m]."""
-        return float(imbalance(self.body, self.course, self.rules, begin, end))
+        key = begin.tobytes() + end.tobytes()
+        if key not in self._lost:
+            self._lost[key] = float(imbalance(self.body, self.course, self.rules, begin, end))
+        return self._lost[key]
 
     def clear(self, trunk: tuple[float, float, float], wheels: tuple[float, float]) -> bool:
         """Whether a pose with the wheels at given arc lengths keeps limits and clearances."""
