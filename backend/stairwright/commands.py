@@ -35,6 +35,8 @@ def plan_command(given: Arguments) -> str | None:
 
 def rollout_command(given: Arguments) -> str | None:
     """`stairwright rollout`."""
+    if given.seed < 0:
+        raise InputError("must be a whole number from 0", ("seed",))
     if given.trials is not None:
         return _trials(given)
     if given.output:
@@ -170,7 +172,7 @@ def _plan_or_file(given: Arguments) -> Plan:
         if path.suffix.lower() == ".npz" or _schema(path) != "terrain":
             document = load(path)
             if isinstance(document, Plan):
-                for name in ("robot", "method"):
+                for name in ("robot", "method", "weight"):
                     if getattr(given, name):
                         raise InputError("the plan says it already", (name,))
                 return document

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,6 +16,17 @@ from .errors import InputError
 MAX_FILE_BYTES = 64 * 2**20
 
 _Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+# The last three are how PyYAML's constructors fail: a 13th month, "!!int x", "!!bool x".
+_UNREADABLE = (yaml.YAMLError, RecursionError, ValueError, AttributeError, KeyError)
+_WORDINGS = {
+    "missing": "is missing",
+    "extra_forbidden": "unknown field",
+    **dict.fromkeys(
+        ("model_type", "model_attributes_type", "dict_type", "mapping_type"),
+        "must be a mapping of names to values",
+    ),
+}
 
 
 class Model(BaseModel):
@@ -50,11 +62,16 @@ def _first_error(error: ValidationError, model: type[BaseModel]) -> InputError:
     cause = first.get("ctx", {}).get("error")
     if isinstance(cause, InputError):
         return cause.within(*first["loc"])
-    message = str(first["msg"])
-    if first["type"] == "extra_forbidden":
+    message = wording(first)
+    if first["type"] == "extra_forbidden" and len(first["loc"]) == 1:
         names = ", ".join(field.alias or name for name, field in model.model_fields.items())
-        message = f"unknown field; {model.__name__} has: {names}"
+        message += f"; {model.__name__} has: {names}"
     return InputError(message, tuple(first["loc"]))
+
+
+def wording(error: Mapping[str, Any]) -> str:
+    """What one of pydantic's errors says, in words of files and JSON rather than of Python."""
+    return _WORDINGS.get(error["type"], str(error["msg"]))
 
 
 def load_mapping(path: Path) -> dict[str, Any]:
@@ -67,29 +84,32 @@ def load_mapping(path: Path) -> dict[str, Any]:
         if path.stat().st_size > MAX_FILE_BYTES:
             raise InputError(f"{path} is larger than {MAX_FILE_BYTES >> 20} MiB")
         text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise InputError(f"{path} is not UTF-8 text") from None
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    except ValueError as error:  # a name that no file can have
+        raise InputError(f"cannot read {str(path)!r}: {error}") from None
     return parse_mapping(text, str(path))
 
 
 def parse_mapping(text: str, origin: str) -> dict[str, Any]:
     """Parse YAML (of which JSON is a part) that must hold a mapping; aliases are refused."""
     try:
-        if text.lstrip().startswith("{"):
-            data = json.loads(text)
-        else:
-            # Aliases let a few bytes stand for gigabytes.
-            if any(isinstance(event, yaml.AliasEvent) for event in yaml.parse(text, _Loader)):
-                raise InputError(f"{origin} uses YAML aliases, which are not accepted here")
-            data = yaml.load(text, _Loader)  # noqa: S506 - both loaders are the safe ones
-    except (yaml.YAMLError, json.JSONDecodeError, RecursionError) as error:
+        data = json.loads(text) if text.lstrip().startswith("{") else _read_yaml(text)
+    except _UNREADABLE as error:
         reason = " ".join(str(error).split())[:200]
-        raise InputError(f"{origin} is neither valid YAML nor JSON: {reason}") from None
+        raise InputError(f"{origin} cannot be read as YAML or JSON: {reason}") from None
     if not isinstance(data, dict):
         raise InputError(f"{origin} must hold a mapping of names to values")
     return data
+
+
+def _read_yaml(text: str) -> Any:
+    # Aliases let a few bytes stand for gigabytes.
+    if any(isinstance(event, yaml.AliasEvent) for event in yaml.parse(text, _Loader)):
+        raise yaml.YAMLError("YAML aliases are not accepted here")
+    return yaml.load(text, _Loader)  # noqa: S506 - both loaders are the safe ones
 
 
 def content_hash(data: Any) -> str:

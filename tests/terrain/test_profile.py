@@ -54,7 +54,7 @@ def test_missing_file_is_an_input_error(tmp_path):
 
 
 def test_file_that_is_no_mapping_or_no_yaml(tmp_path):
-    for text, words in (("- 1", "mapping"), ("a: [", "neither"), ("a: &x 1\nb: *x", "aliases")):
+    for text, words in (("- 1", "mapping"), ("a: [", "cannot be read"), ("a: &x 1\nb: *x", "aliases")):
         path = tmp_path / "bad.yaml"
         path.write_text(text)
         with pytest.raises(InputError, match=words):

@@ -14,8 +14,18 @@ from stairwright.terrain.profile import Terrain
 from stairwright.terrain.stairs import Direction
 
 
-def _form(value: Any) -> str:
-    return "~name" if isinstance(value, str) else "~document"
+def _form(value: Any) -> str | None:
+    if isinstance(value, str):
+        return "~name"
+    return "~document" if isinstance(value, (dict, Model)) else None
+
+
+def _weight_form(value: Any) -> str:
+    return "~flag" if isinstance(value, bool) else "~number"
+
+
+def _setting_form(value: Any) -> str:
+    return "~word" if isinstance(value, str) else _weight_form(value)
 
 
 def _without_readonly(value: Any) -> Any:
@@ -27,27 +37,42 @@ def _without_readonly(value: Any) -> Any:
 
 Name = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[\w .+-]+$")]
 SentTerrain = Annotated[Terrain, BeforeValidator(_without_readonly)]
+_NameOrDocument = Discriminator(
+    _form,
+    custom_error_type="name_or_document",
+    custom_error_message="must be a name or a whole document",
+)
 TerrainSource = Annotated[
-    Annotated[Name, Tag("~name")] | Annotated[SentTerrain, Tag("~document")], Discriminator(_form)
+    Annotated[Name, Tag("~name")] | Annotated[SentTerrain, Tag("~document")], _NameOrDocument
 ]
 RobotSource = Annotated[
-    Annotated[Name, Tag("~name")] | Annotated[Robot, Tag("~document")], Discriminator(_form)
+    Annotated[Name, Tag("~name")] | Annotated[Robot, Tag("~document")], _NameOrDocument
 ]
 Friction = Annotated[
     float, Field(strict=True, gt=0.0, le=5.0, description="Coulomb, wheel on terrain")
 ]
 SettingName = Annotated[str, Field(max_length=64, pattern=r"^[a-z0-9_]+$")]
 Number = Annotated[float, Field(strict=True, ge=-1e9, le=1e9)]
-SettingValue = StrictBool | Number | Annotated[str, Field(max_length=64)]
+# Tagged, or each bad value would be reported once for every type that it is not.
+Weight = Annotated[
+    Annotated[StrictBool, Tag("~flag")] | Annotated[Number, Tag("~number")],
+    Discriminator(_weight_form),
+]
+SettingValue = Annotated[
+    Annotated[StrictBool, Tag("~flag")]
+    | Annotated[Annotated[str, Field(max_length=64)], Tag("~word")]
+    | Annotated[Number | None, Tag("~number")],
+    Discriminator(_setting_form),
+]
 Weights = Annotated[
-    dict[SettingName, StrictBool | Number],
+    dict[SettingName, Weight],
     Field(max_length=32, description="cost weights by name, see GET /settings"),
 ]
 Controller = Annotated[
     dict[SettingName, SettingValue],
     Field(max_length=64, description="controller settings by name, see GET /settings"),
 ]
-Id = Annotated[str, Field(min_length=1, max_length=64, pattern=r"^[a-z]-[0-9a-f]+$")]
+Id = Annotated[str, Field(min_length=1, max_length=64)]
 
 
 class PlanRequest(Model):
@@ -71,7 +96,7 @@ class PlanRequest(Model):
     robot: RobotSource = Field("a1_wheeled", description="a robot's name or a robot document")
     friction: Friction | None = Field(None, description="the terrain's own by default")
     method: Method = "path"
-    weights: Weights = {}
+    weights: Weights | None = None
 
 
 class RolloutRequest(Model):
@@ -91,11 +116,11 @@ class RolloutRequest(Model):
     terrain: TerrainSource | None = Field(None, description="what to plan over first")
     robot: RobotSource = Field("a1_wheeled", description="with `terrain`")
     method: Method = Field("path", description="with `terrain`")
-    weights: Weights = Field({}, description="with `terrain`")
+    weights: Weights | None = Field(None, description="with `terrain`")
     friction: Friction | None = Field(
         None, description="friction in the simulation (and of the plan, with `terrain`)"
     )
-    controller: Controller = {}
+    controller: Controller | None = None
     seed: int = Field(0, strict=True, ge=0, le=2**31 - 1)
 
 

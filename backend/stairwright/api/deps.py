@@ -95,7 +95,9 @@ async def idempotency(
             headers={"retry-after": "1"},
         )
     if verdict is Verdict.OTHER:
-        raise Problem(422, "this key came with another body before", kind="idempotency")
+        message = "this key came with another body before"
+        field = FieldError(field="idempotency-key", message=message)
+        raise Problem(422, message, kind="idempotency", errors=[field])
     claim = Idempotency(earlier)
     try:
         yield claim

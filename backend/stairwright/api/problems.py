@@ -18,6 +18,7 @@ from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
+from stairwright.documents import wording
 from stairwright.errors import InputError
 from stairwright.jobs.failures import Failure
 
@@ -81,9 +82,11 @@ class Problem(Exception):
         return Response(body, self.status, self.headers, media_type=MEDIA_TYPE)
 
 
-def not_found(kind: str, name: str) -> Problem:
-    """404 for a thing of some kind."""
-    return Problem(404, f"there is no {kind} {printable(name)!r}", kind="not-found")
+def not_found(kind: str, name: str, field: str = "") -> Problem:
+    """404 for a thing of some kind; `field` if a value in the body named it."""
+    message = f"there is no {kind} {printable(name)!r}"
+    errors = [FieldError(field=field, message=message)] if field else []
+    return Problem(404, message, kind="not-found", errors=errors)
 
 
 def from_input_error(error: InputError, *prefix: str) -> Problem:
@@ -107,11 +110,13 @@ def _path(loc: Sequence[str | int]) -> str:
 def _field_error(error: Mapping[str, Any]) -> FieldError:
     loc = list(error["loc"])
     source = loc.pop(0) if loc and loc[0] in ("body", "query", "path", "header") else ""
-    message, cause = str(error["msg"]), error.get("ctx", {}).get("error")
+    message, cause = wording(error), error.get("ctx", {}).get("error")
     if isinstance(cause, InputError):
         loc, message = [*loc, *cause.field], cause.message
     elif isinstance(cause, ValueError):
         message = str(cause)
+    if source == "body" and not loc and error["type"] == "missing":
+        message = "the body is empty"
     path = _path(loc) or ("" if source == "body" else str(source))
     return FieldError(field=path, message=printable(message))
 

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+import socket
+
+from stairwright.errors import InputError
 from stairwright.jobs.launch import launch
 
 from .settings import Settings
 
 
 def serve(host: str | None = None, port: int | None = None) -> int:
-    """Serve until interrupted; `host` and `port` win over the environment."""
+    """Serve until interrupted; `host` and `port` win over the environment.
+
+    Raises:
+        InputError: If a setting is bad or the address cannot be had.
+    """
     settings = Settings.from_env(host=host, port=port)
+    _check_address(settings.host, settings.port)
     launch()  # gets ready while this process imports what follows
     import uvicorn
 
@@ -28,3 +36,12 @@ def serve(host: str | None = None, port: int | None = None) -> int:
         server_header=False,
     )
     return 0
+
+
+def _check_address(host: str, port: int) -> None:
+    """Complain in one line before anything is started, not in a log after it."""
+    try:
+        for family, _, _, _, address in socket.getaddrinfo(host, port, type=socket.SOCK_STREAM):
+            socket.create_server(address[:2], family=family).close()
+    except OSError as error:
+        raise InputError(f"cannot serve on {host}: {error.strerror}") from None

@@ -185,5 +185,6 @@ def _expect(data: dict[str, Any], kind: str, path: str | Path) -> dict[str, Any]
 def _write(path: Path, content: bytes) -> None:
     try:
         path.write_bytes(content)
-    except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror or error}", ("path",)) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"cannot write {str(path)!r}: {reason}", ("path",)) from None

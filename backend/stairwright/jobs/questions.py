@@ -31,7 +31,7 @@ class PlanQuestion:
         robot: Robot,
         friction: float | None,
         method: Method,
-        weights: Mapping[str, float],
+        weights: Mapping[str, float] | None,
     ) -> PlanQuestion:
         """Fill in defaults.
 

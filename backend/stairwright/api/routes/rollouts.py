@@ -9,7 +9,7 @@ from fastapi import APIRouter, Path, Query, Request, Response
 
 from stairwright.api.bodies import JobDocument, PlanRequest, RolloutRequest, StoredEntry
 from stairwright.api.deps import JSON_BODY, Idempotent, Limit, Offset, Owner, Service
-from stairwright.api.problems import FieldError, Problem, describe
+from stairwright.api.problems import describe, not_found
 from stairwright.api.services import Services
 from stairwright.control.settings import ControllerSettings
 from stairwright.documents import parse
@@ -56,7 +56,7 @@ async def post_rollout(
 
 def _question(services: Services, body: RolloutRequest) -> RolloutQuestion:
     try:
-        settings = parse(ControllerSettings, dict(body.controller))
+        settings = parse(ControllerSettings, dict(body.controller or {}))
     except InputError as error:
         raise error.within("controller") from None
     controller = settings.model_dump(mode="json")
@@ -71,10 +71,7 @@ def _source(services: Services, body: RolloutRequest) -> PlanQuestion | Plan | s
     }
     if len(given) != 1:
         message = "give exactly one of plan_id, plan and terrain"
-        field = list(given)[-1] if given else "plan_id"
-        raise Problem(
-            422, message, kind="bad-input", errors=[FieldError(field=field, message=message)]
-        )
+        raise InputError(message, (list(given)[-1] if given else "plan_id",))
     if body.plan is not None:
         return body.plan
     if body.terrain is not None:
@@ -83,7 +80,7 @@ def _source(services: Services, body: RolloutRequest) -> PlanQuestion | Plan | s
         return plan_question(services, PlanRequest.model_construct(**values))
     entry = services.store.documents.get("plan", str(body.plan_id))
     if entry is None:
-        raise Problem(404, f"there is no plan {body.plan_id!r}", kind="not-found")
+        raise not_found("plan", str(body.plan_id), field="plan_id")
     return entry.digest
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import PurePath
 from typing import Annotated, Any
+from urllib.parse import quote
 
 from fastapi import APIRouter, File, Form, Path, Request, Response, UploadFile
 from pydantic import ValidationError
@@ -120,14 +121,12 @@ def put_terrain(
     """Save a terrain under a name; 201 if the name is new."""
     _refuse_preset(name)
     if "name" in body.model_fields_set and body.name != name:
-        raise Problem(
-            422, f"name: the body says {body.name!r}, the address {name!r}", kind="bad-input"
-        )
+        raise InputError(f"the body says {body.name!r}, the address {name!r}", ("name",))
     if services.store.terrains.count() >= MOST_SAVED:
         raise Problem(409, f"{MOST_SAVED} terrains are saved already", kind="full")
     terrain = body.model_copy(update={"name": name})
     new = services.store.terrains.put(terrain)
-    headers = {"location": request.url.path} if new else None
+    headers = {"location": quote(request.url.path)} if new else None
     return model_json(request, _shown(terrain, readonly=False), 201 if new else 200, headers)
 
 

@@ -27,6 +27,7 @@ _BODY_SHARE = 0.3  # body motion counts this much against wheel travel in a node
 _CLEAR = 0.016  # m; clearance that the polish aims at
 # Smoothing, and metres of path per node, of one attempt after the other.
 _TRIES = ((1.0, 0.009), (0.5, 0.006), (0.15, 0.006))
+_LOST = -0.004  # m; a second attempt that breaks a bound by more is not mended by a third
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,7 @@ def refine(
     for k in range(2):
         body[-k] = stands[k].body
     u = _spacing(s, body)
-    for soft, spacing in _TRIES:
+    for tries, (soft, spacing) in enumerate(_TRIES):
         n = max(40, int(u[-1] / (spacing * scale(robot))))
         even = np.linspace(0.0, u[-1], n)
         hop = even[1]
@@ -93,7 +94,7 @@ def refine(
         found = Refined(dense_s, dense_body, record)
         if best is None or record.worst > best.record.worst:
             best = found
-        if record.good:
+        if record.good or (tries > 0 and record.worst < _LOST):
             break
     assert best is not None
     return best
