@@ -113,6 +113,8 @@ def test_every_method_with_every_robot(api: httpx.Client, method: str, robot: st
         ({"terrain": CURB, "method": "magic"}, "method"),
         ({"terrain": CURB, "weights": {"beauty": 1}}, "weights.beauty"),
         ({"terrain": CURB, "weights": {"speed": 1e6}}, "weights.speed"),
+        ({"terrain": CURB, "weights": {"speed": "slow"}}, "weights.speed"),
+        ({"terrain": 5}, "terrain"),
         ({"terrain": CURB, "wieghts": {}}, "wieghts"),
     ],
 )
@@ -123,6 +125,15 @@ def test_each_bad_value_is_named(api: httpx.Client, body: dict[str, object], fie
     assert problem["status"] == 422
     assert problem["errors"][0]["field"] == field
     assert problem["errors"][0]["message"]
+
+
+def test_null_is_the_default_as_in_python(api: httpx.Client) -> None:
+    nothing = {"friction": None, "weights": None}
+    plans = [api.post("/plans", json={"terrain": CURB, **given}) for given in ({}, nothing)]
+    assert plans[0].json()["id"] == plans[1].json()["id"]
+    for controller in (None, {"speed": None}):
+        body = {"terrain": CURB, "controller": controller, **nothing}
+        assert api.post("/rollouts", json=body).status_code == 202
 
 
 def test_a_rollout_from_start_to_files(api: httpx.Client) -> None:
@@ -195,21 +206,24 @@ def test_the_client_does_the_same(service: Client) -> None:
 
 
 @pytest.mark.parametrize(
-    ("body", "status"),
+    ("body", "status", "field"),
     [
-        ({}, 422),
-        ({"plan_id": "p-0123456789abcdef"}, 404),
-        ({"plan_id": "p-1", "terrain": CURB}, 422),
-        ({"terrain": CURB, "controller": {"wings": 1}}, 422),
-        ({"terrain": CURB, "controller": {"leash": -1}}, 422),
-        ({"terrain": CURB, "seed": -1}, 422),
-        ({"terrain": CURB, "seed": 1.5}, 422),
+        ({}, 422, "plan_id"),
+        ({"plan_id": "p-0123456789abcdef"}, 404, "plan_id"),
+        ({"plan_id": "none of ours"}, 404, "plan_id"),
+        ({"plan_id": "p-1", "terrain": CURB}, 422, "terrain"),
+        ({"terrain": CURB, "controller": {"wings": 1}}, 422, "controller.wings"),
+        ({"terrain": CURB, "controller": {"leash": -1}}, 422, "controller.leash"),
+        ({"terrain": CURB, "controller": {"leash": [1]}}, 422, "controller.leash"),
+        ({"terrain": CURB, "seed": -1}, 422, "seed"),
+        ({"terrain": CURB, "seed": 1.5}, 422, "seed"),
     ],
 )
-def test_bad_rollouts(api: httpx.Client, body: dict[str, object], status: int) -> None:
+def test_bad_rollouts(api: httpx.Client, body: dict[str, object], status: int, field: str) -> None:
     answer = api.post("/rollouts", json=body)
     assert answer.status_code == status, answer.text
     assert answer.headers["content-type"] == "application/problem+json"
+    assert [error["field"] for error in answer.json()["errors"]] == [field]
 
 
 def test_a_rollout_over_a_wall_says_what_happened(api: httpx.Client) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from urllib.parse import quote, unquote
 
 import httpx
 import numpy as np
@@ -40,10 +41,22 @@ def test_a_terrain_is_saved_changed_and_deleted(api: httpx.Client) -> None:
     assert made.json()["readonly"] is False
     assert api.put("/terrains/my stair", json=made.json()).status_code == 200  # as it was got
     assert "my stair" in [each["name"] for each in api.get("/terrains").json()]
-    assert api.put("/terrains/other", json=made.json()).status_code == 422
+    other = api.put("/terrains/other", json=made.json())
+    assert other.status_code == 422
+    assert other.json()["errors"][0]["field"] == "name"
     assert api.delete("/terrains/my stair").status_code == 204
     assert api.get("/terrains/my stair").status_code == 404
     assert api.delete("/terrains/my stair").status_code == 404
+
+
+@pytest.mark.parametrize("name", ["階段", "Stufe ä", "ends in a space ", "a+b.c"])
+def test_a_name_in_any_script_can_be_saved_and_found(api: httpx.Client, name: str) -> None:
+    made = api.put(f"/terrains/{quote(name)}", json=STAIR)
+    assert made.status_code == 201
+    assert unquote(made.headers["location"]) == f"/api/v1/terrains/{name}"
+    found = api.get(made.headers["location"].removeprefix("/api/v1"))
+    assert found.json() == made.json()
+    assert api.delete(f"/terrains/{quote(name)}").status_code == 204
 
 
 def test_pages_and_entity_tags(api: httpx.Client) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -126,6 +127,7 @@ def test_what_cannot_be_done_is_status_1(tmp_path: Path) -> None:
         ("plan", "flat", "-o", "/nowhere/plan.json"),
         ("rollout", "missing.json"),
         ("rollout", "flat", "--trials", "0"),
+        ("rollout", "flat", "--seed", "-1"),
         ("certify", "missing.json"),
         ("export", "missing.json", "-o", "x.csv"),
         ("serve", "--host", "0.0.0.0"),
@@ -135,6 +137,15 @@ def test_what_cannot_be_done_is_status_1(tmp_path: Path) -> None:
 )
 def test_bad_input_is_status_2_and_one_line(arguments: tuple[str, ...]) -> None:
     run(*arguments, status=2)
+
+
+def test_a_plan_that_is_made_already_takes_no_weights(plan: Path) -> None:
+    run("rollout", plan, "--weight", "speed=0.2", status=2)
+
+
+def test_a_port_in_use_is_bad_input() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        run("serve", "--port", str(taken.getsockname()[1]), status=2)
 
 
 def test_a_table_is_a_terrain_too(tmp_path: Path) -> None:

@@ -49,12 +49,21 @@ def test_unknown_preset_lists_the_known_ones():
 
 
 def test_missing_file_is_an_input_error(tmp_path):
-    with pytest.raises(InputError, match="cannot read"):
-        load_terrain(tmp_path / "none.yaml")
+    for name in ("none.yaml", "no\0name.yaml"):
+        with pytest.raises(InputError, match="cannot read"):
+            load_terrain(tmp_path / name)
 
 
 def test_file_that_is_no_mapping_or_no_yaml(tmp_path):
-    for text, words in (("- 1", "mapping"), ("a: [", "cannot be read"), ("a: &x 1\nb: *x", "aliases")):
+    for text, words in (
+        ("- 1", "mapping"),
+        ("a: [", "cannot be read"),
+        ("a: &x 1\nb: *x", "aliases"),
+        ("name: 2001-13-45", "cannot be read"),
+        ("friction: !!bool x", "cannot be read"),
+        ("friction: !!timestamp x", "cannot be read"),
+        ('{"friction": ' + "9" * 5000 + "}", "cannot be read"),
+    ):
         path = tmp_path / "bad.yaml"
         path.write_text(text)
         with pytest.raises(InputError, match=words):

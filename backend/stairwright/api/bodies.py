@@ -64,14 +64,8 @@ SettingValue = Annotated[
     | Annotated[Number | None, Tag("~number")],
     Discriminator(_setting_form),
 ]
-Weights = Annotated[
-    dict[SettingName, Weight],
-    Field(max_length=32, description="cost weights by name, see GET /settings"),
-]
-Controller = Annotated[
-    dict[SettingName, SettingValue],
-    Field(max_length=64, description="controller settings by name, see GET /settings"),
-]
+Weights = Annotated[dict[SettingName, Weight], Field(max_length=32)] | None
+Controller = Annotated[dict[SettingName, SettingValue], Field(max_length=64)] | None
 Id = Annotated[str, Field(min_length=1, max_length=64)]
 
 
@@ -96,7 +90,7 @@ class PlanRequest(Model):
     robot: RobotSource = Field("a1_wheeled", description="a robot's name or a robot document")
     friction: Friction | None = Field(None, description="the terrain's own by default")
     method: Method = "path"
-    weights: Weights | None = None
+    weights: Weights = Field(None, description="cost weights by name, see GET /settings")
 
 
 class RolloutRequest(Model):
@@ -116,11 +110,13 @@ class RolloutRequest(Model):
     terrain: TerrainSource | None = Field(None, description="what to plan over first")
     robot: RobotSource = Field("a1_wheeled", description="with `terrain`")
     method: Method = Field("path", description="with `terrain`")
-    weights: Weights | None = Field(None, description="with `terrain`")
+    weights: Weights = Field(None, description="with `terrain`")
     friction: Friction | None = Field(
         None, description="friction in the simulation (and of the plan, with `terrain`)"
     )
-    controller: Controller | None = None
+    controller: Controller = Field(
+        None, description="controller settings by name, see GET /settings"
+    )
     seed: int = Field(0, strict=True, ge=0, le=2**31 - 1)
 
 

@@ -896,14 +896,10 @@ export interface components {
              * @enum {string}
              */
             method: "path" | "critical" | "nominal";
-            /**
-             * Weights
-             * @description cost weights by name, see GET /settings
-             * @default {}
-             */
-            weights: {
+            /** Weights */
+            weights?: {
                 [key: string]: boolean | number;
-            };
+            } | null;
         };
         /**
          * PlaybackRequest
@@ -1145,24 +1141,19 @@ export interface components {
             /**
              * Weights
              * @description with `terrain`
-             * @default {}
              */
-            weights: {
+            weights?: {
                 [key: string]: boolean | number;
-            };
+            } | null;
             /**
              * Friction
              * @description friction in the simulation (and of the plan, with `terrain`)
              */
             friction?: number | null;
-            /**
-             * Controller
-             * @description controller settings by name, see GET /settings
-             * @default {}
-             */
-            controller: {
-                [key: string]: boolean | number | string;
-            };
+            /** Controller */
+            controller?: {
+                [key: string]: boolean | string | (number | null);
+            } | null;
             /**
              * Seed
              * @default 0
