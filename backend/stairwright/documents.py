@@ -20,7 +20,6 @@ _Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 # The last three are how PyYAML's constructors fail: a 13th month, "!!int x", "!!bool x".
 _UNREADABLE = (yaml.YAMLError, RecursionError, ValueError, AttributeError, KeyError)
 _WORDINGS = {
-    "missing": "is missing",
     "extra_forbidden": "unknown field",
     **dict.fromkeys(
         ("model_type", "model_attributes_type", "dict_type", "mapping_type"),

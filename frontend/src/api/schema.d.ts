@@ -896,7 +896,10 @@ export interface components {
              * @enum {string}
              */
             method: "path" | "critical" | "nominal";
-            /** Weights */
+            /**
+             * Weights
+             * @description cost weights by name, see GET /settings
+             */
             weights?: {
                 [key: string]: boolean | number;
             } | null;
@@ -1150,7 +1153,10 @@ export interface components {
              * @description friction in the simulation (and of the plan, with `terrain`)
              */
             friction?: number | null;
-            /** Controller */
+            /**
+             * Controller
+             * @description controller settings by name, see GET /settings
+             */
             controller?: {
                 [key: string]: boolean | string | (number | null);
             } | null;
