@@ -98,9 +98,26 @@ def test_generators(api: httpx.Client) -> None:
     assert len(ramp.json()["points"]) == 4
     flat = api.post("/terrains/generate", json={"kind": "flat", "length": 3})
     assert flat.json()["points"] == [[-1.5, 0.0], [1.5, 0.0]]
-    for bad in ({"kind": "hill"}, {"kind": "stair"}, {"kind": "stair", "rise": 9, "count": 200}):
-        answer = api.post("/terrains/generate", json=bad)
-        assert answer.status_code == 422, answer.text
+
+
+@pytest.mark.parametrize(
+    ("body", "field"),
+    [
+        ({}, "kind"),
+        ({"kind": "hill"}, "kind"),
+        ({"kind": "stair"}, "rise"),
+        ({"kind": "stair", "rise": 0.2, "count": 0}, "count"),
+        ({"kind": "stair", "rise": 9, "count": 200}, "count"),
+        ({"kind": "ramp", "rise": 50, "slope": 0.01}, "rise"),
+        ({"kind": "flat", "slope": 1}, "slope"),
+    ],
+)
+def test_a_generator_names_the_bad_measure(
+    api: httpx.Client, body: dict[str, object], field: str
+) -> None:
+    answer = api.post("/terrains/generate", json=body)
+    assert answer.status_code == 422, answer.text
+    assert answer.json()["errors"][0]["field"] == field
 
 
 def stair_mesh() -> trimesh.Trimesh:
@@ -142,6 +159,7 @@ def test_text_files_are_imported(api: httpx.Client, name: str, content: bytes) -
         ("t", b"x", 422),
         ("t.csv", b"x,z\n0,0\nhello,world\n", 422),
         ("t.yaml", b"points: &a [[0,0],[1,0]]\nname: *a\n", 422),
+        ("t.yaml", b"name: 2001-13-45\n", 422),
         ("t.json", b"[" * 100_000, 422),
         ("t.json", b'{"points": [[0,0],[1,NaN]]}', 422),
         ("t.stl", b"solid \xff\xfe garbage", 422),

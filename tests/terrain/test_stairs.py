@@ -47,6 +47,7 @@ def test_flat_is_two_points():
         ({"rise": 0.2, "count": 0}, "count"),
         ({"rise": 0.2, "count": 2.5}, "count"),
         ({"rise": 0.2, "count": 200, "run": 1.0}, "count"),
+        ({"rise": 60.0, "face_angle": 0.1}, "rise"),
         ({"rise": 0.2, "direction": "sideways"}, "direction"),
         ({"rise": 0.2, "face_angle": 2.0}, "face_angle"),
         ({"rise": 0.2, "face_angle": 0.1, "count": 2}, "run"),

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AliasChoices, BeforeValidator, Discriminator, Field, StrictBool, Tag
 
 from stairwright.documents import Model
+from stairwright.errors import InputError
 from stairwright.planning.plan import Method, Plan
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -186,7 +187,25 @@ class FlatParameters(Model):
     friction: Friction = 0.6
 
 
-Generation = Annotated[StairParameters | RampParameters | FlatParameters, Discriminator("kind")]
+GENERATORS = ("stair", "ramp", "flat")
+
+
+def _generator(value: Any) -> str | None:
+    kind = value.get("kind") if isinstance(value, dict) else None
+    return f"~{kind}" if kind in GENERATORS else None
+
+
+Generation = Annotated[
+    Annotated[StairParameters, Tag("~stair")]
+    | Annotated[RampParameters, Tag("~ramp")]
+    | Annotated[FlatParameters, Tag("~flat")],
+    Discriminator(
+        _generator,
+        custom_error_type="generator",
+        custom_error_message="kind must be stair, ramp or flat",
+        custom_error_context={"error": InputError("must be stair, ramp or flat", ("kind",))},
+    ),
+]
 
 
 class SettingsDocument(Model):

@@ -64,7 +64,10 @@ def _document(data: bytes, suffix: str, options: Options) -> Terrain:
             raise InputError("the file must hold a JSON object", ("file",))
     else:
         _refuse_deep_yaml(text)
-    mapping = parse_mapping(text, "the file")
+    try:
+        mapping = parse_mapping(text, "the file")
+    except InputError as error:
+        raise error.within("file") from None
     given = {key: options[key] for key in ("name", "friction") if key in options}
     return parse(Terrain, {**mapping, **given})
 

@@ -165,16 +165,22 @@ def stair(
         f"{steps} {direction}, rise {rise:g} m{tread}{angle}.",
         rounded,
         friction,
+        measure="rise" if count == 1 else "count",
     )
 
 
 def _terrain(
-    name: str, description: str, points: list[tuple[float, float]], friction: float
+    name: str,
+    description: str,
+    points: list[tuple[float, float]],
+    friction: float,
+    measure: str = "length",
 ) -> Terrain:
+    """The terrain; `measure` is what makes it too large, if it is."""
     if not 0.0 < friction <= 5.0:
         raise InputError("must be above 0 and at most 5", ("friction",))
     if any(abs(value) > 100.0 for point in points for value in point):
-        raise InputError("the terrain would reach further than 100 m", ("count",))
+        raise InputError("the terrain would reach further than 100 m", (measure,))
     return Terrain(name=name, description=description, points=points, friction=friction)
 
 

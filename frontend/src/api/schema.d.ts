@@ -569,8 +569,8 @@ export interface components {
          */
         FlatParameters: {
             /**
-             * @description discriminator enum property added by openapi-typescript
-             * @enum {string}
+             * Kind
+             * @constant
              */
             kind: "flat";
             /**
@@ -1054,8 +1054,8 @@ export interface components {
              */
             friction: number;
             /**
-             * @description discriminator enum property added by openapi-typescript
-             * @enum {string}
+             * Kind
+             * @constant
              */
             kind: "ramp";
             /**
@@ -1253,8 +1253,8 @@ export interface components {
              */
             friction: number;
             /**
-             * @description discriminator enum property added by openapi-typescript
-             * @enum {string}
+             * Kind
+             * @constant
              */
             kind: "stair";
             /**
