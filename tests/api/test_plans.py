@@ -183,6 +183,17 @@ def test_a_rollout_from_start_to_files(api: httpx.Client) -> None:
     assert missed == told[-1:]
 
 
+def test_a_changed_plan_and_its_rollout_get_ids_of_their_own(api: httpx.Client) -> None:
+    plan = api.post("/plans", json={"terrain": CURB, "method": "critical"}).json()
+    changed = json.loads(json.dumps(plan))
+    changed["poses"][1]["pitch"] += 0.01
+    results = []
+    for body in ({"plan_id": plan["id"]}, {"plan": plan}, {"plan": changed}):
+        job = api.post("/rollouts", json=body).json()
+        results.append(events(api, job["id"])[-1][1]["result"])
+    assert results[0] == results[1] != results[2]
+
+
 def test_the_client_does_the_same(service: Client) -> None:
     terrain = Terrain.model_validate(CURB)
     plan = service.plan(terrain, robot="a1_wheeled_x", friction=0.65)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import Annotated, Any, Literal
 
+import orjson
 from fastapi import APIRouter, Path, Query, Request, Response
 
 from stairwright.api.bodies import JobDocument, PlanRequest, RolloutRequest, StoredEntry
@@ -12,7 +13,7 @@ from stairwright.api.deps import JSON_BODY, Idempotent, Limit, Offset, Owner, Se
 from stairwright.api.problems import describe, not_found
 from stairwright.api.services import Services
 from stairwright.control.settings import ControllerSettings
-from stairwright.documents import parse
+from stairwright.documents import content_hash, parse
 from stairwright.errors import InputError
 from stairwright.jobs.questions import PlanQuestion, RolloutQuestion
 from stairwright.planning.plan import Plan
@@ -73,7 +74,7 @@ def _source(services: Services, body: RolloutRequest) -> PlanQuestion | Plan | s
         message = "give exactly one of plan_id, plan and terrain"
         raise InputError(message, (list(given)[-1] if given else "plan_id",))
     if body.plan is not None:
-        return body.plan
+        return _under_its_own_id(services, body.plan)
     if body.terrain is not None:
         names = ("terrain", "robot", "friction", "method", "weights")
         values = {name: getattr(body, name) for name in names}
@@ -82,6 +83,26 @@ def _source(services: Services, body: RolloutRequest) -> PlanQuestion | Plan | s
     if entry is None:
         raise not_found("plan", str(body.plan_id), field="plan_id")
     return entry.digest
+
+
+def _under_its_own_id(services: Services, plan: Plan) -> Plan:
+    """The plan; a changed copy of a stored one gets another id, and so does its rollout."""
+    stored = _stored_plan(services, plan.id)
+    by_the_way = {"solve_time": plan.solve_time, "certificate": plan.certificate}
+    if stored is None or stored.model_copy(update=by_the_way) == plan:
+        return plan
+    return plan.model_copy(update={"id": "p-" + content_hash(plan).removeprefix("sha256:")})
+
+
+def _stored_plan(services: Services, plan_id: str) -> Plan | None:
+    entry = services.store.documents.get("plan", plan_id)
+    if entry is None:
+        return None
+    try:
+        content = services.store.artefacts.content(entry.digest)
+    except FileNotFoundError:  # removed in the meantime
+        return None
+    return parse(Plan, orjson.loads(content))
 
 
 @router.get("", response_model=list[StoredEntry])
