@@ -221,6 +221,30 @@ def test_damaged_files_are_input_errors(tmp_path):
         save_plan(example_plan(count=3), Path(tmp_path / "no" / "folder" / "plan.json"))
 
 
+def test_an_npz_whose_arrays_do_not_fit_is_an_input_error(plan, tmp_path):
+    save_plan(plan, tmp_path / "plan.npz")
+    arrays = dict(np.load(tmp_path / "plan.npz"))
+    np.savez(tmp_path / "bad.npz", **{**arrays, "trunk": arrays["trunk"][:, :2]})
+    with pytest.raises(InputError, match="arrays of a plan"):
+        load_plan(tmp_path / "bad.npz")
+
+
+@pytest.mark.parametrize("name", ["csv", "npz", "mcap", "mjcf"])
+def test_poses_with_other_collision_points_than_the_robots_are_refused(plan, name):
+    odd = plan.poses[1].model_copy(update={"collision_points": [(0.0, 0.0)]})
+    broken = plan.model_copy(update={"poses": [plan.poses[0], odd, *plan.poses[2:]]})
+    with pytest.raises(InputError, match="collision_points"):
+        PLAN_FORMATS[name].write(broken)
+
+
+@pytest.mark.parametrize("time", [-1.0, 1e12, 1e300])
+def test_a_time_that_no_ros_message_holds_is_refused(plan, time):
+    late = plan.poses[-1].model_copy(update={"time": time})
+    broken = plan.model_copy(update={"poses": [*plan.poses[:-1], late]})
+    with pytest.raises(InputError, match="ROS messages"):
+        PLAN_FORMATS["mcap"].write(broken)
+
+
 def test_infeasible_plan_without_poses_exports_everywhere():
     plan = example_plan(count=4, problem=True).model_copy(update={"poses": [], "critical": []})
     for name, format_ in PLAN_FORMATS.items():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
 from stairwright.robot.description import JOINTS, LEGS, PLANAR_JOINTS
 from stairwright.simulation.result import Rollout
@@ -54,6 +55,9 @@ def plan_arrays(plan: Plan) -> dict[str, Floats]:
     """Arrays of all poses, named as in the contract; `trunk` is x_c, z_c, pitch.
 
     ``margins`` are clearance, com, friction, torque. The first axis is the pose.
+
+    Raises:
+        InputError: If poses have other collision points than the robot.
     """
     n = len(plan.poses)
     points = plan.robot_description.collision_points.count
@@ -75,10 +79,14 @@ def plan_arrays(plan: Plan) -> dict[str, Floats]:
             (4,),
         ),
     }
-    return {
-        name: np.asarray(values, dtype=float).reshape(n, *shape)
-        for name, (values, shape) in rows.items()
-    }
+    return {name: _array(name, values, (n, *shape)) for name, (values, shape) in rows.items()}
+
+
+def _array(name: str, values: list[object], shape: tuple[int, ...]) -> Floats:
+    try:
+        return np.asarray(values, dtype=float).reshape(shape)
+    except ValueError:
+        raise InputError(f"{name} must have the shape {shape}", ("poses",)) from None
 
 
 def rollout_arrays(rollout: Rollout) -> dict[str, Floats]:

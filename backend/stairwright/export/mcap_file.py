@@ -16,6 +16,7 @@ from mcap.writer import Writer
 from numpy.typing import NDArray
 from rosbags.typesys import Stores, get_typestore
 
+from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
 from stairwright.robot import spatial
 from stairwright.robot.description import JOINTS, LEGS, Robot
@@ -25,6 +26,7 @@ from .columns import FRAMES, UNITS, plan_arrays
 
 Floats = NDArray[np.float64]
 WORLD, TRUNK = "world", "trunk"
+MOST_SECONDS = 2**31 - 1  # builtin_interfaces/Time holds 32 bits
 _TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
 _JOINT_STATE = "sensor_msgs/msg/JointState"
 _TF = "tf2_msgs/msg/TFMessage"
@@ -160,4 +162,6 @@ class _Bag:
 
 
 def _stamp(time: float) -> tuple[int, int]:
+    if not 0.0 <= time < MOST_SECONDS:
+        raise InputError(f"must lie between 0 and {MOST_SECONDS} s in ROS messages", ("time",))
     return divmod(round(float(time) * 1e9), 10**9)

@@ -58,7 +58,7 @@ def load_npz(path: Path) -> dict[str, Any]:
     try:
         if metadata["schema"] == "stairwright/plan/1":
             return {**metadata, **_poses(arrays)}
-    except (KeyError, IndexError, TypeError) as error:
+    except (KeyError, IndexError, TypeError, ValueError) as error:
         raise InputError(f"{path} lacks arrays of a plan: {error}") from None
     return {**metadata, "series": {name: values.tolist() for name, values in arrays.items()}}
 
