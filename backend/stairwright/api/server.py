@@ -43,5 +43,6 @@ def _check_address(host: str, port: int) -> None:
     try:
         for family, _, _, _, address in socket.getaddrinfo(host, port, type=socket.SOCK_STREAM):
             socket.create_server(address[:2], family=family).close()
-    except OSError as error:
-        raise InputError(f"cannot serve on {host}: {error.strerror}") from None
+    except (OSError, UnicodeError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"cannot serve on {host}: {reason}") from None
