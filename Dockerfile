@@ -21,7 +21,11 @@ ENV PATH=/opt/stairwright/bin:$PATH \
 WORKDIR /src
 RUN python -m venv /opt/stairwright
 COPY requirements.lock ./
-RUN pip install --require-hashes --requirement requirements.lock
+# Without the packages' own tests and CasADi's headers; libraries that a wheel holds twice become one.
+RUN pip install --require-hashes --requirement requirements.lock \
+    && find /opt/stairwright -depth -type d \( -name tests -o -path '*/casadi/include' \) \
+        -exec rm -r {} \; \
+    && hardlink --quiet /opt/stairwright
 COPY pyproject.toml hatch_build.py README.md LICENSE ./
 COPY terrains/ terrains/
 COPY robots/ robots/

@@ -194,7 +194,7 @@ function Between() {
   if (!shown || !shape || !planKept.value) return null;
   const { at } = projection.value;
   return (
-    <g class="older">
+    <g>
       {layers.value.has("com") && (
         <polyline class="comp" points={shown.poses.map((p) => at(p.com)).join(" ")} />
       )}
@@ -264,7 +264,7 @@ export function Current() {
   const rollout = shownRun.value;
   const fallen = hasFailed(rollout) && shownTime.value >= duration.value - 0.05;
   return (
-    <g class={fallen ? "older fallen" : "older"}>
+    <g class={fallen ? "fallen" : ""}>
       <Figure robot={shape} bones={bones} to={to} kind="halo" />
       <Other />
       <Figure robot={shape} bones={bones} to={to} kind="cur" bad={badPart.value} />

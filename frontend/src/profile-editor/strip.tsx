@@ -86,7 +86,7 @@ export function MarginStrip() {
               {narrow ? text.split(" / ")[0] : text}
             </text>
             <rect class="s0" x={left} y={y} width={Math.max(0, right - left)} height={ROW} rx={2} />
-            <g class="older">
+            <g class="bars">
               {paths.map((d, c) => (
                 <path key={c} class={`m${c}`} d={d} />
               ))}
