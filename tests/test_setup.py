@@ -20,6 +20,8 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+from stairwright.documents import load_mapping
+
 ROOT = Path(__file__).resolve().parents[1]
 LOCKS = [ROOT / name for name in ("requirements.lock", "requirements-dev.lock")]
 ALL_LOCKS = [*LOCKS, ROOT / "requirements-node.lock", ROOT / "requirements-bench.lock"]
@@ -113,6 +115,15 @@ def test_compose_file_meets_its_schema() -> None:
         ROOT / "docker-compose.yml",
     )  # fmt: skip
     assert check.returncode == 0, check.stdout + check.stderr
+
+
+def test_container_has_as_many_workers_as_processors() -> None:
+    """Docker refuses more processors than the machine has: hence a variable, a small default."""
+    service = load_mapping(ROOT / "docker-compose.yml")["services"]["stairwright"]
+    share = service["deploy"]["resources"]["limits"]["cpus"]
+    assert share == "${STAIRWRIGHT_CPUS:-2}"
+    assert service["environment"]["STAIRWRIGHT_PLAN_WORKERS"] == share
+    assert service["environment"]["STAIRWRIGHT_ROLLOUT_WORKERS"] == share
 
 
 def test_dockerfile_passes_hadolint() -> None:
