@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import math
 
@@ -176,16 +177,44 @@ def test_a_diverged_run_has_a_finite_document(flat: Plan, solver: str, value: fl
 def test_bad_input_is_named(flat: Plan) -> None:
     with pytest.raises(InputError) as caught:
         rollout(flat.model_copy(update={"poses": []}))
-    assert caught.value.field == ("plan", "poses")
+    assert caught.value.field == ("plan",)
     for bad in (0.0, -1.0, 9.0, math.nan, "ice", True):
         with pytest.raises(InputError) as caught:
             rollout(flat, friction=bad)  # type: ignore[arg-type]
         assert caught.value.field == ("friction",)
-    with pytest.raises(InputError) as caught:
-        rollout(flat, disturbance={"mass": 9.0})
-    assert caught.value.field == ("disturbance", "mass")
-    with pytest.raises(InputError):
-        rollout(flat, record_hz=0.0)
+    for name, values in {
+        "record_hz": (0.0, "fast", math.nan, True),
+        "seed": (-1, 0.5, "x", None, True),
+        "controller": (5, "soft", {"nonsense": 1.0}),
+        "disturbance": (5, {"mass": 9.0}),
+    }.items():
+        for value in values:
+            with pytest.raises(InputError) as caught:
+                rollout(flat, **{name: value})
+            assert caught.value.field[0] == name
+    for document in (42, None, "plan.json", {"poses": []}):
+        with pytest.raises(InputError) as caught:
+            rollout(document)  # type: ignore[arg-type]
+        assert caught.value.field[0] == "plan"
+
+
+def test_documents_that_contradict_themselves_are_refused(flat: Plan) -> None:
+    document = flat.model_dump()
+    for path, value in {
+        ("poses", 1, "progress"): document["poses"][0]["progress"],
+        ("poses", 1, "time"): -1.0,
+        ("poses", 1, "collision_points"): [[0.0, 0.0]],
+        ("critical",): [len(flat.poses)],
+        ("friction",): 0.0,
+    }.items():
+        spoilt = copy.deepcopy(document)
+        place = spoilt
+        for key in path[:-1]:
+            place = place[key]
+        place[path[-1]] = value
+        with pytest.raises(InputError) as caught:
+            rollout(spoilt)
+        assert caught.value.field[1 : 1 + len(path)] == path
 
 
 @pytest.mark.slow

@@ -7,8 +7,8 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from stairwright.documents import Model, parse
-from stairwright.errors import InputError
+from stairwright.arguments import as_model
+from stairwright.documents import Model
 
 Form = Literal["contact", "paper"]
 Solver = Literal["native", "daqp", "clarabel", "quadprog", "proxqp", "piqp", "osqp"]
@@ -127,9 +127,4 @@ def parse_settings(settings: Mapping[str, Any] | ControllerSettings | None) -> C
     Raises:
         InputError: For an unknown name or a value out of bounds; the field starts at `controller`.
     """
-    if isinstance(settings, ControllerSettings):
-        return settings
-    try:
-        return parse(ControllerSettings, dict(settings or {}))
-    except InputError as error:
-        raise error.within("controller") from None
+    return as_model(ControllerSettings, settings, "controller")

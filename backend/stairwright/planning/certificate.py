@@ -7,13 +7,15 @@ between two of them, and clearances count less half of that: what is certified h
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Literal
+from collections.abc import Callable, Mapping
+from typing import Any, Literal, get_args
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from stairwright.arguments import as_model
+from stairwright.errors import InputError
 from stairwright.robot import kinematics as kin
 from stairwright.robot.description import Robot
 
@@ -32,14 +34,20 @@ _JOINT_STEP = 0.35  # rad between two poses
 Scope = Literal["motion", "poses"]
 
 
-def certify(plan: Plan, scope: Scope | None = None) -> Certificate:
+def certify(plan: Plan | Mapping[str, Any], scope: Scope | None = None) -> Certificate:
     """Check `plan` against terrain, robot and friction that it names.
 
     Args:
-        plan: Any plan with poses.
+        plan: Any plan with poses, or its document.
         scope: ``motion`` checks the motion between poses too, ``poses`` only the poses; by default
             the motion for dense paths and the poses for the others.
+
+    Raises:
+        InputError: If an argument is bad.
     """
+    plan = as_model(Plan, plan, "plan")
+    if scope not in (None, *get_args(Scope)):
+        raise InputError(f"must be one of: {', '.join(get_args(Scope))}", ("scope",))
     chosen: Scope = scope or ("motion" if plan.method == "path" else "poses")
     if not plan.poses:
         missing = Check(name="poses", value=0.0, bound=1.0, unit="1", passed=False)

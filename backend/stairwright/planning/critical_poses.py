@@ -75,6 +75,7 @@ def plan_critical(
     knots = [_standing(search, begin), *found]
     if problem is None:
         knots.append(_standing(search, end))
+    knots = _ahead(knots)
     poses = _poses(search, knots, weights.speed)
     if problem is None:
         problem = _unbalanced(search, poses)
@@ -189,6 +190,15 @@ def _moved_pair(
             return None
         out.append(_Knot((float(trunk[0]), float(trunk[1]), trunk[2]), knot.joints, wheels, True))
     return out[0], out[1]
+
+
+def _ahead(knots: list[_Knot]) -> list[_Knot]:
+    """Without those that are no farther on: past one face may be where the next one is met."""
+    out = knots[:1]
+    for knot in knots[1:]:
+        if sum(knot.wheels) > sum(out[-1].wheels) + CONGRUENT:
+            out.append(knot)
+    return out
 
 
 def _poses(search: PoseSearch, knots: list[_Knot], speed: float) -> list[Pose]:

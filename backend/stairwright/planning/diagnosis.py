@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
+from stairwright.terrain.wheel_path import wheel_path
 
 from .path.course import NoStand
 from .plan import Limit, Pose, Problem
@@ -19,27 +20,24 @@ from .sqp.search import Rules
 
 Floats = NDArray[np.float64]
 
+_ENDLESS = 100.0  # margins beyond it, friction or m, stand for what no value mends
+
 
 def no_stand(terrain: Terrain, robot: Robot, error: NoStand) -> Problem:
     """The problem of a course without room to stand at an end."""
-    from stairwright.terrain.wheel_path import wheel_path
-
     path = wheel_path(terrain, robot.wheel.radius)
-    at = path.contacts(np.array([error.s]))[0]
-    limit = Limit(needed=error.needed, available=error.available, quantity="level length", unit="m")
-    kind = "start" if error.kind == "start" else "goal"
+    at = path.contacts(np.array([min(max(error.s, 0.0), path.length)]))[0]
     return Problem(
-        kind="start" if kind == "start" else "goal",
+        kind=error.kind,
         at=(float(at[0]), float(at[1])),
         progress=0.0,
-        message=f"No place to stand at the {kind}: {error}.",
-        limit=limit,
+        message=f"No place to stand at the {error.kind}: {error}.",
+        limit=error.limit,
     )
 
 
 def statics_problem(search: PoseSearch, pose: Pose) -> Problem:
     """The problem of a pose whose centre of mass has no equilibrium inside the friction cones."""
-    needed = search.friction - pose.margins.friction
     return Problem(
         kind="statics",
         at=pose.contacts[0],
@@ -47,16 +45,21 @@ def statics_problem(search: PoseSearch, pose: Pose) -> Problem:
         message=(
             "The ground cannot hold the robot here: the centre of mass lies "
             f"{-pose.margins.com * 1e3:.0f} mm outside what friction {search.friction:g} allows."
-            if pose.margins.com > -100.0
+            if pose.margins.com > -_ENDLESS
             else f"No centre of mass is held here with friction {search.friction:g}."
         ),
-        limit=Limit(
-            needed=float(min(needed, 1e3)),
-            available=search.friction,
-            quantity="friction",
-            unit="1",
-        ),
+        limit=statics_limit(search.friction, pose),
     )
+
+
+def statics_limit(friction: float, pose: Pose) -> Limit | None:
+    """The friction that would do; where none does, the CoM's place; where no place does, none."""
+    needed = friction - pose.margins.friction
+    if needed < _ENDLESS:
+        return Limit(needed=needed, available=friction, quantity="friction", unit="1")
+    if pose.margins.com > -_ENDLESS:
+        return Limit(needed=0.0, available=pose.margins.com, quantity="CoM margin", unit="m")
+    return None
 
 
 def diagnose(search: PoseSearch, place: Place) -> Problem:
@@ -137,6 +140,27 @@ def _no_rear_place(search: PoseSearch, place: Place, at: tuple[float, float]) ->
             limit=Limit(needed=high, available=friction, quantity="friction", unit="1"),
         )
     held = gap[holds(friction)]
+    if len(held) and held.max() < search.span[0]:
+        return Problem(
+            kind="reach",
+            at=at,
+            progress=0.0,
+            message=(
+                f"Too narrow: with the front wheel here only ground within {held.max():.2f} m "
+                f"holds the rear wheel, and the two need {search.span[0]:.2f} m between them."
+            ),
+            limit=Limit(
+                needed=search.span[0], available=float(held.max()),
+                quantity="distance of the wheels", unit="m",
+            ),
+        )  # fmt: skip
+    if len(held) and held.min() <= search.span[1]:
+        return Problem(
+            kind="reach",
+            at=at,
+            progress=0.0,
+            message="With the front wheel here no place of the rear wheel is any good.",
+        )
     needed = float(held.min()) if len(held) else float(gap.min())
     return Problem(
         kind="reach",

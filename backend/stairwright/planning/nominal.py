@@ -13,7 +13,7 @@ from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
 from .assembly import assemble
-from .diagnosis import no_stand
+from .diagnosis import no_stand, statics_limit
 from .path.course import NoStand, find_stands
 from .plan import Limit, Plan, Pose, Problem
 from .poses import PoseWriter
@@ -142,17 +142,17 @@ def _first_problem(friction: float, poses: list[Pose]) -> Problem | None:
                 limit=Limit(needed=depth, available=0.0, quantity="clearance", unit="m"),
             )
         if pose.margins.com < 0.0:
-            needed = min(friction - pose.margins.friction, 1e3)
+            limit = statics_limit(friction, pose)
             return Problem(
                 kind="statics",
                 at=pose.contacts[0],
                 progress=pose.progress,
                 message=(
-                    f"The standing pose slips or tips here: it would need friction {needed:.2f}."
-                    if needed < 100.0
+                    f"The standing pose slips or tips here: it needs friction {limit.needed:.2f}."
+                    if limit is not None and limit.quantity == "friction"
                     else "The standing pose slips or tips here whatever the friction."
                 ),
-                limit=Limit(needed=needed, available=friction, quantity="friction", unit="1"),
+                limit=limit,
             )
     return None
 

@@ -26,6 +26,7 @@ Kind = Literal["reach", "clearance", "statics", "torque", "joint_limit"]
 _FINE = 1.7  # lattice of the questions, coarser than that of plans
 _CLOSE = 0.02  # relative precision of the bisected value
 _CONFIRM = (1.005, 1.04, 1.1, 1.25, 1.6)  # factors tried on the bisected value
+_LONGEST = (3.0, 8.0)  # times the legs' length; asked last, with ample friction
 _ASKED = 2  # candidates for which planning is tried
 
 
@@ -247,15 +248,16 @@ def _hopeless(course: Course, blocked: Blocked) -> Problem:
     robot = course.robot
     legs = robot.thigh.length + robot.calf.length
     grip = max(1.5, course.friction)
-    bold = Candidate(
-        "reach", "leg length", "m", legs, 3.0 * legs,
-        lambda c, v: replace(_with_robot(c, _longer(robot, v / legs)), friction=grip),
-        f" with friction {grip:.2g}",
-    )  # fmt: skip
-    least = _least(course, bold, math.inf)
-    confirmed = _confirm(course, bold, least) if least is not None else None
-    if confirmed is not None:
-        return _problem(course, blocked, bold, bold.at(confirmed))
+    for longest in _LONGEST:
+        bold = Candidate(
+            "reach", "leg length", "m", legs, longest * legs,
+            lambda c, v: replace(_with_robot(c, _longer(robot, v / legs)), friction=grip),
+            f" with friction {grip:.2g}",
+        )  # fmt: skip
+        least = _least(course, bold, math.inf)
+        confirmed = _confirm(course, bold, least) if least is not None else None
+        if confirmed is not None:
+            return _problem(course, blocked, bold, bold.at(confirmed))
     message = (
         f"the {wheel} wheels stop at x = {at[0]:.2f} m, z = {at[1]:.2f} m, and neither legs of "
         f"{bold.limit:.3g} m nor friction {grip:.2g} would change that"

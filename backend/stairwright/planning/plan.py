@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from stairwright.arguments import MOST_FRICTION
 from stairwright.documents import Model, content_hash
+from stairwright.errors import InputError
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
@@ -27,7 +30,9 @@ class Margins(Model):
 class Pose(Model):
     """One pose of the robot in the x-z plane; world frame, SI units."""
 
-    progress: float = Field(description="mean arc length of the wheels since the start [m]")
+    progress: float = Field(
+        description="way since the start, strictly rising, about the wheels' mean arc length [m]"
+    )
     time: float = Field(0.0, description="planned time since the start [s]")
     x_c: float = Field(description="trunk point [m]")
     z_c: float = Field(description="trunk point [m]")
@@ -103,7 +108,7 @@ class Plan(Model):
     robot: str
     robot_hash: str
     robot_description: Robot
-    friction: float
+    friction: float = Field(gt=0.0, le=MOST_FRICTION)
     weights: dict[str, float] = {}
     status: Literal["feasible", "infeasible"]
     problem: Problem | None = None
@@ -112,6 +117,24 @@ class Plan(Model):
     timing: Timing
     solve_time: float = Field(description="[s]")
     certificate: Certificate | None = None
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Plan:
+        for k, (a, b) in enumerate(itertools.pairwise(self.poses), 1):
+            if b.progress <= a.progress:
+                raise InputError("must be more than at the pose before", ("poses", k, "progress"))
+            if b.time < a.time:
+                raise InputError("must not be before the last pose's", ("poses", k, "time"))
+        layout = self.robot_description.collision_points
+        count = len(layout.trunk) + 2 * (len(layout.thigh) + len(layout.calf))
+        for k, pose in enumerate(self.poses):
+            if len(pose.collision_points) != count:
+                wrong = f"must be {count} points, as the robot has"
+                raise InputError(wrong, ("poses", k, "collision_points"))
+        for k, index in enumerate(self.critical):
+            if not 0 <= index < len(self.poses):
+                raise InputError("must be the index of a pose", ("critical", k))
+        return self
 
     @property
     def feasible(self) -> bool:

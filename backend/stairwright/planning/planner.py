@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping
 from typing import Any, get_args
 
+from stairwright.arguments import as_friction
 from stairwright.documents import Model
 from stairwright.errors import InputError
 from stairwright.library import load_robot, load_terrain
@@ -47,7 +48,7 @@ def plan(
         )
     ground = _within("terrain", load_terrain, terrain)
     machine = _within("robot", load_robot, robot)
-    mu = ground.friction if friction is None else _friction(friction)
+    mu = ground.friction if friction is None else as_friction(friction)
     chosen = parse_weights(method, weights)
     if method == "path":
         from .path.planner import plan_path
@@ -60,12 +61,6 @@ def plan(
     from .nominal import plan_nominal
 
     return plan_nominal(ground, machine, mu, chosen)
-
-
-def _friction(value: float) -> float:
-    if not isinstance(value, (int, float)) or isinstance(value, bool) or not 0.0 < value <= 5.0:
-        raise InputError("must be a number above 0 and at most 5", ("friction",))
-    return float(value)
 
 
 def _within(field: str, load: Any, source: Any) -> Any:

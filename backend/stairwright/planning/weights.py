@@ -7,8 +7,8 @@ from typing import Any
 
 from pydantic import Field
 
-from stairwright.documents import Model, parse
-from stairwright.errors import InputError
+from stairwright.arguments import as_model
+from stairwright.documents import Model
 
 from .plan import Method
 
@@ -91,10 +91,4 @@ def parse_weights(method: Method, weights: Mapping[str, Any] | Model | None) -> 
     Raises:
         InputError: For an unknown name or a value out of bounds.
     """
-    model = MODELS[method]
-    if isinstance(weights, model):
-        return weights
-    try:
-        return parse(model, dict(weights or {}))
-    except InputError as error:
-        raise error.within("weights") from None
+    return as_model(MODELS[method], weights, "weights")

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from stairwright.documents import Model, parse
-from stairwright.errors import InputError
+from stairwright.arguments import as_model
+from stairwright.documents import Model
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
@@ -45,12 +45,7 @@ def parse_disturbance(value: Mapping[str, Any] | Disturbance | None) -> Disturba
     Raises:
         InputError: For an unknown name or a value out of bounds.
     """
-    if isinstance(value, Disturbance):
-        return value
-    try:
-        return parse(Disturbance, dict(value or {}))
-    except InputError as error:
-        raise error.within("disturbance") from None
+    return as_model(Disturbance, value, "disturbance")
 
 
 def real_terrain(terrain: Terrain, height: float) -> Terrain:

@@ -11,11 +11,12 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.arguments import MOST_SEED, as_friction, as_model, as_number, as_whole
 from stairwright.control.compiled import parameters
 from stairwright.control.controller import Controller
 from stairwright.control.setpoint import RATES, Setpoint
 from stairwright.control.settings import ControllerSettings, parse_settings
-from stairwright.documents import content_hash, parse
+from stairwright.documents import content_hash
 from stairwright.errors import InputError
 from stairwright.planning.interpolation import reference
 from stairwright.planning.path.timing import retimed
@@ -80,18 +81,18 @@ def rollout(
     Raises:
         InputError: If an argument is bad or the plan has no poses.
     """
-    if not isinstance(plan, Plan):
-        plan = parse(Plan, dict(plan))
+    plan = as_model(Plan, plan, "plan")
     if not plan.executable:
-        raise InputError("the plan has no poses to carry out", ("plan", "poses"))
+        why = plan.problem.message if plan.problem else "it has no poses to carry out"
+        raise InputError(f"the plan leads nowhere: {why}", ("plan",))
     settings, deviations = parse_settings(controller), parse_disturbance(disturbance)
-    truth = plan.friction if friction is None else friction
-    if isinstance(truth, bool) or not isinstance(truth, (int, float)) or not 0.0 < truth <= 5.0:
-        raise InputError("must be a number above 0 and at most 5", ("friction",))
+    truth = plan.friction if friction is None else as_friction(friction)
+    seed = as_whole(seed, 0, MOST_SEED, "seed")
     control_hz = 1.0 / (CONTROL_STEPS * TIMESTEP)
+    record_hz = as_number(record_hz, "record_hz")
     if not 1.0 <= record_hz <= control_hz:
-        raise InputError(f"must be between 1 and {control_hz:g}", ("record_hz",))
-    run = _Run(plan, float(truth), settings, deviations, int(seed), record_hz)
+        raise InputError(f"must be from 1 to {control_hz:g}", ("record_hz",))
+    run = _Run(plan, truth, settings, deviations, seed, record_hz)
     return run.result(run.simulate(progress, observe), keep_plan)
 
 

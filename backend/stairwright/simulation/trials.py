@@ -14,6 +14,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from stairwright.arguments import MOST_SEED, as_friction, as_model, as_whole
 from stairwright.control.settings import ControllerSettings, parse_settings
 from stairwright.documents import Model, parse
 from stairwright.errors import InputError
@@ -27,6 +28,8 @@ Bound = Annotated[float, Field(ge=-5.0, le=5.0)]
 Range = tuple[Bound, Bound]
 Job = tuple[int, Disturbance]  # seed and deviations
 
+MOST_TRIALS = 100_000
+MOST_WORKERS = 1024
 CONFIDENCE_Z = 1.959964  # two-sided 95 %
 
 
@@ -71,6 +74,8 @@ class Trials(Model):
 
     schema_: Literal["stairwright/trials/1"] = Field("stairwright/trials/1", alias="schema")
     plan_id: str
+    terrain_hash: str
+    robot_hash: str
     friction: float = Field(description="nominal true friction; each trial adds its own")
     seed: int
     controller: ControllerSettings
@@ -111,16 +116,14 @@ def trials(
     Raises:
         InputError: If an argument is bad.
     """
-    if not isinstance(plan, Plan):
-        plan = parse(Plan, dict(plan))
-    if not isinstance(n, int) or isinstance(n, bool) or not 1 <= n <= 100_000:
-        raise InputError("must be a whole number from 1 to 100,000", ("trials",))
-    if workers is None:
-        workers = all_cores()
-    if not isinstance(workers, int) or workers < 1:
-        raise InputError("must be at least 1", ("workers",))
+    plan = as_model(Plan, plan, "plan")
+    n, seed = (
+        as_whole(n, 1, MOST_TRIALS, "trials"),
+        as_whole(seed, 0, MOST_SEED - MOST_TRIALS, "seed"),
+    )
+    workers = all_cores() if workers is None else as_whole(workers, 1, MOST_WORKERS, "workers")
     settings, limits = parse_settings(controller), parse_ranges(ranges)
-    nominal = plan.friction if friction is None else friction
+    nominal = plan.friction if friction is None else as_friction(friction)
     draws = draw(limits, n, seed)
     jobs = [(seed + i, deviation) for i, deviation in enumerate(draws)]
     results = []
@@ -131,6 +134,8 @@ def trials(
     successes = sum(result.outcome == "success" for result in results)
     return Trials(
         plan_id=plan.id,
+        terrain_hash=plan.terrain_hash,
+        robot_hash=plan.robot_hash,
         friction=nominal,
         seed=seed,
         controller=settings,
@@ -151,12 +156,7 @@ def parse_ranges(ranges: Mapping[str, Any] | Ranges | None) -> Ranges:
     Raises:
         InputError: For an unknown name or a bad range.
     """
-    if isinstance(ranges, Ranges):
-        return ranges
-    try:
-        return parse(Ranges, dict(ranges or {}))
-    except InputError as error:
-        raise error.within("ranges") from None
+    return as_model(Ranges, ranges, "ranges")
 
 
 def draw(ranges: Ranges, n: int, seed: int) -> list[Disturbance]:

@@ -934,7 +934,7 @@ export interface components {
         Pose: {
             /**
              * Progress
-             * @description mean arc length of the wheels since the start [m]
+             * @description way since the start, strictly rising, about the wheels' mean arc length [m]
              */
             progress: number;
             /**

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.planning.plan import Limit
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath
@@ -17,19 +19,26 @@ from .legs import make_legs
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+End = Literal["start", "goal"]
 
 CORNER = 0.15  # rad; concave corners with a smaller kink need no samples of their own
 _EDGE = 0.0015  # m; samples this near to a corner touch both faces
 _LEVEL = 0.01  # m; a stretch whose wheel centre stays within this height is level
 _SLOPE = 0.2  # rad; and nowhere steeper than this
+_SHIFTS = 30  # rounds in which wheels are moved until the trunk is where it was asked to be
+_EXACT = 1e-9  # m; then it is there
 
 
 class NoStand(Exception):
     """There is no place to stand: `kind` is start or goal, `needed` and `available` lengths [m]."""
 
-    def __init__(self, kind: str, s: float, needed: float, available: float, message: str) -> None:
+    def __init__(
+        self, kind: End, s: float, needed: float, available: float, message: str,
+        quantity: str = "length",
+    ) -> None:  # fmt: skip
         super().__init__(message)
-        self.kind, self.s, self.needed, self.available = kind, s, needed, available
+        self.limit = Limit(needed=needed, available=available, quantity=quantity, unit="m")
+        self.kind, self.s = kind, s
 
 
 @dataclass(frozen=True)
@@ -127,7 +136,7 @@ def find_stands(terrain: Terrain, robot: Robot, path: WheelPath) -> tuple[Stand,
     return begin, end
 
 
-def _at(path: WheelPath, robot: Robot, x: float, kind: str) -> Stand:
+def _at(path: WheelPath, robot: Robot, x: float, kind: End) -> Stand:
     """The stand whose trunk is at `x`."""
     ahead, behind = x + robot.hips.front[0], x + robot.hips.rear[0]
     x0, x1 = path.centres(np.array([0.0, path.length]))[:, 0]
@@ -137,7 +146,18 @@ def _at(path: WheelPath, robot: Robot, x: float, kind: str) -> Stand:
         raise NoStand(
             kind, path.at_x(min(max(x, x0), x1)), gap, gap - side, "a wheel leaves the profile"
         )
-    return stand(path, robot, path.at_x(ahead), path.at_x(behind))
+    # On a slope the trunk leans off the wheels' middle: move the wheels until it is where asked.
+    shift = 0.0
+    for _ in range(_SHIFTS):
+        s = np.clip([ahead + shift, behind + shift], x0, x1)
+        found = stand(path, robot, path.at_x(s[0]), path.at_x(s[1]))
+        missing = x - float(found.body[0])
+        if abs(missing) < _EXACT:
+            return found
+        shift += missing
+    message = "the robot cannot stand with its trunk there: the ground is too steep or too uneven"
+    at = float(found.body[0])
+    raise NoStand(kind, path.at_x(x), x, at, message, "x of the trunk")
 
 
 def sample_course(path: WheelPath, begin: Stand, end: Stand, step: float, size: float) -> Floats:

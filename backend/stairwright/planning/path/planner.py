@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import time as clock
 
-import numpy as np
-
 from stairwright.errors import InputError
-from stairwright.planning.plan import Limit, Plan, Problem
+from stairwright.planning.diagnosis import no_stand
+from stairwright.planning.plan import Plan, Problem
 from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
-from stairwright.terrain.wheel_path import wheel_path
 
 from .assemble import make_plan
 from .course import NoStand
@@ -38,7 +36,8 @@ def plan_path(terrain: Terrain, robot: Robot, friction: float, weights: PathWeig
     try:
         course = pose_course(terrain, robot, friction, weights)
     except NoStand as error:
-        return _no_stand(terrain, robot, friction, weights, error, begun)
+        problem = no_stand(terrain, robot, error)
+        return make_plan(terrain, robot, friction, weights, begun, problem=problem)
     except InputError as error:
         at = terrain.points[0]
         problem = Problem(kind="start", at=at, progress=0.0, message=str(error))
@@ -54,23 +53,3 @@ def plan_path(terrain: Terrain, robot: Robot, friction: float, weights: PathWeig
     problem = explain(course, found)
     poses, keys, total = course.partial()
     return make_plan(terrain, robot, friction, weights, begun, poses, keys, total, problem)
-
-
-def _no_stand(
-    terrain: Terrain,
-    robot: Robot,
-    friction: float,
-    weights: PathWeights,
-    error: NoStand,
-    begun: float,
-) -> Plan:
-    path = wheel_path(terrain, robot.wheel.radius)
-    place = path.contacts(np.array([min(max(error.s, 0.0), path.length)]))[0]
-    problem = Problem(
-        kind="start" if error.kind == "start" else "goal",
-        at=(float(place[0]), float(place[1])),
-        progress=0.0,
-        message=str(error),
-        limit=Limit(needed=error.needed, available=error.available, quantity="length", unit="m"),
-    )
-    return make_plan(terrain, robot, friction, weights, begun, problem=problem)
