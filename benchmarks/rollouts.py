@@ -26,7 +26,7 @@ import stairwright as sw
 from stairwright.control.settings import parse_settings
 from stairwright.planning.plan import Plan
 from stairwright.simulation.disturbance import Disturbance
-from stairwright.simulation.rollout import CONTROL_STEPS, _Run
+from stairwright.simulation.run import CONTROL_STEPS, Run
 from stairwright.simulation.trials import all_cores, trials
 
 TERRAIN, ROBOT = "single-stair-036", "a1_wheeled"
@@ -40,9 +40,9 @@ PAPER = (
 )
 
 
-def begin(plan: Plan, hz: float = 100.0, **settings: Any) -> _Run:
+def begin(plan: Plan, hz: float = 100.0, **settings: Any) -> Run:
     """A rollout that is ready to run."""
-    return _Run(plan, plan.friction, parse_settings(settings), Disturbance(), 0, hz)
+    return Run(plan, plan.friction, parse_settings(settings), Disturbance(), 0, hz)
 
 
 def cpu(task: Callable[[], object]) -> float:
@@ -52,7 +52,7 @@ def cpu(task: Callable[[], object]) -> float:
     return time.process_time() - begun
 
 
-def replay(run: _Run, torques: NDArray[np.float64]) -> None:
+def replay(run: Run, torques: NDArray[np.float64]) -> None:
     """Nothing but stepping, with known torques."""
     model, data, ctrl, step = run.model, run.data, run.data.ctrl, mujoco.mj_step
     for row in torques:

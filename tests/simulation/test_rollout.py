@@ -15,7 +15,8 @@ from stairwright.errors import Cancelled, InputError
 from stairwright.planning.plan import Plan
 from stairwright.simulation.disturbance import Disturbance
 from stairwright.simulation.result import Rollout
-from stairwright.simulation.rollout import _Run, rollout
+from stairwright.simulation.rollout import rollout
+from stairwright.simulation.run import Run
 
 FLAT = {"name": "short-flat", "points": [[-0.6, 0.0], [0.6, 0.0]], "friction": 0.6}
 STAIR = {
@@ -163,7 +164,7 @@ def test_a_plan_from_another_world_ends_honestly(flat: Plan) -> None:
 @pytest.mark.parametrize("value", [math.nan, math.inf, 1e30, 1e160])
 def test_a_diverged_run_has_a_finite_document(flat: Plan, solver: str, value: float) -> None:
     settings = ControllerSettings(solver=solver)
-    run = _Run(flat, 0.6, settings, Disturbance(), 0, 100.0)
+    run = Run(flat, 0.6, settings, Disturbance(), 0, 100.0)
     run._chunk(False)
     run.data.qvel[7] = value
     ending = run.simulate(None)

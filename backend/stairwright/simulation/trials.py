@@ -22,7 +22,8 @@ from stairwright.planning.plan import Plan
 
 from .disturbance import Disturbance
 from .result import Outcome
-from .rollout import compiled, rollout
+from .rollout import rollout
+from .run import compiled
 
 Bound = Annotated[float, Field(ge=-5.0, le=5.0)]
 Range = tuple[Bound, Bound]

@@ -3,19 +3,13 @@
 import { computed } from "@preact/signals";
 import { hasFailed, type Plan, type Vec2 } from "../api/types";
 import { planFrame, runFrame } from "../geometry/frames";
-import {
-  type Frame,
-  nearestPart,
-  type Part,
-  type RobotShape,
-  type Skeleton,
-  skeleton,
-} from "../geometry/robot";
+import { type Frame, nearestPart, type Part, type RobotShape, skeleton } from "../geometry/robot";
 import { plan, planB, planKept, preview } from "../state/planning";
 import { duration, frame, poseIndex, shownRun, shownTime } from "../state/playback";
 import { runB } from "../state/rollouts";
 import { robot } from "../state/setup";
 import { layers } from "../state/view";
+import { collisionPoints, Details, Figure } from "./figure";
 import { type Projection, projection } from "./viewport";
 
 /** At most this many ghosts between the key poses. */
@@ -42,101 +36,6 @@ const ghostIndices = computed<number[]>(() => {
   }
   return [...new Set(out)];
 });
-
-interface FigureProps {
-  robot: RobotShape;
-  bones: Skeleton;
-  to: Projection;
-  kind: "ghost" | "key" | "cur" | "cmp" | "halo";
-  bad?: Part | null;
-}
-
-/** Rear leg, front leg and trunk as lines; wheels as circles. */
-function Figure({ robot, bones, to, kind, bad }: FigureProps) {
-  const r = robot.wheel * to.scale;
-  const leg = (i: 0 | 1, name: "f" | "r") => {
-    const points = bones.legs[i];
-    const hub = points[2]!;
-    return (
-      <>
-        <polyline class={`leg ${name}`} points={points.map(to.at).join(" ")} />
-        <circle class={`wh ${name}`} cx={to.px(hub[0])} cy={to.py(hub[1])} r={r} />
-      </>
-    );
-  };
-  return (
-    <g class={`rb ${kind}`}>
-      {leg(1, "r")}
-      {leg(0, "f")}
-      <polygon
-        class={bad === "trunk" ? "tr badpart" : "tr"}
-        points={bones.trunk.map(to.at).join(" ")}
-      />
-      {bad && bad !== "trunk" && <BadLink bones={bones} to={to} part={bad} />}
-    </g>
-  );
-}
-
-function BadLink({ bones, to, part }: { bones: Skeleton; to: Projection; part: Part }) {
-  const [where, link] = part.split("-");
-  const points = bones.legs[where === "front" ? 0 : 1]!;
-  const [a, b] = link === "thigh" ? [points[0]!, points[1]!] : [points[1]!, points[2]!];
-  return <polyline class="badseg" points={`${to.at(a)} ${to.at(b)}`} />;
-}
-
-/** Joints, hubs, nose and collision points of the pose at the clock. */
-function Details({
-  robot,
-  bones,
-  to,
-  shown,
-}: {
-  robot: RobotShape;
-  bones: Skeleton;
-  to: Projection;
-  shown: Vec2[] | null;
-}) {
-  const [front, rear] = bones.legs;
-  const dot = (p: Vec2, cls: string, r: number) => (
-    <circle class={cls} cx={to.px(p[0])} cy={to.py(p[1])} r={r} />
-  );
-  const trunk = bones.trunk;
-  const mid = (a: Vec2, b: Vec2, f: number): Vec2 => [
-    a[0] + (b[0] - a[0]) * f,
-    a[1] + (b[1] - a[1]) * f,
-  ];
-  const inset = robot.trunk.height * 0.12;
-  const nose = [
-    mid(trunk[1]!, trunk[2]!, 0.3),
-    mid(trunk[1]!, trunk[2]!, 0.5),
-    mid(trunk[1]!, trunk[2]!, 0.7),
-  ];
-  const back = mid(trunk[0]!, trunk[3]!, 0.5);
-  const length = Math.hypot(nose[1]![0] - back[0], nose[1]![1] - back[1]) || 1;
-  const shift: Vec2 = [
-    ((back[0] - nose[1]![0]) / length) * inset,
-    ((back[1] - nose[1]![1]) / length) * inset,
-  ];
-  const chevron: Vec2[] = nose.map((p, i) => (i === 1 ? p : [p[0] + shift[0], p[1] + shift[1]]));
-  return (
-    <g class="rb cur">
-      {dot(rear[0]!, "jt r", 3)}
-      {dot(rear[1]!, "jt r", 2.5)}
-      {dot(rear[2]!, "hub r", 2)}
-      {dot(front[0]!, "jt f", 3)}
-      {dot(front[1]!, "jt f", 2.5)}
-      {dot(front[2]!, "hub f", 2)}
-      <polyline class="nose" points={chevron.map(to.at).join(" ")} />
-      {shown && (
-        <g class="cps">
-          {shown.map((p, i) => (
-            <circle key={i} cx={to.px(p[0])} cy={to.py(p[1])} r={2} />
-          ))}
-        </g>
-      )}
-    </g>
-  );
-}
 
 /** Whose key poses are drawn: those for what is on screen now, before a path through them. */
 const keyed = computed(() => preview.value ?? plan.value);
@@ -272,27 +171,6 @@ export function Current() {
       {pose && !rollout && layers.value.has("com") && <CentreOfMass at={pose.com} to={to} />}
     </g>
   );
-}
-
-/** The collision points where the robot is now, between two poses too. */
-function collisionPoints(shape: RobotShape, bones: Skeleton): Vec2[] {
-  const layout = shape.collisionPoints;
-  const [a, b, , d] = bones.trunk as [Vec2, Vec2, Vec2, Vec2];
-  const trunk = layout.trunk.map(
-    ([u, v]): Vec2 => [
-      a[0] + (b[0] - a[0]) * (u + 0.5) + (d[0] - a[0]) * (v + 0.5),
-      a[1] + (b[1] - a[1]) * (u + 0.5) + (d[1] - a[1]) * (v + 0.5),
-    ],
-  );
-  const on = (p: Vec2, q: Vec2, f: number): Vec2 => [
-    p[0] + (q[0] - p[0]) * f,
-    p[1] + (q[1] - p[1]) * f,
-  ];
-  const legs = bones.legs.flatMap(([hip, knee, wheel]) => [
-    ...layout.thigh.map((f) => on(hip!, knee!, f)),
-    ...layout.calf.map((f) => on(knee!, wheel!, f)),
-  ]);
-  return [...trunk, ...legs];
 }
 
 function CentreOfMass({ at, to }: { at: Vec2; to: Projection }) {

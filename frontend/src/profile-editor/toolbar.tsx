@@ -4,7 +4,8 @@ import { canRedo, canUndo, drawing, isEmpty, redo, selection, undo } from "../st
 import { terrains } from "../state/setup";
 import { LAYERS, type Layer, layers, type Tool, toggleLayer, tool } from "../state/view";
 import { openStored } from "../topbar/terrain-actions";
-import { Icon, type IconName } from "../ui/icon";
+import { Icon } from "../ui/icon";
+import { IconButton } from "../ui/icon-button";
 import { Menu, MenuItem } from "../ui/menu";
 import { CODES } from "./codes";
 import { deleteSelected, insertVertex } from "./commands";
@@ -22,31 +23,6 @@ const TOOLS: [Tool, string, string, string][] = [
 function gridName(step: number): string {
   if (step === 0) return "Off";
   return step < 0.01 ? `${step * 1000} mm` : `${step * 100} cm`;
-}
-
-function ToolButton({
-  action,
-  label,
-  icon,
-  off,
-}: {
-  action: () => void;
-  label: string;
-  icon: IconName;
-  off: boolean;
-}) {
-  return (
-    <button
-      type="button"
-      class="t ico"
-      aria-label={label}
-      title={label}
-      disabled={off}
-      onClick={action}
-    >
-      <Icon name={icon} />
-    </button>
-  );
 }
 
 export function Toolbar() {
@@ -69,21 +45,21 @@ export function Toolbar() {
         </button>
       ))}
       <div class="sep" />
-      <ToolButton action={insertVertex} label="Add vertex" icon="plus" off={isEmpty.value} />
-      <ToolButton
+      <IconButton action={insertVertex} label="Add vertex" icon="plus" off={isEmpty.value} />
+      <IconButton
         action={deleteSelected}
         label="Delete vertex"
         icon="trash"
         off={selection.value.length === 0}
       />
-      <ToolButton action={undo} label="Undo" icon="undo" off={!canUndo.value} />
-      <ToolButton action={redo} label="Redo" icon="redo" off={!canRedo.value} />
+      <IconButton action={undo} label="Undo" icon="undo" off={!canUndo.value} />
+      <IconButton action={redo} label="Redo" icon="redo" off={!canRedo.value} />
       <div class="sep" />
       <SnapMenu />
       <PresetMenu />
       <div class="grow" />
       <LayerMenu />
-      <ToolButton
+      <IconButton
         action={() => fit(drawing.peek().points)}
         label="Fit to view"
         icon="fit"

@@ -20,46 +20,29 @@ import {
   togglePlay,
 } from "../state/playback";
 import { activity, progress, showProgress } from "../state/rollouts";
-import { Icon, type IconName } from "../ui/icon";
+import { Icon } from "../ui/icon";
+import { IconButton } from "../ui/icon-button";
 import { Menu, MenuItem } from "../ui/menu";
-
-function Key({
-  action,
-  label,
-  icon,
-  off,
-}: {
-  action: () => void;
-  label: string;
-  icon: IconName;
-  off: boolean;
-}) {
-  return (
-    <button
-      type="button"
-      class="t ico"
-      aria-label={label}
-      title={label}
-      disabled={off}
-      onClick={action}
-    >
-      <Icon name={icon} fill={icon !== "pause"} />
-    </button>
-  );
-}
 
 export function Transport() {
   const none = duration.value <= 0;
   return (
     <div class="tr-bar" role="group" aria-label="Playback">
-      <Key action={() => stepKey(-1)} label="Previous key pose" icon="start" off={none} />
-      <Key
+      <IconButton
+        action={() => stepKey(-1)}
+        label="Previous key pose"
+        icon="start"
+        fill
+        off={none}
+      />
+      <IconButton
         action={togglePlay}
         label={playing.value ? "Pause" : "Play"}
         icon={playing.value ? "pause" : "play"}
+        fill={!playing.value}
         off={none}
       />
-      <Key action={() => stepKey(1)} label="Next key pose" icon="end" off={none} />
+      <IconButton action={() => stepKey(1)} label="Next key pose" icon="end" fill off={none} />
       <Clock />
       <Timeline />
       <KeyLegend />

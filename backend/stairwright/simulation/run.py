@@ -1,0 +1,296 @@
+"""One rollout: model, controller and score from the first step to the ending."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.control.compiled import parameters
+from stairwright.control.controller import Controller
+from stairwright.control.setpoint import RATES, Setpoint
+from stairwright.control.settings import ControllerSettings
+from stairwright.documents import content_hash
+from stairwright.planning.interpolation import reference
+from stairwright.planning.path.timing import retimed
+from stairwright.planning.plan import Plan
+from stairwright.robot.description import LEGS
+from stairwright.robot.mujoco_model import build_spec
+from stairwright.terrain.wheel_path import wheel_path
+
+from . import loop
+from . import tick as score
+from .actuators import limit_torques
+from .disturbance import (
+    Disturbance,
+    Sensors,
+    disturb_trunk,
+    real_terrain,
+)
+from .governor import Track, advance, cruise, track
+from .outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
+from .record import Recorder
+from .result import Metrics, Rollout
+from .stepping import addresses
+
+Floats = NDArray[np.float64]
+
+CONTROL_STEPS = 2  # physics steps per control step: 500 Hz
+SETTLE = 0.4  # s at rest before the plan starts and after it ends
+CHUNK = 125  # control steps between reports of progress
+_HUGE = 1e6  # stands for what is not finite, or overflowed on the way there
+_DIVERGED = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+)
+
+
+def compiled(settings: ControllerSettings) -> bool:
+    """Whether these settings run in the compiled loop."""
+    return settings.form == "contact" and settings.solver == "native"
+
+
+class Run:
+    """One rollout: model, memory of the controller, score and record."""
+
+    def __init__(
+        self,
+        plan: Plan,
+        friction: float,
+        settings: ControllerSettings,
+        disturbance: Disturbance,
+        seed: int,
+        record_hz: float,
+    ) -> None:
+        self.plan, self.settings, self.seed = plan, settings, seed
+        self.friction, self.disturbance = friction, disturbance
+        self.robot = robot = plan.robot_description
+        self.path = wheel_path(plan.terrain, robot.wheel.radius)
+        terrain = real_terrain(plan.terrain, disturbance.height)
+        spec = build_spec(robot, terrain, max(0.01, friction + disturbance.friction), visual=False)
+        disturb_trunk(spec, robot, disturbance)
+        self.model = spec.compile()
+        self.data = mujoco.MjData(self.model)
+        self.dt = CONTROL_STEPS * self.model.opt.timestep
+        self.track: Track = self._track()
+        self.limit = 2.5 * self.track.duration + 5.0
+        self.sensors = Sensors(disturbance, self.dt, seed)
+        self.record = parameters(robot, plan.friction, settings)
+        self.controller = (
+            None if compiled(settings) else Controller(robot, self.path, plan.friction, settings)
+        )
+        self.clock = np.array([self.track.start, 0.0, 0.0])
+        self.places = np.full(4, np.nan)
+        self.forces = np.tile([0.0, robot.mass * 9.81 / 4], 4)
+        self.learnt = np.zeros(1)
+        self.target = np.zeros(self.track.rows.shape[1])
+        self.wanted = np.zeros(12)
+        self.score = np.zeros(score.SCORES)
+        self.loads = LinkLoads(self.dt)
+        self.names = [self.model.geom(i).name for i in range(self.model.ngeom)]
+        self.floor = float(terrain.vertices[:, 1].min())
+        every = max(1, round(1.0 / (record_hz * self.dt)))
+        self.recorder = Recorder(every, self.track, robot.wheel.radius)
+        self.wall = self.time = 0.0
+        self._place()
+
+    def _track(self) -> Track:
+        plan, settings = self.plan, self.settings
+        if plan.method == "path" and settings.form == "contact" and settings.speed is not None:
+            # Another speed keeps what slows a plan down where margins are thin.
+            plan = retimed(plan, settings.speed)
+            settings = settings.model_copy(update={"speed": None})
+        course = reference(plan, joint_rate=None)
+        return track(course, self.robot, self.path, plan.friction, settings)
+
+    def _place(self) -> None:
+        """Put the robot into the plan's first pose."""
+        pose = self.plan.poses[0]
+        front, rear = list(pose.q[:2]), list(pose.q[2:])
+        qpos = self.data.qpos
+        qpos[:3] = pose.x_c, 0.0, pose.z_c
+        qpos[3:7] = math.cos(pose.pitch / 2), 0.0, math.sin(pose.pitch / 2), 0.0
+        qpos[7:] = [*front, 0.0, *front, 0.0, *rear, 0.0, *rear, 0.0]
+        mujoco.mj_forward(self.model, self.data)
+        # A terrain other than planned may reach above or below the wheels: stand on it.
+        lift = max((-float(d) for d in self.data.contact.dist), default=0.0)
+        if lift > 1e-3:
+            qpos[2] += lift
+            mujoco.mj_forward(self.model, self.data)
+
+    def simulate(
+        self,
+        progress: Callable[[float], None] | None,
+        observe: Callable[[Recorder], None] | None = None,
+    ) -> Ending:
+        """Run the loop to its end."""
+        watch, begin = ProgressWatch(), time.perf_counter()
+        steps, settled = 0, 0
+        total = self.track.end - self.track.start
+        while True:
+            cause = self._chunk(steps * self.dt >= SETTLE)
+            steps += CHUNK
+            now = self.time = steps * self.dt
+            done = (self.clock[0] - self.track.start) / total
+            if progress is not None:
+                progress(min(1.0, 0.999 * done))
+            if observe is not None:
+                observe(self.recorder)
+            if cause:
+                break
+            if done >= 1.0 - 1e-9:
+                settled += CHUNK
+                if settled * self.dt > SETTLE and (self._at_rest() or settled * self.dt > 2.0):
+                    cause = ("arrived", "")
+                    break
+            elif watch.stuck(now, self.clock[0]):
+                cause = ("stuck", "")
+                break
+            if now > self.limit:
+                cause = ("timeout", "")
+                break
+        self.wall = time.perf_counter() - begin
+        reached = self.clock[0] - self.track.start
+        return Ending(cause[0], self.time, (reached, total), self._end_error(), cause[1])
+
+    def _chunk(self, moving: bool) -> tuple[str, str] | None:
+        """Some control steps; the cause and its words if the rollout is over."""
+        data = self.data
+        if self.controller is None:
+            self._compiled_steps(moving)
+        else:
+            self._plain_steps(moving)
+        # MuJoCo starts anew, with a warning, when it finds numbers that are not finite.
+        warned = any(data.warning[kind].number for kind in _DIVERGED)
+        if warned or loop.diverged(data.qpos, data.qvel):
+            return "diverged", ""
+        pitch_error, tilt = self.score[score.LAST_PITCH_ERROR], self.score[score.TILT]
+        why = fallen(pitch_error, tilt, data.qpos[2], self.floor)
+        return ("fell", why) if why else None
+
+    def _compiled_steps(self, moving: bool) -> None:
+        data, t, recorder, sensors = self.data, self.track, self.recorder, self.sensors
+        recorder.reserve(CHUNK)
+        go: Callable[..., int] = loop.run  # mypy cannot see through numba
+        where = addresses(self.model, data)
+        ground = (self.record, self.path.pieces, self.path.corners)
+        course = (t.start, t.step, t.rows, t.speeds, self.settings.leash)
+        state = (data.qpos, data.qvel, data.ctrl, data.sensordata)
+        senses = (sensors.draws(CHUNK), sensors.history, sensors.seen)
+        memory = (self.clock, self.places, self.forces, self.learnt, self.target, self.wanted)
+        book = (recorder.every, recorder.cursor, recorder.samples)
+        rest: tuple[Any, ...] = (self.time, self.dt, moving, *ground, *course, *state, *senses)
+        rest = (*rest, *memory, self.score, *book)
+        at = go(*where, CONTROL_STEPS, 0, CHUNK, False, bool(self.loads.loads), *rest)
+        while at < CHUNK:
+            self._touch(self.time + at * self.dt)
+            loaded = bool(self.loads.loads)
+            at = go(*where, CONTROL_STEPS, at, CHUNK, True, loaded, *rest)
+
+    def _plain_steps(self, moving: bool) -> None:
+        assert self.controller is not None
+        data = self.data
+        for k in range(CHUNK):
+            if loop.diverged(data.qpos, data.qvel):
+                break
+            wheels = self._tick(moving, *self.sensors.sense(data.qpos, data.qvel))
+            self.recorder.take(data, self.clock, self.target, self.places)
+            if data.sensordata[16] != wheels or self.loads.loads:
+                self._touch(self.time + k * self.dt)
+            mujoco.mj_step(self.model, data, CONTROL_STEPS)
+
+    def _tick(self, moving: bool, qpos: Floats, qvel: Floats) -> int:
+        """`tick.tick` with the numpy controller."""
+        assert self.controller is not None
+        t = self.track
+        args = (t.start, t.step, t.rows, t.speeds, self.settings.leash, self.places)
+        advance(*args, moving, self.dt, self.clock, self.target)
+        if self.settings.form == "paper" and moving and self.clock[0] < t.end - 1e-9:
+            # Eq 15 follows a speed and no place: slowed down by the leash it would never catch up.
+            self.target[RATES : RATES + 2] = cruise(t, self.clock[0])
+        self.wanted[:] = self.controller.step(qpos, qvel, Setpoint.from_row(self.target))
+        self.places[:] = self.controller.places
+        data = self.data
+        limit_torques(self.record, data.qvel[6:], self.wanted, data.ctrl)
+        score.keep_score(data.qpos, data.qvel, data.ctrl, self.target, self.dt, self.score)
+        return int(data.sensordata[0:16:4].sum())
+
+    def _touch(self, time: float) -> None:
+        """Book contacts that are not a wheel on the terrain."""
+        force, own = np.zeros(6), False
+        loads: dict[str, float] = {}
+        for i, (a, b) in enumerate(self.data.contact.geom[: self.data.ncon]):
+            first, second = self.names[a], self.names[b]
+            if second.startswith("terrain"):
+                first, second = second, first
+            if not first.startswith("terrain"):
+                own = True
+            elif not second.endswith("wheel"):
+                mujoco.mj_contactForce(self.model, self.data, i, force)
+                loads[second] = loads.get(second, 0.0) + float(np.hypot(*force[:2]))
+        self.loads.self_contacts += own
+        self.loads.add(time, loads)
+
+    def _wheels(self) -> Floats:
+        return np.array([self.data.body(f"{leg}_wheel").xpos[[0, 2]] for leg in LEGS])
+
+    def _end_error(self) -> float:
+        end = np.array(self.plan.poses[-1].wheels)[[0, 0, 1, 1]]
+        error = float(np.hypot(*(self._wheels() - end).T).max())
+        return error if math.isfinite(error) else math.inf
+
+    def _at_rest(self) -> bool:
+        return bool(np.abs(self.data.qvel[:3]).max() < 0.02)
+
+    def result(self, ending: Ending, keep_plan: bool) -> Rollout:
+        """The document of what happened."""
+        plan, robot = self.plan, self.robot
+        outcome, reason = judge(ending, self.loads, robot.mass * 9.81)
+        series = self.recorder.series()
+        # A diverged run still has a document.
+        s = np.nan_to_num(self.score, posinf=_HUGE, neginf=-_HUGE)
+        steps = max(1.0, s[score.STEPS])
+        reached, total = ending.progress
+        metrics = Metrics(
+            duration=ending.time,
+            pitch_error_max=s[score.PITCH_MAX],
+            pitch_error_rms=math.sqrt(s[score.PITCH_SQUARES] / steps),
+            joint_error_rms=math.sqrt(s[score.JOINT_SQUARES] / steps / 8),
+            torque_peak=s[score.LEG_TORQUE],
+            wheel_torque_peak=s[score.WHEEL_TORQUE],
+            energy=s[score.ENERGY],
+            link_contacts=self.loads.contacts,
+            link_force_peak=min(self.loads.peak, _HUGE),
+            self_contacts=self.loads.self_contacts,
+            end_error=min(ending.error, _HUGE),
+            progress=reached / total,
+            speed_mean=reached / max(ending.time - SETTLE, self.dt),
+            real_time_factor=ending.time / max(self.wall, 1e-9),
+        )
+        deviations = {k: v for k, v in self.disturbance.model_dump().items() if v != 0.0}
+        key = [plan.id, plan.friction, self.friction, self.seed, self.settings.model_dump()]
+        return Rollout(
+            id="r-" + content_hash([*key, deviations]).removeprefix("sha256:"),
+            plan_id=plan.id,
+            method=plan.method,
+            terrain=plan.terrain,
+            terrain_hash=plan.terrain_hash,
+            robot=plan.robot,
+            robot_hash=plan.robot_hash,
+            robot_description=robot,
+            friction=self.friction,
+            seed=self.seed,
+            controller=self.settings,
+            disturbance=deviations,
+            outcome=outcome,
+            reason=reason,
+            metrics=metrics,
+            series=series,
+            plan=plan if keep_plan else None,
+        )
