@@ -17,7 +17,7 @@ from .nlp import Layout
 from .pose_search import TRIES, Found, Place, PoseSearch
 from .solver import Bounds, Solution, pose_solver
 from .sqp.places import room
-from .sqp.search import ENOUGH, WANTED, Rules
+from .sqp.search import ENOUGH, PULLS, WANTED, Rules
 from .terrain_window import SIZES, cell_vector, cells, curve_window
 from .weights import CriticalWeights
 
@@ -71,7 +71,7 @@ class CasadiSearch(PoseSearch):
         x_ref = float(self.path.centres(np.array([place.front, rear]))[:, 0].mean())
         bounds = _bounds(rules or self.rules, place, rear)
         found: Found | None = None
-        for _ in range(4):
+        for _ in range(PULLS):
             reference = self.reference(x_ref)
             starts = [
                 self._guess(place, rear, reference),

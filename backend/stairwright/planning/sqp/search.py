@@ -25,7 +25,7 @@ WANTED = 0.05  # m of CoM margin beyond which other things decide
 ENOUGH = 3  # poses with the room wanted; then the search ends
 GRID = 0.05  # m between the rear wheel places that are tried
 _FACE = 2e-3  # m past a corner, where the face ahead alone carries the wheel
-_PULLS = 4  # times that the trunk is asked to move until the CoM has room
+PULLS = 3  # times that the trunk is asked to move until the CoM has room
 _SETTLED = 1e-3  # m; such a move is none
 _SAME = 3e-3  # m; so little another pull changes nothing
 _USUAL = 4  # first guesses; the last one's trunk is higher and turned towards what comes
@@ -141,7 +141,7 @@ def solve_at(
     first, trial = start.copy(), np.empty(9)
     numbers[COST], numbers[VIOLATION] = np.inf, np.inf
     numbers[MARGIN], numbers[TURN] = -np.inf, np.inf
-    for pull in range(_PULLS):
+    for pull in range(PULLS):
         reference(body, course, middle, wanted)
         task = Task(
             wanted, rules.weights, lower, upper, rules.clearance, rules.apart, hip, rules.links,
