@@ -155,6 +155,15 @@ def rows(results: list[Result]) -> list[Row]:
     return out
 
 
+def failure(result: Result) -> str:
+    """One line on what did not succeed, where and why."""
+    mark = "" if result.stands else " (no equilibrium at this friction)"
+    return (
+        f"{result.kind} {result.seed}, {result.robot}, {result.way or 'plan'}: "
+        f"{result.outcome}{mark}. {result.reason}"
+    )
+
+
 def run(quick: bool = False, **options: Any) -> list[Row]:
     """All rows; prints the failures."""
     count = options.get("count", 9 if quick else 300)
@@ -164,9 +173,7 @@ def run(quick: bool = False, **options: Any) -> list[Row]:
     for result in judge_all(range(first, first + count), workers, options.get("cache")):
         results.append(result)
         if result.outcome != "success":
-            mark = "" if result.stands else " (no equilibrium at this friction)"
-            print(f"{result.kind} {result.seed}, {result.robot}, {result.way or 'plan'}: "
-                  f"{result.outcome}{mark}. {result.reason}", flush=True)  # fmt: skip
+            print(failure(result), flush=True)
     return rows(results)
 
 
