@@ -182,19 +182,15 @@ def _least(course: Course, candidate: Candidate, below: float) -> float | None:
 
 def _confirm(course: Course, candidate: Candidate, ratio: float) -> float | None:
     """The least of a few factors from `ratio` on with which a certified plan exists."""
-    tried = [ratio * factor for factor in _CONFIRM]
-    low, high = -1, len(tried)  # too little; enough
-    while high - low > 1:
-        middle = (low + high) // 2
-        if candidate.solves(course, tried[middle]):
-            high = middle
-        else:
-            low = middle
-    if high == len(tried):
-        return None
-    between = math.sqrt(tried[max(low, 0)] * tried[high])
-    wide = low >= 0 and tried[high] / tried[low] > 1.04
-    return between if wide and candidate.solves(course, between) else tried[high]
+    before = 1.0
+    for factor in _CONFIRM:
+        tried = ratio * factor
+        if candidate.solves(course, tried):
+            middle = math.sqrt(before * tried)
+            wide = tried / before > 1.04 and before > 1.0
+            return middle if wide and candidate.solves(course, middle) else tried
+        before = tried
+    return None
 
 
 def _torque(course: Course, blocked: Blocked) -> Problem | None:
