@@ -81,7 +81,7 @@ def draw(results: Mapping[str, Mapping[str, Any]], path: Path) -> None:
     axes.invert_yaxis()
     axes.set_xscale("log")
     axes.axvline(1.0, color="0.3", linewidth=1)
-    axes.set_xlabel("time over Stairwright's, same run (more than 1: Stairwright is faster)")
+    axes.set_xlabel("time over Stairwright's in the same run")
     axes.tick_params(labelsize=7)
     axes.grid(axis="x", alpha=0.3)
     figure.savefig(path, metadata={"Date": None})
