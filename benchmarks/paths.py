@@ -8,13 +8,12 @@ of them; a row says so. Stairwright's figures include terrain preparation and th
 
 from __future__ import annotations
 
-import argparse
 import statistics
 from dataclasses import replace
 
 from dense_nlp import DensePath
 from profiles import random_profile
-from report import Row, percentile, publish, row, times
+from report import Row, command, percentile, row, times
 
 import stairwright as sw
 from stairwright.library import load_robot, load_terrain
@@ -109,13 +108,5 @@ def run(quick: bool = False) -> list[Row]:
     return rows
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--json")
-    given = parser.parse_args()
-    publish(run(given.quick), given.json)
-
-
 if __name__ == "__main__":
-    main()
+    command(__doc__, run)

@@ -11,7 +11,6 @@ search for the rear wheel's place, margins and certificate included.
 
 from __future__ import annotations
 
-import argparse
 import statistics
 import time
 from collections.abc import Sequence
@@ -20,7 +19,7 @@ from dataclasses import replace
 from pose_peers import Solver, peers, stairwright
 from pose_tasks import Task, make_task, sound
 from profiles import random_profile
-from report import Row, percentile, publish
+from report import Row, command, percentile
 
 import stairwright as sw
 from stairwright.terrain.profile import Terrain
@@ -128,13 +127,5 @@ def run(quick: bool = False) -> list[Row]:
     return rows
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--json")
-    given = parser.parse_args()
-    publish(run(given.quick), given.json)
-
-
 if __name__ == "__main__":
-    main()
+    command(__doc__, run)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import math
 import os
@@ -107,3 +108,12 @@ def publish(rows: Sequence[Row], path: str | None = None) -> None:
         content = {"machine": machine(), "rows": [asdict(r) for r in rows]}
         Path(path).write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
         print(f"wrote {path}", file=sys.stderr)
+
+
+def command(about: str | None, run: Callable[[bool], list[Row]]) -> None:
+    """The command line of a benchmark without options of its own; `about` is its docstring."""
+    parser = argparse.ArgumentParser(description=(about or "").splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="few repeats")
+    parser.add_argument("--json", help="write machine and rows to this file too")
+    given = parser.parse_args()
+    publish(run(given.quick), given.json)

@@ -10,7 +10,6 @@ many rollouts at once are wall-clock time.
 
 from __future__ import annotations
 
-import argparse
 import math
 import statistics
 import time
@@ -20,7 +19,7 @@ from typing import Any
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from report import Row, percentile, publish
+from report import Row, command, percentile
 
 import stairwright as sw
 from stairwright.control.settings import parse_settings
@@ -159,13 +158,5 @@ def run(quick: bool = False) -> list[Row]:
     return [*rows, *forms(quick)]
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--quick", action="store_true", help="few repeats")
-    parser.add_argument("--json")
-    given = parser.parse_args()
-    publish(run(given.quick), given.json)
-
-
 if __name__ == "__main__":
-    main()
+    command(__doc__, run)

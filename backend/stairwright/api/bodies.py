@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AliasChoices, BeforeValidator, Discriminator, Field, StrictBool, Tag
 
+from stairwright.arguments import MOST_FRICTION, MOST_SEED
 from stairwright.documents import Model
 from stairwright.errors import InputError
 from stairwright.planning.plan import Method, Plan
@@ -50,7 +51,7 @@ RobotSource = Annotated[
     Annotated[Name, Tag("~name")] | Annotated[Robot, Tag("~document")], _NameOrDocument
 ]
 Friction = Annotated[
-    float, Field(strict=True, gt=0.0, le=5.0, description="Coulomb, wheel on terrain")
+    float, Field(strict=True, gt=0.0, le=MOST_FRICTION, description="Coulomb, wheel on terrain")
 ]
 SettingName = Annotated[str, Field(max_length=64, pattern=r"^[a-z0-9_]+$")]
 Number = Annotated[float, Field(strict=True, ge=-1e9, le=1e9)]
@@ -118,7 +119,7 @@ class RolloutRequest(Model):
     controller: Controller = Field(
         None, description="controller settings by name, see GET /settings"
     )
-    seed: int = Field(0, strict=True, ge=0, le=2**31 - 1)
+    seed: int = Field(0, strict=True, ge=0, le=MOST_SEED)
 
 
 class TerrainDocument(Terrain):

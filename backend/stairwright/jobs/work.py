@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 import orjson
 
 from stairwright.documents import parse
-from stairwright.errors import InputError
 from stairwright.library import load_robot, robots
 from stairwright.robot.description import Robot
 from stairwright.storage.artefacts import Artefacts
@@ -129,9 +128,6 @@ def _plan_of(question: Question, artefacts: str) -> Plan:
     else:
         content = Artefacts(Path(artefacts)).content(question["plan_digest"])
         plan = Plan.model_validate_json(content)
-    if not plan.executable:
-        why = plan.problem.message if plan.problem else "the plan has no poses"
-        raise InputError(f"nothing can be rolled out: {why}", ("plan",))
     return plan
 
 

@@ -18,7 +18,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.errors import InputError
+from stairwright.arguments import as_friction
 from stairwright.terrain.profile import Terrain
 
 from .description import JOINTS, LEGS, Actuator, LegLimits, Robot
@@ -90,8 +90,7 @@ def build_spec(
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
     if friction is None:
         friction = terrain.friction if terrain is not None else 1.0
-    if not 0.0 < friction <= 5.0:
-        raise InputError("must be a number above 0 and at most 5", ("friction",))
+    friction = as_friction(friction)
     if terrain is not None:
         add_terrain(spec, terrain, friction, half_width)
     spec.worldbody.add_light(pos=[0, -2, 4], dir=[0, 0.5, -1])

@@ -46,8 +46,8 @@ def rollout(
     """
     plan = as_model(Plan, plan, "plan")
     if not plan.executable:
-        why = plan.problem.message if plan.problem else "it has no poses to carry out"
-        raise InputError(f"the plan leads nowhere: {why}", ("plan",))
+        why = plan.problem.message if plan.problem else "the plan has no poses"
+        raise InputError(f"nothing can be rolled out: {why}", ("plan",))
     settings, deviations = parse_settings(controller), parse_disturbance(disturbance)
     truth = plan.friction if friction is None else as_friction(friction)
     seed = as_whole(seed, 0, MOST_SEED, "seed")

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from stairwright.arguments import MOST_FRICTION
 from stairwright.documents import Model, content_hash
 from stairwright.errors import InputError
 
@@ -31,7 +32,9 @@ class Terrain(Model):
     name: str = Field("unnamed", min_length=1, max_length=100, pattern=r"^[\w .+-]+$")
     description: str = Field("", max_length=2000)
     points: list[Point] = Field(min_length=2, max_length=2000)
-    friction: float = Field(0.6, gt=0.0, le=5.0, description="Coulomb friction, wheel on terrain")
+    friction: float = Field(
+        0.6, gt=0.0, le=MOST_FRICTION, description="Coulomb friction, wheel on terrain"
+    )
     start: Coordinate | None = Field(None, description="x of the trunk at the start [m]")
     goal: Coordinate | None = Field(None, description="x of the trunk at the goal [m]")
 

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal, get_args
 
+from stairwright.arguments import as_friction
 from stairwright.errors import InputError
 
 from .profile import Terrain
@@ -177,8 +178,7 @@ def _terrain(
     measure: str = "length",
 ) -> Terrain:
     """The terrain; `measure` is what makes it too large, if it is."""
-    if not 0.0 < friction <= 5.0:
-        raise InputError("must be above 0 and at most 5", ("friction",))
+    friction = as_friction(friction)
     if any(abs(value) > 100.0 for point in points for value in point):
         raise InputError("the terrain would reach further than 100 m", (measure,))
     return Terrain(name=name, description=description, points=points, friction=friction)

@@ -14,6 +14,7 @@ from stairwright.api.deps import JSON_BODY, Limit, Offset, Service
 from stairwright.api.problems import Problem, describe, from_validation, not_found
 from stairwright.api.responses import model_json, models_json
 from stairwright.api.services import UPLOAD_DEADLINE, Services
+from stairwright.arguments import MOST_FRICTION
 from stairwright.errors import InputError
 from stairwright.jobs import uploads
 from stairwright.jobs.failures import DeadlineExceeded, WorkerDied
@@ -59,7 +60,7 @@ async def import_terrain(
     services: Service,
     file: Annotated[UploadFile, File(description="STL, OBJ, PLY, OFF, CSV, JSON or YAML")],
     name: Annotated[Name | None, Form(description="the file's by default")] = None,
-    friction: Annotated[float | None, Form(gt=0.0, le=5.0)] = None,
+    friction: Annotated[float | None, Form(gt=0.0, le=MOST_FRICTION)] = None,
     x: Annotated[float, Form(ge=-1e6, le=1e6, description="of the cut's origin [m]")] = 0.0,
     y: Annotated[float | None, Form(ge=-1e6, le=1e6, description="of the cut [m]")] = None,
     heading: Annotated[float, Form(ge=-7.0, le=7.0, description="of the cut [rad]")] = 0.0,

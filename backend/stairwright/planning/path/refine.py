@@ -22,7 +22,6 @@ from .record import Record, evaluate_path
 
 Floats = NDArray[np.float64]
 
-_HOP = 0.009  # m of path per node
 _BODY_SHARE = 0.3  # body motion counts this much against wheel travel in a node's spacing
 _CLEAR = 0.016  # m; clearance that the polish aims at
 # Smoothing, and metres of path per node, of one attempt after the other.
