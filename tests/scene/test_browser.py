@@ -15,6 +15,7 @@ from fastapi.responses import HTMLResponse
 from PIL import Image
 from playwright.sync_api import expect
 
+from stairwright.scene import camera as cameras
 from stairwright.scene.proxy import proxy_websocket
 from stairwright.scene.session import SceneSession
 from tests.scene.example import example_plan, example_rollout
@@ -206,7 +207,8 @@ def test_the_camera_follows_the_robot_and_keeps_its_angle(site, visit, plan):
     page = visit("/scene/f/?embedded=1")
     wait_until(page, seen)
     (client,) = session._server.get_clients().values()
-    offset = client.camera.position - client.camera.look_at
+    view = cameras.view("follow", np.zeros(3))
+    offset = view.position - view.look_at
     session.playback(speed=8.0, playing=True)
     end = plan["poses"][-1]
     for _ in range(600):

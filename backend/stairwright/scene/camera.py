@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple, get_args
+from collections.abc import Iterable
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +64,25 @@ def course_view(positions: Floats) -> View:
     middle = (low + high) / 2 + np.array([0.0, 0.0, -0.12])
     distance = float(np.clip(1.05 * span + 0.9, _NEAREST, _FARTHEST))
     return View(middle + distance * _direction("iso"), middle)
+
+
+def keep_in_view(clients: Iterable[Any], robot: Floats) -> None:
+    """Aim every viewer's camera at `robot` (3,) from where its user has turned it to."""
+    place = aim(robot)
+    for client in clients:
+        # From the viewer's last report both points are equally old: their difference holds.
+        _move(client, View(place + client.camera.position - client.camera.look_at, place))
+
+
+def point(client: Any, view: View) -> None:
+    """Give a viewer's camera a view."""
+    client.camera.fov = FIELD_OF_VIEW
+    _move(client, view)
+
+
+def _move(client: Any, view: View) -> None:
+    with client.atomic():
+        client.camera.position, client.camera.look_at = view.position, view.look_at
 
 
 def _direction(name: Preset) -> Floats:

@@ -275,7 +275,8 @@ class SceneSession:
                 moved = float(np.abs(moment.position - self._subject).max()) > 1e-6
                 self._subject = moment.position.copy()
                 if self._follow and moved:
-                    self._keep_in_view()
+                    viewers = self._server.get_clients().values()
+                    self._move_cameras(cameras.keep_in_view, viewers, self._subject)
             self._panel.tick(time)
 
     def _aim(self, view: cameras.View) -> None:
@@ -283,30 +284,21 @@ class SceneSession:
         start.fov = cameras.FIELD_OF_VIEW
         start.position, start.look_at = view.position, view.look_at
         for client in self._server.get_clients().values():
-            _point(client, view)
+            self._move_cameras(cameras.point, client, view)
 
     def _welcome(self, client: Any) -> None:
         """A viewer that comes while the camera follows starts where the robot is by now."""
         with self._lock:
             if self._follow and not self._closed:
-                _point(client, cameras.view("follow", self._subject))
+                self._move_cameras(cameras.point, client, cameras.view("follow", self._subject))
 
-    def _keep_in_view(self) -> None:
-        """Aim every camera at the robot from where its user has turned it to."""
-        aim = cameras.aim(self._subject)
-        for client in self._server.get_clients().values():
-            # From the viewer's last report both points are equally old: their difference holds.
-            offset = client.camera.position - client.camera.look_at
-            with client.atomic():
-                client.camera.position = aim + offset
-                client.camera.look_at = aim
+    def _move_cameras(self, move: Callable[..., None], *arguments: Any) -> None:
+        """Move cameras on viser's own thread.
 
-
-def _point(client: Any, view: cameras.View) -> None:
-    with client.atomic():
-        client.camera.fov = cameras.FIELD_OF_VIEW
-        client.camera.position = view.position
-        client.camera.look_at = view.look_at
+        There no viewer's report comes between two writes; between them, it would leave the old
+        position beside the new aim, and the camera would drift as it follows.
+        """
+        self._server.get_event_loop().call_soon_threadsafe(move, *arguments)
 
 
 def _robot_of(document: Mapping[str, Any]) -> Robot:
