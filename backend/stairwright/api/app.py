@@ -11,7 +11,19 @@ from stairwright import __version__
 
 from . import openapi, problems
 from .middleware import PREFIX, Compress, Gate, LimitBody, Observe
-from .routes import health, jobs, page, plans, robots, rollouts, scene, sessions, terrains, tuning
+from .routes import (
+    health,
+    jobs,
+    live,
+    page,
+    plans,
+    robots,
+    rollouts,
+    scene,
+    sessions,
+    terrains,
+    tuning,
+)
 from .services import Services
 from .settings import Settings
 
@@ -56,7 +68,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.add_middleware(Gate, token=settings.token, origins=settings.allowed_origins)
     app.add_middleware(Observe, metrics=services.metrics)
     api = APIRouter(prefix=PREFIX)
-    for routes in (health, tuning, robots, terrains, plans, rollouts, jobs, sessions):
+    for routes in (health, tuning, robots, terrains, plans, live, rollouts, jobs, sessions):
         api.include_router(routes.router)
     app.include_router(api)
     app.include_router(health.router, include_in_schema=False)

@@ -13,7 +13,7 @@ from typing import Any
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, ValidationError
 from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
@@ -25,6 +25,8 @@ from stairwright.jobs.failures import Failure
 MEDIA_TYPE = "application/problem+json"
 MAX_ERRORS = 20
 _LONGEST = 500  # characters of a message or path that may repeat what the client sent
+
+_EXHAUSTED = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EMFILE, errno.EROFS)
 
 logger = logging.getLogger(__name__)
 
@@ -133,41 +135,36 @@ def from_validation(errors: Sequence[Mapping[str, Any]]) -> Problem:
     return Problem(422, head + more, kind="bad-input", errors=shown)
 
 
+def problem_of(error: Exception) -> Problem:
+    """What went wrong, as the client is told; what only the log may know is written there."""
+    if isinstance(error, Problem):
+        return error
+    if isinstance(error, (RequestValidationError, ValidationError)):
+        return from_validation(error.errors())
+    if isinstance(error, InputError):
+        return from_input_error(error)
+    if isinstance(error, Failure):
+        headers = {"retry-after": str(math.ceil(error.retry_after or 1.0))}
+        return Problem(error.status, error.message, kind=error.kind, headers=headers)
+    if isinstance(error, OperationalError):
+        logger.error("the database cannot be used now", exc_info=error)
+        return _unavailable("the database is busy or cannot be written")
+    if isinstance(error, OSError) and error.errno in _EXHAUSTED:
+        logger.error("the system refused", exc_info=error)
+        return _unavailable(f"the server has a problem: {error.strerror}")
+    logger.error("unexpected error", exc_info=error)
+    return Problem(500, "this is a bug in the service; its log says more")
+
+
 def install(app: FastAPI) -> None:
     """Let every exception leave as a problem document."""
     from .openapi import allowed_methods  # which describes problems itself
 
-    @app.exception_handler(Problem)
-    async def on_problem(_: Request, error: Problem) -> Response:
-        return error.response()
+    async def on_error(_: Request, error: Exception) -> Response:
+        return problem_of(error).response()
 
-    @app.exception_handler(RequestValidationError)
-    async def on_validation(_: Request, error: RequestValidationError) -> Response:
-        return from_validation(error.errors()).response()
-
-    @app.exception_handler(InputError)
-    async def on_input_error(_: Request, error: InputError) -> Response:
-        return from_input_error(error).response()
-
-    @app.exception_handler(Failure)
-    async def on_failure(_: Request, error: Failure) -> Response:
-        seconds = str(math.ceil(error.retry_after or 1.0))
-        problem = Problem(
-            error.status, error.message, kind=error.kind, headers={"retry-after": seconds}
-        )
-        return problem.response()
-
-    @app.exception_handler(OperationalError)
-    async def on_database(_: Request, error: OperationalError) -> Response:
-        logger.error("the database cannot be used now", exc_info=error)
-        return _unavailable("the database is busy or cannot be written").response()
-
-    @app.exception_handler(OSError)
-    async def on_system(_: Request, error: OSError) -> Response:
-        if error.errno not in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EMFILE, errno.EROFS):
-            return await on_bug(_, error)
-        logger.error("the system refused", exc_info=error)
-        return _unavailable(f"the server has a problem: {error.strerror}").response()
+    for kind in (*_EXPECTED, Exception):
+        app.add_exception_handler(kind, on_error)
 
     @app.exception_handler(HTTPException)
     async def on_http(request: Request, error: HTTPException) -> Response:
@@ -181,14 +178,13 @@ def install(app: FastAPI) -> None:
             headers = {"Allow": allowed} if allowed else headers
         return Problem(error.status_code, detail, headers=headers).response()
 
-    @app.exception_handler(Exception)
-    async def on_bug(_: Request, error: Exception) -> Response:
-        logger.error("unexpected error", exc_info=error)
-        return Problem(500, "this is a bug in the service; its log says more").response()
-
 
 def _unavailable(detail: str) -> Problem:
     return Problem(503, detail, kind="unavailable", headers={"retry-after": "2"})
+
+
+# What a handler before Starlette's last one, which logs a traceback of its own, must answer.
+_EXPECTED = (Problem, RequestValidationError, InputError, Failure, OperationalError, OSError)
 
 
 def describe(*statuses: int) -> dict[int | str, dict[str, Any]]:

@@ -18,6 +18,7 @@ from stairwright.arguments import as_model
 from stairwright.errors import InputError
 from stairwright.robot import kinematics as kin
 from stairwright.robot.description import Robot
+from stairwright.terrain.profile import height_at
 
 from .equilibrium import balanced
 from .plan import Certificate, Check, Plan
@@ -71,6 +72,7 @@ class _Checker:
         x, z, pitch = self.body.T
         self.frames = kin.forward(self.robot, x, z, pitch, self.joints)
         self.com = kin.com(self.robot, x, z, self.frames)
+        self.chunks = self._chunks()
 
     def _interpolate(self) -> None:
         """Replace poses by samples of the motion; `slack` bounds what happens between samples."""
@@ -117,6 +119,10 @@ class _Checker:
 
     def _local(self, measure: Callable[[slice, shapely.Geometry], Floats]) -> Floats:
         """Evaluate `measure` on chunks of samples, each with the terrain near it."""
+        return np.concatenate([measure(chunk, line) for chunk, line in self.chunks])
+
+    def _chunks(self) -> list[tuple[slice, shapely.Geometry]]:
+        """Chunks of samples with the piece of terrain that their robots may meet."""
         reach = 1.0 + self.robot.thigh.length + self.robot.calf.length + self.robot.trunk.size[0]
         x = self.vertices[:, 0]
         out = []
@@ -129,13 +135,11 @@ class _Checker:
                 a, b = max(0, min(a, len(x) - 2)), max(2, b)
             line = shapely.linestrings(self.vertices[a:b])
             shapely.prepare(line)
-            out.append(measure(chunk, line))
-        return np.concatenate(out)
+            out.append((chunk, line))
+        return out
 
     def _above(self, points: Floats) -> NDArray[np.bool_]:
         """Whether points (n, 2) lie above the ground; beyond the profile's ends there is none."""
-        from stairwright.terrain.profile import height_at
-
         x = self.vertices[:, 0]
         beyond = (points[:, 0] < x[0]) | (points[:, 0] > x[-1])
         above: NDArray[np.bool_] = (points[:, 1] > height_at(self.vertices, points[:, 0])) | beyond

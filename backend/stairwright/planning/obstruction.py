@@ -9,206 +9,172 @@ planning again with it: the answer is physically true, not a guess from the sear
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any, Literal
+from concurrent.futures import Executor, ThreadPoolExecutor
+from functools import lru_cache, partial
 
 import numpy as np
 
-from stairwright.robot.description import Robot
+from .path.solve import QUICK, Blocked, Course, Solved
+from .plan import Limit, Pose, Problem
+from .relaxation import AMPLE, CLOSE, Candidate, candidates_of, leg_torque, legs_with_grip
 
-from .path.course import NoStand
-from .path.solve import BOLD, QUICK, Blocked, Course, Solved, pose_course
-from .plan import Limit, Problem
+Way = tuple[list[Pose], list[int], float]  # poses, key poses, duration [s]
 
-Kind = Literal["reach", "clearance", "statics", "torque", "joint_limit"]
-
-_FINE = 1.7  # lattice of the questions, coarser than that of plans
-_CLOSE = 0.02  # relative precision of the bisected value
-_CONFIRM = (1.005, 1.04, 1.1, 1.25, 1.6)  # factors tried on the bisected value
+_ROUGH = 1.3  # relative precision of a factor before other quantities were asked
+_MORE = (1.005, 1.04, 1.1, 1.25, 1.6, 2.5, 4.0)  # on the least factor: planning is tried there
+_SURE = 1.06  # relative precision of a value that only whole plans can tell
 _LONGEST = (3.0, 8.0)  # times the legs' length; asked last, with ample friction
-_ASKED = 2  # candidates for which planning is tried
+_RIVALS = 2  # candidates for which planning is tried
+_ASKED = 2  # times that candidates are ranked anew, without those that led nowhere
+_THREADS = 2  # the compiled searches leave Python alone
 
 
-@dataclass(frozen=True)
-class Candidate:
-    """One quantity that may be raised (or, for `lower`, reduced)."""
-
-    kind: Kind
-    quantity: str
-    unit: str
-    available: float
-    limit: float
-    change: Callable[[Course, float], Course]
-    given: str = ""  # what else the change needs
-
-    def at(self, ratio: float) -> float:
-        """The value that differs from what there is by the factor `ratio` > 1."""
-        return self.available * ratio if self.limit > self.available else self.available / ratio
-
-    @property
-    def most(self) -> float:
-        """The factor at the limit."""
-        return max(self.limit / self.available, self.available / self.limit)
-
-    def opens(self, course: Course, ratio: float) -> bool:
-        """Whether a quick, forgiving search comes through with the quantity changed so."""
-        try:
-            changed = self.change(course, self.at(ratio))
-        except NoStand:
-            return False
-        return changed.find(_FINE, BOLD, cheap=False).quality > 0
-
-    def solves(self, course: Course, ratio: float) -> bool:
-        """Whether there is a certified plan with the quantity changed so."""
-        try:
-            changed = self.change(course, self.at(ratio))
-        except NoStand:
-            return False
-        return isinstance(changed.solve(QUICK), Solved)
-
-
-def explain(course: Course, blocked: Blocked) -> Problem:
-    """Name what stops `course`.
+def explain(course: Course, blocked: Blocked) -> tuple[Problem, Way]:
+    """Name what stops `course`, and tell how far it goes.
 
     Args:
         course: The question without an answer.
         blocked: What its solution attempt returned.
     """
+    pool = _pool(os.getpid())
+    way = pool.submit(course.partial)
+    problem = _name(course, blocked, pool)
+    return problem, way.result()
+
+
+def _name(course: Course, blocked: Blocked, pool: Executor) -> Problem:
     if blocked.opened:
         torque = _torque(course, blocked)
         if torque is not None:
             return torque
-    candidates = _candidates(course)
+    candidates = candidates_of(course)
     for _ in range(_ASKED):
-        best: Candidate | None = None
-        ratio = math.inf
-        for candidate in candidates:
-            least = _least(course, candidate, ratio)
-            if least is not None:
-                best, ratio = candidate, least
-        if best is None:
+        ranked = _ranked(course, candidates, pool)
+        answer = _confirmed(course, ranked, pool)
+        if answer is not None:
+            candidate, ratio = answer
+            return _problem(course, blocked, candidate, candidate.at(ratio))
+        tried = [candidate for candidate, _ in ranked]
+        candidates = [one for one in candidates if one not in tried]
+        if not tried or not candidates:
             break
-        confirmed = _confirm(course, best, ratio)
-        if confirmed is not None:
-            return _problem(course, blocked, best, best.at(confirmed))
-        candidates.remove(best)
-    return _hopeless(course, blocked)
+    return _hopeless(course, blocked, pool)
 
 
-def _candidates(course: Course) -> list[Candidate]:
-    """Quantities in the order in which they are asked: cheap and likely first."""
-    robot = course.robot
-    legs = robot.thigh.length + robot.calf.length
-    joints = (robot.joints.front, robot.joints.rear)
-    ranges = {
-        part: min(getattr(leg, part)[1] - getattr(leg, part)[0] for leg in joints)
-        for part in ("thigh", "calf")
-    }
-    return [
-        Candidate("statics", "friction", "1", course.friction, max(2.0, 2.5 * course.friction),
-                  lambda c, v: replace(c, friction=v)),
-        Candidate("reach", "leg length", "m", legs, 3.0 * legs,
-                  lambda c, v: _with_robot(c, _longer(robot, v / legs))),
-        Candidate("clearance", "trunk height", "m", robot.trunk.size[2], 0.1 * robot.trunk.size[2],
-                  lambda c, v: _with_robot(c, _flatter(robot, v))),
-        Candidate("joint_limit", "calf range", "rad", ranges["calf"], ranges["calf"] + 0.8,
-                  lambda c, v: _with_robot(c, _wider(robot, "calf", v - ranges["calf"]))),
-        Candidate("joint_limit", "thigh range", "rad", ranges["thigh"], ranges["thigh"] + 1.0,
-                  lambda c, v: _with_robot(c, _wider(robot, "thigh", v - ranges["thigh"]))),
-    ]  # fmt: skip
+@lru_cache(maxsize=1)
+def _pool(_process: int) -> Executor:
+    """Threads that live as long as the process: those of a search keep the memory it needs."""
+    return ThreadPoolExecutor(_THREADS, "obstruction")
 
 
-def _with_robot(course: Course, robot: Robot) -> Course:
-    """The same question for another robot, which stands as it would."""
-    return pose_course(course.terrain, robot, course.friction, course.weights)
+def _ranked(
+    course: Course, candidates: list[Candidate], pool: Executor
+) -> list[tuple[Candidate, float]]:
+    """Candidates that open the way, least factor first.
 
-
-def _changed(robot: Robot, changes: dict[str, dict[str, Any]]) -> Robot:
-    """A new robot (nothing cached) with some fields of some of its parts replaced."""
-    data = robot.model_dump()
-    for part, fields in changes.items():
-        data[part] |= fields
-    return Robot.model_validate(data)
-
-
-def _longer(robot: Robot, factor: float) -> Robot:
-    """The robot with thighs and calves longer by `factor`."""
-    return _changed(
-        robot,
-        {part: {"length": getattr(robot, part).length * factor} for part in ("thigh", "calf")},
-    )
-
-
-def _flatter(robot: Robot, height: float) -> Robot:
-    size = (robot.trunk.size[0], robot.trunk.size[1], height)
-    return _changed(robot, {"trunk": {"size": size}})
-
-
-def _wider(robot: Robot, part: str, extra: float) -> Robot:
-    """The robot with the range of `part` (thigh, calf) `extra` rad wider, half at each end."""
-    legs: dict[str, Any] = {}
-    for name in ("front", "rear"):
-        leg = getattr(robot.joints, name).model_dump()
-        low, high = leg[part]
-        wide = [max(low - extra / 2, -6.28), min(high + extra / 2, 6.28)]
-        if part == "calf":  # the knee keeps its side and does not fold onto itself
-            wide = [
-                max(wide[0], 0.05 if low > 0 else -3.1),
-                min(wide[1], 3.1 if low > 0 else -0.05),
-            ]
-        legs[name] = leg | {part: tuple(wide)}
-    return _changed(robot, {"joints": legs})
-
-
-def _stronger(robot: Robot, torque: float) -> Robot:
-    leg = robot.actuators.leg.model_dump() | {"torque": torque}
-    return _changed(robot, {"actuators": {"leg": leg}})
-
-
-def _least(course: Course, candidate: Candidate, below: float) -> float | None:
-    """Least factor on the candidate's quantity that opens the way, if it is less than `below`."""
-    low, high = 1.0, min(candidate.most, below / (1.0 + _CLOSE))
-    if high <= low or not candidate.opens(course, high):
-        return None
-    while high / low > 1.0 + _CLOSE:
-        middle = math.sqrt(low * high)
-        if candidate.opens(course, middle):
-            high = middle
+    The least factor is told precisely; the others are factors that do.
+    """
+    first, *others = candidates
+    least = _least(course, first, math.inf, _ROUGH, pool)
+    low, ratio = least or (1.0, math.inf)
+    ranked = [(first, ratio)] if least else []
+    others = [one for one in others if one.highest(ratio) > 1.0]
+    opened = pool.map(lambda one: one.opens(course, one.highest(ratio)), others)
+    for candidate in [one for one, opens in zip(others, opened, strict=True) if opens]:
+        found = _least(course, candidate, ratio, 1.0 + CLOSE, pool)
+        if found is not None:
+            ratio = found[1]
+            ranked.insert(0, (candidate, ratio))
         else:
-            low = middle
-    return high
+            ranked.append((candidate, candidate.highest(ratio)))
+    # What was told roughly is told precisely where it may be the least.
+    if least is not None and ratio > low:
+        high = ratio if ranked[0][0] is first else first.highest(ratio)
+        if high == ratio or (high > low and first.opens(course, high)):
+            ratio = _narrow(partial(first.opens, course), low, high, 1.0 + CLOSE, pool)[1]
+            ranked = [(first, ratio), *(one for one in ranked if one[0] is not first)]
+    return ranked
 
 
-def _confirm(course: Course, candidate: Candidate, ratio: float) -> float | None:
-    """The least of a few factors from `ratio` on with which a certified plan exists."""
-    before = 1.0
-    for factor in _CONFIRM:
-        tried = ratio * factor
-        if candidate.solves(course, tried):
-            middle = math.sqrt(before * tried)
-            wide = tried / before > 1.04 and before > 1.0
-            return middle if wide and candidate.solves(course, middle) else tried
-        before = tried
+def _least(
+    course: Course, candidate: Candidate, below: float, close: float, pool: Executor
+) -> tuple[float, float] | None:
+    """Factors of which the larger opens the way, if less than `below`, and the smaller does not."""
+    high = candidate.highest(below)
+    if high <= 1.0:
+        return None
+    opens = partial(candidate.opens, course)
+    middle = math.sqrt(high)
+    half, whole = pool.map(opens, (middle, high))
+    if half:
+        return _narrow(opens, 1.0, middle, close, pool)
+    return _narrow(opens, middle, high, close, pool) if whole else None
+
+
+def _narrow(
+    enough: Callable[[float], bool], low: float, high: float, close: float, pool: Executor
+) -> tuple[float, float]:
+    """Bring together a factor that is not enough and one that is; two are asked at once.
+
+    Args:
+        enough: Asked about factors.
+        low, high: The factors.
+        close: Largest quotient of those that are returned.
+        pool: Who asks.
+    """
+    while high / low > close:
+        a, b = (low ** (1 - k / 3) * high ** (k / 3) for k in (1, 2))
+        first, second = pool.map(enough, (a, b))
+        if first:
+            high = a
+        elif second:
+            low, high = a, b
+        else:
+            low = b
+    return low, high
+
+
+def _confirmed(
+    course: Course, ranked: list[tuple[Candidate, float]], pool: Executor
+) -> tuple[Candidate, float] | None:
+    """The least factor with which a certified plan exists, and on which of the `ranked`.
+
+    Factors from those told on are tried, the least first: alone, since it mostly does, then two at
+    once.
+    """
+    tries = sorted(
+        {(min(ratio * more, one.most), k)
+         for k, (one, ratio) in enumerate(ranked[:_RIVALS]) for more in _MORE}
+    )  # fmt: skip
+    low: dict[int, float] = {}
+    for begin in range(-1, len(tries), 2):
+        group = tries[max(0, begin) : begin + 2]
+        answers = pool.map(lambda one: ranked[one[1]][0].solves(course, one[0]), group)
+        for (ratio, k), enough in zip(group, answers, strict=True):
+            candidate = ranked[k][0]
+            if not enough:
+                low[k] = ratio
+            elif k in low:
+                solves = partial(candidate.solves, course)
+                return candidate, _narrow(solves, low[k], ratio, _SURE, pool)[1]
+            else:
+                return candidate, ratio
     return None
 
 
 def _torque(course: Course, blocked: Blocked) -> Problem | None:
     """The problem if joint torque alone stands in the way."""
-    robot = course.robot
-    available = robot.actuators.leg.torque
-    limit = 10 * available
-    strong = _with_robot(course, _stronger(robot, limit)).solve(QUICK)
+    candidate = leg_torque(course.robot)
+    strong = candidate.change(course, candidate.limit).solve(QUICK)
     if not isinstance(strong, Solved):
         return None
-    used = max(limit - pose.margins.torque for pose in strong.poses)
-    candidate = Candidate(
-        "torque", "leg torque", "Nm", available, limit,
-        lambda c, v: _with_robot(c, _stronger(robot, v)),
-    )  # fmt: skip
-    if used <= available or not candidate.solves(course, 1.001 * used / available):
+    used = max(candidate.limit - pose.margins.torque for pose in strong.poses)
+    ratio = 1.001 * used / candidate.available
+    if ratio <= 1.0 or not candidate.solves(course, ratio):
         return None
-    return _problem(course, blocked, candidate, 1.001 * used)
+    return _problem(course, blocked, candidate, candidate.at(ratio))
 
 
 def _place(course: Course, blocked: Blocked) -> tuple[tuple[float, float], float, str]:
@@ -238,24 +204,17 @@ def _problem(course: Course, blocked: Blocked, candidate: Candidate, value: floa
     )  # fmt: skip
 
 
-def _hopeless(course: Course, blocked: Blocked) -> Problem:
+def _hopeless(course: Course, blocked: Blocked, pool: Executor) -> Problem:
     """No single change is enough: the leg length that opens the way with high friction."""
-    at, progress, wheel = _place(course, blocked)
-    robot = course.robot
-    legs = robot.thigh.length + robot.calf.length
-    grip = max(1.5, course.friction)
     for longest in _LONGEST:
-        bold = Candidate(
-            "reach", "leg length", "m", legs, longest * legs,
-            lambda c, v: replace(_with_robot(c, _longer(robot, v / legs)), friction=grip),
-            f" with friction {grip:.2g}",
-        )  # fmt: skip
-        least = _least(course, bold, math.inf)
-        confirmed = _confirm(course, bold, least) if least is not None else None
-        if confirmed is not None:
-            return _problem(course, blocked, bold, bold.at(confirmed))
+        bold = legs_with_grip(course, longest)
+        least = _least(course, bold, math.inf, 1.0 + CLOSE, pool)
+        answer = _confirmed(course, [(bold, least[1])], pool) if least is not None else None
+        if answer is not None:
+            return _problem(course, blocked, bold, bold.at(answer[1]))
+    at, progress, wheel = _place(course, blocked)
     message = (
         f"the {wheel} wheels stop at x = {at[0]:.2f} m, z = {at[1]:.2f} m, and neither legs of "
-        f"{bold.limit:.3g} m nor friction {grip:.2g} would change that"
+        f"{bold.limit:.3g} m nor friction {max(AMPLE, course.friction):.2g} would change that"
     )
     return Problem(kind="reach", at=at, progress=progress, message=message)

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from stairwright.terrain.wheel_path import WheelPath
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 TREAD = 0.10  # m
 LEVEL = math.radians(3.0)
@@ -59,10 +60,12 @@ def find_obstacles(path: WheelPath, low: float, high: float) -> list[Obstacle]:
     z = path.centres(s)[:, 1]
     step = np.diff(s)
     gentle = np.abs(np.diff(z)) <= math.sin(LEVEL) * step + 1e-12
+    # Samples at the ends of pieces, and the first and the last one.
+    ends = np.unique([0, len(s) - 1, *np.flatnonzero(np.isin(s, path.pieces[:, 1]))])
     found: list[Obstacle] = []
     for first, last in _rough_stretches(s, gentle):
         for a, b in _monotone_runs(z[first : last + 1]):
-            found.append(_obstacle(path, s, z, first + a, first + b))
+            found.append(_obstacle(path, s, z, ends, first + a, first + b))
     return found
 
 
@@ -117,12 +120,11 @@ def _monotone_runs(z: Floats) -> list[tuple[int, int]]:
     return out
 
 
-def _obstacle(path: WheelPath, s: Floats, z: Floats, a: int, b: int) -> Obstacle:
+def _obstacle(path: WheelPath, s: Floats, z: Floats, ends: Ints, a: int, b: int) -> Obstacle:
     """The obstacle between two samples: whole arcs, without level pieces at its ends."""
-    marks = np.unique([0, len(s) - 1, *np.flatnonzero(np.isin(s, path.pieces[:, 1]))])
-    first = int(np.searchsorted(marks, a, side="right")) - 1
-    last = int(np.searchsorted(marks, b, side="left"))
-    marks = marks[first : last + 1]
+    first = int(np.searchsorted(ends, a, side="right")) - 1
+    last = int(np.searchsorted(ends, b, side="left"))
+    marks = ends[first : last + 1]
     level = np.abs(np.diff(z[marks])) <= math.sin(LEVEL) * np.diff(s[marks]) + 1e-12
     steep = np.flatnonzero(~level)
     if len(steep):

@@ -12,7 +12,7 @@ import type {
   TerrainDocument,
 } from "./types";
 
-const BASE = "/api/v1";
+export const BASE = "/api/v1";
 
 export class ApiError extends Error {
   constructor(

@@ -5,6 +5,7 @@
 
 import { batch, computed, effect, signal } from "@preact/signals";
 import { postPlan } from "../api/client";
+import { connectLive, livePlan } from "../api/live";
 import { NewestWins } from "../api/newest-wins";
 import type { Method, Plan, PlanRequest } from "../api/types";
 import { connected, report } from "./connection";
@@ -105,9 +106,10 @@ const queue = new NewestWins<Question, Plan>({ solve, show, fail, yields });
 
 async function solve(question: Question, abort: AbortSignal): Promise<Plan> {
   const started = performance.now();
-  const answer = await postPlan(question.request, abort);
-  const trip = performance.now() - started;
   const { method } = question.request;
+  // Quick answers are small and many; long ones are better compressed, as HTTP does it.
+  const answer = await (method === "critical" ? livePlan : postPlan)(question.request, abort);
+  const trip = performance.now() - started;
   if (method !== "nominal") pace.measured(method === "path" ? "full" : "quick", trip, answer);
   return answer;
 }
@@ -230,6 +232,7 @@ function forget(): void {
 
 /** Follow every change of drawing and set-up from now on. */
 export function startPlanning(): () => void {
+  connectLive();
   const stopA = effect(() => {
     // By its text: a drag that stays on its grid point is a new drawing, but no new question.
     const key = requestKey.value;

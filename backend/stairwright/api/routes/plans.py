@@ -57,7 +57,7 @@ async def post_plan(
     request: Request, services: Service, owner: Owner, body: PlanRequest, once: Idempotent
 ) -> Response:
     """Plan; the answer is the plan, an infeasible one too. The same question has the same id."""
-    question, answer = await asyncio.to_thread(_look_up, services, body)
+    question, answer = await asyncio.to_thread(look_up, services, body)
     if answer is None:
         answer = await unless_gone(request, services.planning.solve(question, owner))
     if answer is None:
@@ -69,7 +69,8 @@ async def post_plan(
     return await send(request, answer.content, answer.entry.digest, headers)
 
 
-def _look_up(services: Services, body: PlanRequest) -> tuple[PlanQuestion, Answer | None]:
+def look_up(services: Services, body: PlanRequest) -> tuple[PlanQuestion, Answer | None]:
+    """The question and its answer, if there is one; reads the database, so call it in a thread."""
     question = plan_question(services, body)
     return question, services.planning.stored(question)
 

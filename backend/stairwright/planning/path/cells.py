@@ -59,7 +59,7 @@ class Cells(NamedTuple):
     origin: Ints
 
 
-@nb.njit(cache=True)
+@nb.njit(cache=True, nogil=True)
 def build_cells(
     pieces: Floats,
     corners: Floats,
@@ -108,7 +108,7 @@ def build_cells(
         front[m], rear[m], index[i, j] = i, j, m
         spans[m, 0], spans[m, 1] = lo, hi
         spans[m, 2], spans[m, 3] = pair_interval(pieces, corners, r, s[i], s[j], reserve, GENTLE)
-        lo, hi = lagged_interval(pieces, r, s[i], s[j], friction, lag)
+        lo, hi = lagged_interval(pieces, corners, r, s[i], s[j], friction, lag)
         if lo > hi:
             lo = hi = 0.5 * (spans[m, 0] + spans[m, 1])
         spans[m, 4], spans[m, 5] = lo, hi

@@ -52,29 +52,20 @@ def pair_interval(
 
 @nb.njit(cache=True)
 def lagged_interval(
-    pieces: Floats, r: float, sf: float, sr: float, friction: float, lag: float
+    pieces: Floats, corners: Floats, r: float, sf: float, sr: float, friction: float, lag: float
 ) -> tuple[float, float]:
     """CoM interval that also holds if either wheel is still `lag` behind its plan.
 
-    A wheel that arrives late at a corner pushes on the face behind it; plans that tolerate this are
-    what a controller can follow. Low > high where no CoM suits all cases.
+    A wheel that arrives late at a corner pushes on the face behind it alone; plans that tolerate
+    this are what a controller can follow. Low > high where no CoM suits all cases.
     """
     low, high = -np.inf, np.inf
-    points, normals = np.empty((2, 2)), np.empty((2, 2))
+    points, normals = np.empty((4, 2)), np.empty((4, 2))
     for a in range(3):
-        sa = sf if a == 0 else (sf - lag if a == 1 else sf - 0.3 * lag)
-        _, _, nax, naz = curve_at(pieces, r, sa)
-        xf, zf, _, _ = curve_at(pieces, r, sf)
+        n = _late(pieces, corners, r, sf, a, lag, points, normals, 0)
         for b in range(3):
-            sb = sr if b == 0 else (sr - lag if b == 1 else sr - 0.3 * lag)
-            _, _, nbx, nbz = curve_at(pieces, r, sb)
-            xr, zr, _, _ = curve_at(pieces, r, sr)
-            # The lagging wheel's normal at the planned centre: the direction decides.
-            points[0, 0], points[0, 1] = xf - r * nax, zf - r * naz
-            points[1, 0], points[1, 1] = xr - r * nbx, zr - r * nbz
-            normals[0, 0], normals[0, 1] = nax, naz
-            normals[1, 0], normals[1, 1] = nbx, nbz
-            lo, hi = com_interval(points, normals, 2, friction)
+            count = _late(pieces, corners, r, sr, b, lag, points, normals, n)
+            lo, hi = com_interval(points, normals, count, friction, GENTLE)
             low, high = max(low, lo), min(high, hi)
             if low > high:
                 return low, high
@@ -82,6 +73,25 @@ def lagged_interval(
 
 
 @nb.njit(cache=True)
+def _late(
+    pieces: Floats, corners: Floats, r: float, s: float, case: int, lag: float,
+    points: Floats, normals: Floats, at: int,
+) -> int:  # fmt: skip
+    """Write the contacts of a wheel in time (case 0), late (1) or a little late (2).
+
+    Returns the row after the last.
+    """
+    if case == 0:
+        return at + wheel_contacts(pieces, corners, r, s, points, normals, at)
+    # The lagging wheel's normal at the planned centre: the direction decides.
+    x, z, _, _ = curve_at(pieces, r, s)
+    _, _, nx, nz = curve_at(pieces, r, s - (lag if case == 1 else 0.3 * lag))
+    points[at, 0], points[at, 1] = x - r * nx, z - r * nz
+    normals[at, 0], normals[at, 1] = nx, nz
+    return at + 1
+
+
+@nb.njit(cache=True, nogil=True)
 def path_intervals(
     pieces: Floats,
     corners: Floats,
@@ -107,7 +117,7 @@ def path_intervals(
         if lo > hi:
             lo, hi = out[k, 0], out[k, 1]
         out[k, 2], out[k, 3] = lo, hi
-        lo, hi = lagged_interval(pieces, r, s[k, 0], s[k, 1], friction, lag)
+        lo, hi = lagged_interval(pieces, corners, r, s[k, 0], s[k, 1], friction, lag)
         if lo > hi:
             lo, hi = out[k, 2], out[k, 3]
         out[k, 4], out[k, 5] = lo, hi

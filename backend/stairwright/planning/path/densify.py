@@ -29,7 +29,7 @@ def _joints(p: Planar, leg: Leg, body: Floats, wx: float, wz: float) -> tuple[fl
     return thigh_joint(kx, kz, body[2], leg), calf_joint(dx, dz, p.thigh, p.calf, leg.knee)
 
 
-@nb.njit(cache=True)
+@nb.njit(cache=True, nogil=True)
 def _misses(
     pieces: Floats, p: Planar, leg: Leg, s0: float, s1: float, b0: Floats, b1: Floats
 ) -> float:
@@ -56,7 +56,7 @@ def _misses(
     return worst
 
 
-@nb.njit(cache=True)
+@nb.njit(cache=True, nogil=True)
 def _far_apart(
     pieces: Floats, p: Planar, front: Leg, rear: Leg, s: Floats, body: Floats, miss: float
 ) -> NDArray[np.bool_]:

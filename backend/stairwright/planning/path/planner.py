@@ -50,6 +50,5 @@ def plan_path(terrain: Terrain, robot: Robot, friction: float, weights: PathWeig
         return plan.model_copy(update={"certificate": found.certificate})
     from stairwright.planning.obstruction import explain  # it plans again, so it imports us
 
-    problem = explain(course, found)
-    poses, keys, total = course.partial()
-    return make_plan(terrain, robot, friction, weights, begun, poses, keys, total, problem)
+    problem, way = explain(course, found)
+    return make_plan(terrain, robot, friction, weights, begun, *way, problem)

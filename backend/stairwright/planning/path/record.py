@@ -19,6 +19,8 @@ from .legs import COM_X, LEGS, LEGS_GAP, LINKS, RECORD, SLACK, TRUNK, Leg, evalu
 
 Floats = NDArray[np.float64]
 
+LEAST_COM = 0.001  # m; no robot's centre of mass is known better
+
 
 @dataclass(frozen=True)
 class Record:
@@ -66,7 +68,7 @@ class Record:
                 self.clearance,
                 self.poses[:, LEGS] - LEGS_GAP,
                 0.2 * self.poses[:, SLACK],
-                self.com,
+                self.com - LEAST_COM,
                 (self.leg_limit - self.torque) * 0.01,
                 (self.wheel_limit - self.wheel_torque) * 0.01,
             ],
@@ -111,7 +113,7 @@ def _with_bisector(
     return 3
 
 
-@nb.njit(cache=True)
+@nb.njit(cache=True, nogil=True)
 def _evaluate_path(
     pieces: Floats,
     corners: Floats,

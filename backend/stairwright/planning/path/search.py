@@ -18,7 +18,7 @@ from .course import Stand, sample_course, scale, stand_height
 from .flood import flood
 from .ground import Ground
 from .lattice import LAG, Finding
-from .legs import Leg, make_legs
+from .legs import LEGS_GAP, Leg, make_legs
 from .tables import (
     Bounds,
     Floats32,
@@ -37,6 +37,7 @@ Ints = NDArray[np.int32]
 
 HipGrid = tuple[Floats32, Floats32, Floats32]
 
+_APART = 0.01  # m; smoothing brings wheels together, and no polish parts them again
 _SWEEPS = 12  # most sweeps when wheels may roll back
 
 
@@ -89,7 +90,7 @@ class Search:
         self.far = 2 * max(leg.reach_max for leg in self.legs) + math.hypot(
             front.hip_x - rear.hip_x, front.hip_z - rear.hip_z
         )
-        self.near = 2 * p.wheel_radius + bounds.legs
+        self.near = 2 * p.wheel_radius + LEGS_GAP + _APART
         self.trunk, self.trunk_x0, self.trunk_z0 = self._trunk_table()
 
     def _trunk_table(self) -> tuple[NDArray[np.float32], int, int]:

@@ -146,12 +146,12 @@ class Course:
         for rung in ladder:
             if best is not None and rung not in COARSE:
                 break
+            if rung.roll_back and not opened and not self.hopeful(rung.fine):
+                break
             finding = self.find(rung.fine, rung.bounds, roll_back=rung.roll_back)
             if finding.s is None:
                 if finding.reached and (reached is None or sum(finding.reached) > sum(reached)):
                     reached = finding.reached
-                if rung.roll_back and not opened and not self.hopeful(rung.fine):
-                    break
                 continue
             opened = True
             solved = self.finish(finding)

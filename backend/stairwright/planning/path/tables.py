@@ -160,7 +160,7 @@ def hip_grid(
     return cost, moment, angle
 
 
-@nb.njit(cache=True, error_model="numpy", fastmath=True)
+@nb.njit(cache=True, error_model="numpy", fastmath=True, nogil=True)
 def on_lattice(
     grid: tuple[Floats32, Floats32, Floats32],
     like: Ints,
@@ -233,7 +233,7 @@ def on_lattice(
     return LegTable(out, mom, x0, z0, first, last)
 
 
-@nb.njit(cache=True)
+@nb.njit(cache=True, nogil=True)
 def trunk_grid(
     g: Ground,
     p: Planar,

@@ -1,0 +1,151 @@
+"""Quantities of which more would open a way: of the terrain's grip, and of the robot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+from stairwright.robot.description import Robot
+
+from .path.course import NoStand
+from .path.solve import BOLD, QUICK, Course, Solved, pose_course
+
+Kind = Literal["reach", "clearance", "statics", "torque", "joint_limit"]
+
+AMPLE = 1.5  # friction that leaves nothing to wish for
+CLOSE = 0.02  # relative precision of the value that searches tell
+_FINE = 1.7  # lattice of the questions, coarser than that of plans
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One quantity that may be raised (or, for `lower`, reduced)."""
+
+    kind: Kind
+    quantity: str
+    unit: str
+    available: float
+    limit: float
+    change: Callable[[Course, float], Course]
+    given: str = ""  # what else the change needs
+
+    def at(self, ratio: float) -> float:
+        """The value that differs from what there is by the factor `ratio` > 1."""
+        return self.available * ratio if self.limit > self.available else self.available / ratio
+
+    @property
+    def most(self) -> float:
+        """The factor at the limit."""
+        return max(self.limit / self.available, self.available / self.limit)
+
+    def highest(self, below: float) -> float:
+        """The largest factor worth asking about where one of `below` is known to do."""
+        return min(self.most, below / (1.0 + CLOSE))
+
+    def opens(self, course: Course, ratio: float) -> bool:
+        """Whether a quick, forgiving search comes through with the quantity changed so."""
+        try:
+            changed = self.change(course, self.at(ratio))
+        except NoStand:
+            return False
+        return changed.find(_FINE, BOLD, cheap=False).quality > 0
+
+    def solves(self, course: Course, ratio: float) -> bool:
+        """Whether there is a certified plan with the quantity changed so."""
+        try:
+            changed = self.change(course, self.at(ratio))
+        except NoStand:
+            return False
+        return isinstance(changed.solve(QUICK), Solved)
+
+
+def candidates_of(course: Course) -> list[Candidate]:
+    """Quantities in the order in which they are asked: cheap and likely first."""
+    robot = course.robot
+    legs = robot.thigh.length + robot.calf.length
+    joints = (robot.joints.front, robot.joints.rear)
+    ranges = {
+        part: min(getattr(leg, part)[1] - getattr(leg, part)[0] for leg in joints)
+        for part in ("thigh", "calf")
+    }
+    return [
+        Candidate("statics", "friction", "1", course.friction, max(2.0, 2.5 * course.friction),
+                  lambda c, v: replace(c, friction=v)),
+        Candidate("reach", "leg length", "m", legs, 3.0 * legs,
+                  lambda c, v: _with_robot(c, _longer(robot, v / legs))),
+        Candidate("clearance", "trunk height", "m", robot.trunk.size[2], 0.1 * robot.trunk.size[2],
+                  lambda c, v: _with_robot(c, _flatter(robot, v))),
+        Candidate("joint_limit", "calf range", "rad", ranges["calf"], ranges["calf"] + 0.8,
+                  lambda c, v: _with_robot(c, _wider(robot, "calf", v - ranges["calf"]))),
+        Candidate("joint_limit", "thigh range", "rad", ranges["thigh"], ranges["thigh"] + 1.0,
+                  lambda c, v: _with_robot(c, _wider(robot, "thigh", v - ranges["thigh"]))),
+    ]  # fmt: skip
+
+
+def leg_torque(robot: Robot) -> Candidate:
+    """The torque of the legs' motors; asked where whole plans break no other bound."""
+    available = robot.actuators.leg.torque
+    return Candidate(
+        "torque", "leg torque", "Nm", available, 10 * available,
+        lambda c, v: _with_robot(c, _stronger(robot, v)),
+    )  # fmt: skip
+
+
+def legs_with_grip(course: Course, longest: float) -> Candidate:
+    """Legs up to `longest` times as long, with ample friction."""
+    robot = course.robot
+    legs = robot.thigh.length + robot.calf.length
+    grip = max(AMPLE, course.friction)
+    return Candidate(
+        "reach", "leg length", "m", legs, longest * legs,
+        lambda c, v: replace(_with_robot(c, _longer(robot, v / legs)), friction=grip),
+        f" with friction {grip:.2g}",
+    )  # fmt: skip
+
+
+def _with_robot(course: Course, robot: Robot) -> Course:
+    """The same question for another robot, which stands as it would."""
+    return pose_course(course.terrain, robot, course.friction, course.weights)
+
+
+def _changed(robot: Robot, changes: dict[str, dict[str, Any]]) -> Robot:
+    """A new robot (nothing cached) with some fields of some of its parts replaced."""
+    data = robot.model_dump()
+    for part, fields in changes.items():
+        data[part] |= fields
+    return Robot.model_validate(data)
+
+
+def _longer(robot: Robot, factor: float) -> Robot:
+    """The robot with thighs and calves longer by `factor`."""
+    return _changed(
+        robot,
+        {part: {"length": getattr(robot, part).length * factor} for part in ("thigh", "calf")},
+    )
+
+
+def _flatter(robot: Robot, height: float) -> Robot:
+    size = (robot.trunk.size[0], robot.trunk.size[1], height)
+    return _changed(robot, {"trunk": {"size": size}})
+
+
+def _wider(robot: Robot, part: str, extra: float) -> Robot:
+    """The robot with the range of `part` (thigh, calf) `extra` rad wider, half at each end."""
+    legs: dict[str, Any] = {}
+    for name in ("front", "rear"):
+        leg = getattr(robot.joints, name).model_dump()
+        low, high = leg[part]
+        wide = [max(low - extra / 2, -6.28), min(high + extra / 2, 6.28)]
+        if part == "calf":  # the knee keeps its side and does not fold onto itself
+            wide = [
+                max(wide[0], 0.05 if low > 0 else -3.1),
+                min(wide[1], 3.1 if low > 0 else -0.05),
+            ]
+        legs[name] = leg | {part: tuple(wide)}
+    return _changed(robot, {"joints": legs})
+
+
+def _stronger(robot: Robot, torque: float) -> Robot:
+    leg = robot.actuators.leg.model_dump() | {"torque": torque}
+    return _changed(robot, {"actuators": {"leg": leg}})
