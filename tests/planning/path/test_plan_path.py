@@ -95,6 +95,35 @@ def test_friction_that_is_named_is_enough(robot):
     assert sw.plan(ramp, robot, friction=plan.problem.limit.needed).feasible
 
 
+def stairs(rise, run, count):
+    points = [(-1.2, 0.0), (0.0, 0.0)]
+    for k in range(1, count + 1):
+        points += [(points[-1][0], k * rise), (run * k if k < count else run * k + 1.2, k * rise)]
+    return terrain(points)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_wet_stairs_are_climbed(robot):
+    """Wheels come close to each other there, and lean on treads and risers at once."""
+    for friction in (0.25, 0.35):
+        plan = sw.plan(stairs(0.18, 0.28, 5), robot, friction)
+        assert plan.feasible
+        assert sw.rollout(plan).outcome == "success"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_where_a_search_comes_through_and_no_plan_does_more_grip_is_named(robot):
+    """The least friction is then told by whole plans: it is enough, and much less is not."""
+    flight = stairs(0.18, 0.28, 5)
+    problem = sw.plan(flight, robot, friction=0.12).problem
+    assert problem.limit.quantity == "friction"
+    assert problem.limit.needed < 0.25
+    assert sw.plan(flight, robot, friction=problem.limit.needed).feasible
+    assert not sw.plan(flight, robot, friction=0.8 * problem.limit.needed).feasible
+
+
 def test_what_is_infeasible_shows_how_far_it_gets():
     plan = sw.plan(terrain([(-1.5, 0.0), (0.0, 0.0), (0.0, 1.3), (1.5, 1.3)]), friction=0.6)
     assert not plan.feasible
