@@ -32,6 +32,7 @@ def serve(host: str | None = None, port: int | None = None) -> int:
         log_config=None,
         access_log=False,
         timeout_graceful_shutdown=3,
+        ws="websockets-sansio",
         ws_per_message_deflate=False,
         server_header=False,
     )

@@ -64,9 +64,15 @@ def _robot(document: bytes) -> Robot:
     return parse(Robot, orjson.loads(document))
 
 
+@lru_cache(maxsize=4)
+def _artefacts(folder: str) -> Artefacts:
+    """The same object for the same folder: it looks once whether that is there."""
+    return Artefacts(Path(folder))
+
+
 def _keep_plan(plan: Plan, artefacts: str) -> Product:
     content = plan.model_dump_json().encode()
-    digest = Artefacts(Path(artefacts)).put(content)
+    digest = _artefacts(artefacts).put(content)
     summary = {
         "terrain": plan.terrain.name,
         "robot": plan.robot,
@@ -106,7 +112,7 @@ def simulate(question: Question, artefacts: str, gauge_path: str, live_path: str
         observe=Broadcast(live_path),
     )
     content = run.model_dump_json().encode()
-    digest = Artefacts(Path(artefacts)).put(content)
+    digest = _artefacts(artefacts).put(content)
     summary = {
         "terrain": plan.terrain.name,
         "robot": plan.robot,
@@ -126,7 +132,7 @@ def _plan_of(question: Question, artefacts: str) -> Plan:
     elif question.get("plan"):
         plan = Plan.model_validate(question["plan"])
     else:
-        content = Artefacts(Path(artefacts)).content(question["plan_digest"])
+        content = _artefacts(artefacts).content(question["plan_digest"])
         plan = Plan.model_validate_json(content)
     return plan
 
