@@ -153,6 +153,13 @@ def shared(browser: Browser, server: Server) -> Iterator[Product]:
 
 
 @pytest.fixture
+def offline_live(page: Page) -> Product:
+    """The page behind a proxy that knows no WebSockets."""
+    page.route_web_socket("**/plans/live", lambda socket: socket.close())
+    return Product(page)
+
+
+@pytest.fixture
 def product_with_scene(page: Page) -> Product:
     """The page with its 3-D scene."""
     return Product(page, scene=True)

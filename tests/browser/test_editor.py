@@ -14,6 +14,8 @@ import pytest
 from .conftest import TERRAIN
 
 if TYPE_CHECKING:
+    from playwright.sync_api import WebSocket
+
     from .conftest import Product
 
 pytestmark = [pytest.mark.browser]
@@ -45,6 +47,40 @@ def test_a_drag_is_one_undo_step_and_snaps_to_the_grid(product: Product) -> None
     assert product.corner(6) == before
     product.page.keyboard.press("Control+Shift+z")
     assert product.corner(6) == moved
+
+
+def _held(product: Product) -> None:
+    """Drag a corner and hold it until poses follow."""
+    box = product.vertex(6).locator("rect").bounding_box()
+    assert box is not None
+    product.page.evaluate("performance.clearMarks()")
+    product.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    product.page.mouse.down()
+    for k in range(8):
+        product.page.mouse.move(box["x"] + 4 * k, box["y"] - 3 * k)
+        product.page.wait_for_timeout(20)
+    product.page.wait_for_function("performance.getEntriesByName('stairwright:poses').length > 1")
+    product.page.mouse.up()
+    product.planned()
+
+
+def test_poses_follow_a_drag_over_the_live_connection(product: Product) -> None:
+    answers: list[str | bytes] = []
+
+    def listen(line: WebSocket) -> None:
+        line.on("framereceived", lambda answer: answers.append(answer))
+
+    product.page.on("websocket", listen)
+    product.page.reload()
+    product.planned().fresh()
+    _held(product)
+    assert any('"method":"critical"' in str(answer) for answer in answers)
+
+
+def test_poses_follow_a_drag_without_that_connection(offline_live: Product) -> None:
+    offline_live.open().fresh()
+    _held(offline_live)
+    assert offline_live.errors == []
 
 
 def test_x_cannot_pass_a_neighbour(product: Product) -> None:
