@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import gc
 import logging
 from functools import partial
 
@@ -104,6 +105,7 @@ class Services:
         await self.rollout_pool.start()
         await self.upload_pool.start()
         load_scenes()
+        gc.freeze()  # a collector that looks at all that was imported holds every request up
 
     async def stop(self) -> None:
         """End everything in order."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import gc
 import os
 import resource
 import signal
@@ -32,6 +33,7 @@ class Limits:
 def initialise(limits: Limits, board: str) -> None:
     """Set the limits and the signals; `board` is the path of the pool's board."""
     read_board(board)
+    gc.freeze()  # what was imported before the fork; a look at all of it takes longer than a plan
     signal.signal(signal.SIGTERM, signal.SIG_DFL)  # at once, even inside compiled code
     die_with_parent()
     if limits.nice:
