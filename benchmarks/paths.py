@@ -90,6 +90,7 @@ def profiles(count: int) -> Row:
 
 def run(quick: bool = False) -> list[Row]:
     """All rows."""
+    sw.plan("curb-015", ROBOT)  # all is imported and loaded
     gc.freeze()  # as the service's workers do
     repeat = 3 if quick else 15
     rows: list[Row] = []
