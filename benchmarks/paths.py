@@ -9,7 +9,9 @@ of them; a row says so. Stairwright's figures include terrain preparation and th
 from __future__ import annotations
 
 import gc
+import math
 import statistics
+import time
 from dataclasses import replace
 
 from dense_nlp import DensePath
@@ -88,6 +90,41 @@ def profiles(count: int) -> Row:
     )  # fmt: skip
 
 
+def steep(seed: int) -> Terrain:
+    """A random profile, drawn out upwards."""
+    _, terrain = random_profile(seed)
+    return Terrain(name=terrain.name, points=[(x, 1.6 * z) for x, z in terrain.points])
+
+
+def slope(degrees: float, height: float) -> Terrain:
+    """A ramp, down where `height` is negative."""
+    run = abs(height) / math.tan(math.radians(degrees))
+    points = [(-1.2, 0.0), (0.0, 0.0), (run, height), (run + 1.5, height)]
+    return Terrain(name=f"ramp-{degrees:g}", points=points)
+
+
+def ditch(width: float, depth: float) -> Terrain:
+    """A ditch with vertical sides."""
+    points = [(-1.2, 0.0), (0.0, 0.0), (0.0, -depth), (width, -depth), (width, 0.0)]
+    return Terrain(name=f"ditch-{width:g}", points=[*points, (width + 1.5, 0.0)])
+
+
+def verdicts(work: str, terrains: list[Terrain], friction: float) -> Row:
+    """What stops both robots, on those of `terrains` where something does."""
+    measured, asked = [], 0
+    for terrain in terrains:
+        for robot in ("a1_wheeled", "a1_wheeled_x"):
+            began = time.perf_counter()
+            plan = sw.plan(terrain, robot, friction)
+            asked += 1
+            if not plan.feasible:
+                measured.append(1e3 * (time.perf_counter() - began))
+    return Row(
+        work, "stairwright", statistics.median(measured), percentile(measured, 0.95), ratio=1.0,
+        solved=f"{len(measured)} of {asked} impossible",
+    )  # fmt: skip
+
+
 def run(quick: bool = False) -> list[Row]:
     """All rows."""
     sw.plan("curb-015", ROBOT)  # all is imported and loaded
@@ -107,6 +144,12 @@ def run(quick: bool = False) -> list[Row]:
         rows.append(ours(f"course of {length:g} m", hills(length), min(repeat, 3)))
     for height in (0.9, 1.5):
         rows.append(ours(f"verdict on a wall of {height:g} m", wall(height), min(repeat, 5)))
+    hard = [wall(h) for h in (0.9, 1.2, 1.5, 2.0, -1.2)]
+    hard += [slope(d, h) for d in (40, 50, 60) for h in (0.8, -0.8)]
+    hard += [ditch(0.3, 0.4), ditch(0.5, 1.2), ditch(0.8, 1.0)]
+    rows.append(verdicts("verdict on walls, ramps and ditches", hard, FRICTION))
+    mixed = [steep(seed) for seed in range(4 if quick else 60)]
+    rows.append(verdicts("verdict on steep random profiles, friction 0.5", mixed, 0.5))
     rows.append(profiles(5 if quick else 150))
     return rows
 
