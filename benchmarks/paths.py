@@ -93,7 +93,7 @@ def profiles(count: int) -> Row:
 def steep(seed: int) -> Terrain:
     """A random profile, drawn out upwards."""
     _, terrain = random_profile(seed)
-    return Terrain(name=terrain.name, points=[(x, 1.6 * z) for x, z in terrain.points])
+    return Terrain(name=terrain.name, points=[(x, 2.5 * z) for x, z in terrain.points])
 
 
 def slope(degrees: float, height: float) -> Terrain:
