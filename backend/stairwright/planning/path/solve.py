@@ -58,7 +58,7 @@ LADDER = (
     Rung(1.0, HOPE),
 )
 QUICK = (Rung(1.7, BOLD), Rung(1.7, HOPE))  # enough to confirm that a changed problem has a plan
-_THIN = 0.008  # m; a path with a thinner CoM margin is compared with that of the next coarse rung
+_THIN = 0.01  # m; a path with a thinner CoM margin is compared with that of the next coarse rung
 
 
 @dataclass(frozen=True)
