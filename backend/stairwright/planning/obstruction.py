@@ -18,14 +18,21 @@ import numpy as np
 
 from .path.solve import QUICK, Blocked, Course, Solved
 from .plan import Limit, Pose, Problem
-from .relaxation import AMPLE, CLOSE, Candidate, candidates_of, leg_torque, legs_with_grip
+from .relaxation import (
+    AMPLE,
+    CLOSE,
+    LONGEST,
+    Candidate,
+    bold_candidates,
+    candidates_of,
+    leg_torque,
+)
 
 Way = tuple[list[Pose], list[int], float]  # poses, key poses, duration [s]
 
 _ROUGH = 1.3  # relative precision of a factor before other quantities were asked
 _MORE = (1.005, 1.04, 1.1, 1.25, 1.6, 2.5, 4.0)  # on the least factor: planning is tried there
 _SURE = 1.06  # relative precision of a value that only whole plans can tell
-_LONGEST = (3.0, 8.0)  # times the legs' length; asked last, with ample friction
 _RIVALS = 2  # candidates for which planning is tried
 _ASKED = 2  # times that candidates are ranked anew, without those that led nowhere
 _THREADS = 2  # the compiled searches leave Python alone
@@ -205,9 +212,8 @@ def _problem(course: Course, blocked: Blocked, candidate: Candidate, value: floa
 
 
 def _hopeless(course: Course, blocked: Blocked, pool: Executor) -> Problem:
-    """No single change is enough: the leg length that opens the way with high friction."""
-    for longest in _LONGEST:
-        bold = legs_with_grip(course, longest)
+    """The problem where no single change of grip or robot is enough."""
+    for bold in bold_candidates(course):
         least = _least(course, bold, math.inf, 1.0 + CLOSE, pool)
         answer = _confirmed(course, [(bold, least[1])], pool) if least is not None else None
         if answer is not None:
@@ -215,6 +221,7 @@ def _hopeless(course: Course, blocked: Blocked, pool: Executor) -> Problem:
     at, progress, wheel = _place(course, blocked)
     message = (
         f"the {wheel} wheels stop at x = {at[0]:.2f} m, z = {at[1]:.2f} m, and neither legs of "
-        f"{bold.limit:.3g} m nor friction {max(AMPLE, course.friction):.2g} would change that"
+        f"{LONGEST:g} times the length with friction {AMPLE:g} nor a profile of a fiftieth of the "
+        "height would change that"
     )
     return Problem(kind="reach", at=at, progress=progress, message=message)

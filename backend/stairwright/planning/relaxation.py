@@ -6,15 +6,20 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+import numpy as np
+
 from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
 
 from .path.course import NoStand
 from .path.solve import BOLD, QUICK, Course, Solved, pose_course
 
 Kind = Literal["reach", "clearance", "statics", "torque", "joint_limit"]
 
+LONGEST = 3.0  # times the legs' length; no engineer would build more
 AMPLE = 1.5  # friction that leaves nothing to wish for
 CLOSE = 0.02  # relative precision of the value that searches tell
+_FLAT = 0.02  # of a profile's height
 _FINE = 1.7  # lattice of the questions, coarser than that of plans
 
 
@@ -92,16 +97,34 @@ def leg_torque(robot: Robot) -> Candidate:
     )  # fmt: skip
 
 
-def legs_with_grip(course: Course, longest: float) -> Candidate:
-    """Legs up to `longest` times as long, with ample friction."""
+def _legs_with_grip(course: Course) -> Candidate:
+    """Longer legs, with ample friction."""
     robot = course.robot
     legs = robot.thigh.length + robot.calf.length
     grip = max(AMPLE, course.friction)
     return Candidate(
-        "reach", "leg length", "m", legs, longest * legs,
+        "reach", "leg length", "m", legs, LONGEST * legs,
         lambda c, v: replace(_with_robot(c, _longer(robot, v / legs)), friction=grip),
         f" with friction {grip:.2g}",
     )  # fmt: skip
+
+
+def bold_candidates(course: Course) -> list[Candidate]:
+    """What is asked where nothing else is enough: legs with ample friction, a lower profile."""
+    points = np.array(course.terrain.points)
+    base, height = float(points[0, 1]), float(np.ptp(points[:, 1]))
+    bold = [_legs_with_grip(course)]
+
+    def lowered(c: Course, v: float) -> Course:
+        document = c.terrain.model_dump()
+        low = base + (points[:, 1] - base) * (v / height)
+        document["points"] = np.stack([points[:, 0], low], axis=1).tolist()
+        return pose_course(Terrain.model_validate(document), c.robot, c.friction, c.weights)
+
+    if height > 0.0:  # in the end it is flat, which opens every way
+        lower = Candidate("reach", "profile height", "m", height, _FLAT * height, lowered)
+        bold.append(lower)
+    return bold
 
 
 def _with_robot(course: Course, robot: Robot) -> Course:

@@ -124,6 +124,16 @@ def test_where_a_search_comes_through_and_no_plan_does_more_grip_is_named(robot)
     assert not sw.plan(flight, robot, friction=0.8 * problem.limit.needed).feasible
 
 
+def test_where_nothing_helps_the_height_that_would_do_is_named():
+    points = [(-1.2, 0.0), (0.0, 0.0), (0.0, 2.0), (1.5, 2.0)]
+    limit = sw.plan(terrain(points), "a1_wheeled", friction=0.6).problem.limit
+    assert limit.quantity == "profile height"
+    assert limit.available == pytest.approx(2.0)
+    for share, feasible in ((1.0, True), (1.2, False)):
+        low = [(x, z * share * limit.needed / 2.0) for x, z in points]
+        assert sw.plan(terrain(low), "a1_wheeled", friction=0.6).feasible == feasible
+
+
 def test_what_is_infeasible_shows_how_far_it_gets():
     plan = sw.plan(terrain([(-1.5, 0.0), (0.0, 0.0), (0.0, 1.3), (1.5, 1.3)]), friction=0.6)
     assert not plan.feasible
