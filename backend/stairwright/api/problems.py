@@ -13,7 +13,7 @@ from typing import Any
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
-from pydantic import BaseModel, Field, ValidationError
+from pydantic import BaseModel, Field
 from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
@@ -139,7 +139,7 @@ def problem_of(error: Exception) -> Problem:
     """What went wrong, as the client is told; what only the log may know is written there."""
     if isinstance(error, Problem):
         return error
-    if isinstance(error, (RequestValidationError, ValidationError)):
+    if isinstance(error, RequestValidationError):
         return from_validation(error.errors())
     if isinstance(error, InputError):
         return from_input_error(error)
@@ -163,8 +163,10 @@ def install(app: FastAPI) -> None:
     async def on_error(_: Request, error: Exception) -> Response:
         return problem_of(error).response()
 
-    for kind in (*_EXPECTED, Exception):
+    # Named, since Starlette raises again what only the handler of Exception has answered.
+    for kind in (Problem, RequestValidationError, InputError, Failure, OperationalError, OSError):
         app.add_exception_handler(kind, on_error)
+    app.add_exception_handler(Exception, on_error)
 
     @app.exception_handler(HTTPException)
     async def on_http(request: Request, error: HTTPException) -> Response:
@@ -181,10 +183,6 @@ def install(app: FastAPI) -> None:
 
 def _unavailable(detail: str) -> Problem:
     return Problem(503, detail, kind="unavailable", headers={"retry-after": "2"})
-
-
-# What a handler before Starlette's last one, which logs a traceback of its own, must answer.
-_EXPECTED = (Problem, RequestValidationError, InputError, Failure, OperationalError, OSError)
 
 
 def describe(*statuses: int) -> dict[int | str, dict[str, Any]]:

@@ -61,8 +61,7 @@ def _name(course: Course, blocked: Blocked, pool: Executor) -> Problem:
         ranked = _ranked(course, candidates, pool)
         answer = _confirmed(course, ranked, pool)
         if answer is not None:
-            candidate, ratio = answer
-            return _problem(course, blocked, candidate, candidate.at(ratio))
+            return _problem(course, blocked, *answer)
         tried = [candidate for candidate, _ in ranked]
         candidates = [one for one in candidates if one not in tried]
         if not tried or not candidates:
@@ -97,9 +96,10 @@ def _ranked(
         else:
             ranked.append((candidate, candidate.highest(ratio)))
     # What was told roughly is told precisely where it may be the least.
-    if least is not None and ratio > low:
-        high = ratio if ranked[0][0] is first else first.highest(ratio)
-        if high == ratio or (high > low and first.opens(course, high)):
+    if least is not None:
+        leads = ranked[0][0] is first
+        high = ratio if leads else first.highest(ratio)
+        if high > low and (leads or first.opens(course, high)):
             ratio = _narrow(partial(first.opens, course), low, high, 1.0 + CLOSE, pool)[1]
             ranked = [(first, ratio), *(one for one in ranked if one[0] is not first)]
     return ranked
@@ -181,7 +181,7 @@ def _torque(course: Course, blocked: Blocked) -> Problem | None:
     ratio = 1.001 * used / candidate.available
     if ratio <= 1.0 or not candidate.solves(course, ratio):
         return None
-    return _problem(course, blocked, candidate, candidate.at(ratio))
+    return _problem(course, blocked, candidate, ratio)
 
 
 def _place(course: Course, blocked: Blocked) -> tuple[tuple[float, float], float, str]:
@@ -194,7 +194,8 @@ def _place(course: Course, blocked: Blocked) -> tuple[tuple[float, float], float
     return (float(at[0]), float(at[1])), max(0.0, float(progress)), name
 
 
-def _problem(course: Course, blocked: Blocked, candidate: Candidate, value: float) -> Problem:
+def _problem(course: Course, blocked: Blocked, candidate: Candidate, ratio: float) -> Problem:
+    value = candidate.at(ratio)
     at, progress, wheel = _place(course, blocked)
     unit = "" if candidate.unit == "1" else f" {candidate.unit}"
     message = (
@@ -214,10 +215,9 @@ def _problem(course: Course, blocked: Blocked, candidate: Candidate, value: floa
 def _hopeless(course: Course, blocked: Blocked, pool: Executor) -> Problem:
     """The problem where no single change of grip or robot is enough."""
     for bold in bold_candidates(course):
-        least = _least(course, bold, math.inf, 1.0 + CLOSE, pool)
-        answer = _confirmed(course, [(bold, least[1])], pool) if least is not None else None
+        answer = _confirmed(course, _ranked(course, [bold], pool), pool)
         if answer is not None:
-            return _problem(course, blocked, bold, bold.at(answer[1]))
+            return _problem(course, blocked, *answer)
     at, progress, wheel = _place(course, blocked)
     message = (
         f"the {wheel} wheels stop at x = {at[0]:.2f} m, z = {at[1]:.2f} m, and neither legs of "

@@ -1,4 +1,4 @@
-"""Quantities of which more would open a way: of the terrain's grip, and of the robot."""
+"""Quantities of which more, or less, would open a way: of the terrain and of the robot."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _FINE = 1.7  # lattice of the questions, coarser than that of plans
 
 @dataclass(frozen=True)
 class Candidate:
-    """One quantity that may be raised (or, for `lower`, reduced)."""
+    """One quantity that may be raised, or reduced where `limit` is less than `available`."""
 
     kind: Kind
     quantity: str
@@ -77,7 +77,7 @@ def candidates_of(course: Course) -> list[Candidate]:
     return [
         Candidate("statics", "friction", "1", course.friction, max(2.0, 2.5 * course.friction),
                   lambda c, v: replace(c, friction=v)),
-        Candidate("reach", "leg length", "m", legs, 3.0 * legs,
+        Candidate("reach", "leg length", "m", legs, LONGEST * legs,
                   lambda c, v: _with_robot(c, _longer(robot, v / legs))),
         Candidate("clearance", "trunk height", "m", robot.trunk.size[2], 0.1 * robot.trunk.size[2],
                   lambda c, v: _with_robot(c, _flatter(robot, v))),

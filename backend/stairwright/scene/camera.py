@@ -76,8 +76,9 @@ def keep_in_view(clients: Iterable[Any], robot: Floats) -> None:
 
 def point(client: Any, view: View) -> None:
     """Give a viewer's camera a view."""
-    client.camera.fov = FIELD_OF_VIEW
-    _move(client, view)
+    with client.atomic():
+        client.camera.fov = FIELD_OF_VIEW
+        _move(client, view)
 
 
 def _move(client: Any, view: View) -> None:

@@ -10,25 +10,23 @@ from __future__ import annotations
 
 import asyncio
 import gzip
-import logging
 import secrets
 import time
 from typing import Any
 
 import orjson
 from fastapi import APIRouter, WebSocket
-from pydantic import Field
+from pydantic import Field, ValidationError
 
 from stairwright.api.bodies import PlanRequest
-from stairwright.api.middleware import PLANS_PATH, owner_of, request_id
-from stairwright.api.problems import Problem, problem_of
+from stairwright.api.middleware import PLANS_PATH, owner_of, record, request_id
+from stairwright.api.problems import Problem, from_validation, problem_of
 from stairwright.api.services import Services
 from stairwright.documents import Model
 
-from .plans import look_up
+from .plans import answered
 
 router = APIRouter(prefix="/plans")
-logger = logging.getLogger("stairwright.access")
 _PATH = f"{PLANS_PATH}/live"
 
 
@@ -62,10 +60,13 @@ async def _answer(websocket: WebSocket, content: str | bytes) -> None:
     try:
         asked = _parsed(content, services.settings.body_limit)
         number = asked.get("id")
-        question = LiveQuestion.model_validate(asked)
-        if question.body is None:
+        body = _question(asked).body
+        if body is None:
             return
-        plan = await _plan(services, question.body, owner_of(websocket.scope))
+        answer = await answered(services, body, owner_of(websocket.scope))
+        plan = answer.content
+        if answer.cached:
+            plan = await asyncio.to_thread(gzip.decompress, plan)
         head = orjson.dumps({"id": number, "status": status})
         reply = head[:-1] + b',"plan":' + plan + b"}"
     except Exception as error:  # noqa: BLE001 - told to the client, and to the log where it must
@@ -75,9 +76,7 @@ async def _answer(websocket: WebSocket, content: str | bytes) -> None:
         reply = orjson.dumps({"id": known, "status": status, "problem": problem.document})
     await websocket.send_text(reply.decode())
     seconds = time.perf_counter() - start
-    services.metrics.observe("LIVE", _PATH, status, seconds)
-    told = {"ms": round(seconds * 1e3, 1), "client": owner_of(websocket.scope)}
-    logger.info("LIVE %s %d", _PATH, status, extra=told)
+    record(services.metrics, websocket.scope, "LIVE", _PATH, status, seconds)
 
 
 def _parsed(content: str | bytes, limit: int) -> dict[str, Any]:
@@ -92,14 +91,8 @@ def _parsed(content: str | bytes, limit: int) -> dict[str, Any]:
     return asked
 
 
-async def _plan(services: Services, body: PlanRequest, owner: str) -> bytes:
-    """The plan as JSON."""
-    question, answer = await asyncio.to_thread(look_up, services, body)
-    if answer is None:
-        answer = await services.planning.solve(question, owner)
-    services.metrics.plans.labels(str(answer.cached).lower()).inc()
-    return (
-        await asyncio.to_thread(gzip.decompress, answer.content)
-        if answer.cached
-        else answer.content
-    )
+def _question(asked: dict[str, Any]) -> LiveQuestion:
+    try:
+        return LiveQuestion.model_validate(asked)
+    except ValidationError as error:
+        raise from_validation(error.errors()) from None

@@ -57,20 +57,25 @@ async def post_plan(
     request: Request, services: Service, owner: Owner, body: PlanRequest, once: Idempotent
 ) -> Response:
     """Plan; the answer is the plan, an infeasible one too. The same question has the same id."""
-    question, answer = await asyncio.to_thread(look_up, services, body)
-    if answer is None:
-        answer = await unless_gone(request, services.planning.solve(question, owner))
+    answer = await unless_gone(request, answered(services, body, owner))
     if answer is None:
         return Response(status_code=CLIENT_GONE)
-    services.metrics.plans.labels(str(answer.cached).lower()).inc()
     once.result = answer.entry.id
     headers = {"content-location": f"/api/v1/plans/{answer.entry.id}"}
     send = stored_json if answer.cached else fresh_json
     return await send(request, answer.content, answer.entry.digest, headers)
 
 
-def look_up(services: Services, body: PlanRequest) -> tuple[PlanQuestion, Answer | None]:
-    """The question and its answer, if there is one; reads the database, so call it in a thread."""
+async def answered(services: Services, body: PlanRequest, owner: str) -> Answer:
+    """The stored answer to a question, else a new one."""
+    question, answer = await asyncio.to_thread(_look_up, services, body)
+    if answer is None:
+        answer = await services.planning.solve(question, owner)
+    services.metrics.plans.labels(str(answer.cached).lower()).inc()
+    return answer
+
+
+def _look_up(services: Services, body: PlanRequest) -> tuple[PlanQuestion, Answer | None]:
     question = plan_question(services, body)
     return question, services.planning.stored(question)
 
