@@ -19,7 +19,7 @@ from stairwright.statics.contact import CAP
 from .contacts import GENTLE, TOUCH, lagged_interval, pair_interval
 from .ground import Ground
 from .legs import Leg
-from .tables import INF, Floats32, Lattice, LegTable
+from .tables import INF, Floats32, Lattice, LegTable, moments
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -221,10 +221,11 @@ def quality(w: World, cells: Cells, c: int, out: Bytes) -> bool:
     share = np.float32(w.robot.trunk_mass / w.robot.mass)
     least = np.float32(w.com)
     scale = np.float32(1.0 / FULL_MARGIN)
-    step = np.float32(lat.step)
+    step, advance = np.float32(lat.step), share * np.float32(lat.step)
     one = np.float32(1.0)
     found = False
     x_first = np.float32(cells.x0[c] * lat.step)
+    carried = mass * (w.front_table.carried[i] + w.rear_table.carried[j])
     for t in range(lat.nt):
         tt = cells.t0[c] + t
         for z in range(lat.nz):
@@ -232,17 +233,17 @@ def quality(w: World, cells: Cells, c: int, out: Bytes) -> bool:
             if b <= a:
                 continue
             fc = w.front_table.cost[i, tt, fz, a + sf : b + sf]
-            fm = w.front_table.moment[i, tt, fz, a + sf : b + sf]
+            fm = moments(w.front_table, i, tt, fz, a + sf, b + sf)
             rc = w.rear_table.cost[j, tt, rz, a + sr : b + sr]
-            rm = w.rear_table.moment[j, tt, rz, a + sr : b + sr]
+            rm = moments(w.rear_table, j, tt, rz, a + sr, b + sr)
             tc = w.trunk[tt, tz, a + st : b + st]
             begin = row_start(lat, t, z)
             row = out[begin + a : begin + b]
             some = np.uint8(0)
-            first = x_first + np.float32(a) * step
+            first = share * (x_first + np.float32(a) * step) + carried
             for x in range(b - a):
                 e = fc[x] + rc[x] + tc[x]
-                com = share * (first + np.float32(x) * step) + mass * (fm[x] + rm[x])
+                com = first + np.float32(x) * advance + mass * (fm[x] + rm[x])
                 m = min(com - lo, hi - com)
                 mr = min(com - rlo, rhi - com)
                 base = np.float32(99.0) * min(one, (m - least) * scale) + one

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from .cells import FORWARD, MOVES, Cells, World, columns, row_start, volume_size
 from .kernels import convolve, gather_cost, reach
-from .tables import INF, Floats32
+from .tables import INF, Floats32, moments
 from .volumes import Volumes, offset
 
 Floats = NDArray[np.float64]
@@ -57,7 +57,8 @@ def pose_costs(
     share = np.float32(w.robot.trunk_mass / w.robot.mass)
     wish, heavy = np.float32(pulls[3]), np.float32(0.25 * pulls[0])
     worst, zero, half = np.float32(-0.06), np.float32(0.0), np.float32(0.5)
-    step, one = np.float32(lat.step), np.float32(1.0)
+    advance, one = share * np.float32(lat.step), np.float32(1.0)
+    carried = mass * (w.front_table.carried[i] + w.rear_table.carried[j])
     page = lat.row * (lat.nz + 4)
     for t in range(max(0, lo // page - 2), min(lat.nt, hi // page - 1)):
         tt = cells.t0[c] + t
@@ -77,16 +78,16 @@ def pose_costs(
             out[k + b : k + lat.nx] = INF
             rise = ((cells.z0[c] + z) * lat.step - mean) / pulls[2] - 1.0
             base = np.float32(0.075 * pulls[1] * lean * lean + 0.3 * rise * rise)
-            first = np.float32((cells.x0[c] + a) * lat.step)
+            first = share * np.float32((cells.x0[c] + a) * lat.step) + carried
             fc = w.front_table.cost[i, tt, fz, a + sf : b + sf]
-            fm = w.front_table.moment[i, tt, fz, a + sf : b + sf]
+            fm = moments(w.front_table, i, tt, fz, a + sf, b + sf)
             rc = w.rear_table.cost[j, tt, rz, a + sr : b + sr]
-            rm = w.rear_table.moment[j, tt, rz, a + sr : b + sr]
+            rm = moments(w.rear_table, j, tt, rz, a + sr, b + sr)
             tc = w.trunk[tt, tz, a + st : b + st]
             row, wide = out[k + a : k + b], width[k + a : k + b]
             for x in range(b - a):
                 e = fc[x] + rc[x] + tc[x]
-                com = share * (first + np.float32(x) * step) + mass * (fm[x] + rm[x])
+                com = first + np.float32(x) * advance + mass * (fm[x] + rm[x])
                 h = max(zero, wish - max(worst, min(com - low, high - com))) / wish
                 g = max(zero, wish - max(worst, min(com - rlow, rhigh - com))) / wish
                 cost = half * e + base + heavy * (h * h + g * g)

@@ -116,11 +116,13 @@ def calf_joint(dx: float, dz: float, thigh: float, calf: float, side: float) -> 
 
 
 @nb.njit(cache=True)
-def leg_gap(a: Floats, b: Floats, rt: float, rc: float, rw: float) -> float:
+def legs_gap(p: Planar, points: Floats) -> float:
     """Distance of two legs in one plane [m]: thighs, calves, wheels; negative if they touch.
 
-    `a` and `b` are (3, 2): hip, knee, wheel centre.
+    `points` are (2, 3, 2): hip, knee, wheel centre of either.
     """
+    a, b = points[0], points[1]
+    rt, rc, rw = p.thigh_radius, p.calf_radius, p.wheel_radius
     best = math.hypot(a[2, 0] - b[2, 0], a[2, 1] - b[2, 1]) - 2.0 * rw
     for i in range(2):
         ri = rt if i == 0 else rc
@@ -140,6 +142,58 @@ def leg_gap(a: Floats, b: Floats, rt: float, rc: float, rw: float) -> float:
 # Columns of a pose's record.
 Q0, COM_X, COM_Z, TRUNK, LINKS, LEGS, SLACK, REACH = 0, 4, 5, 6, 7, 8, 9, 10
 RECORD = 11
+
+
+@nb.njit(cache=True)
+def posture(
+    p: Planar, front: Leg, rear: Leg, body: Floats, wheels: Floats, points: Floats, out: Floats
+) -> None:
+    """Fill what `evaluate` tells without looking at the ground: joints, CoM, slack, reach."""
+    c, s = math.cos(body[2]), math.sin(body[2])
+    mx, mz = p.trunk_mass * body[0], p.trunk_mass * body[1]
+    out[SLACK], out[REACH] = np.inf, np.inf
+    for k in range(2):
+        leg = front if k == 0 else rear
+        hx = body[0] + c * leg.hip_x + s * leg.hip_z
+        hz = body[1] - s * leg.hip_x + c * leg.hip_z
+        wx, wz = wheels[2 * k], wheels[2 * k + 1]
+        kx, kz = knee_point(wx - hx, wz - hz, p.thigh, p.calf, leg.knee)
+        q1 = thigh_joint(kx, kz, body[2], leg)
+        q2 = calf_joint(wx - hx, wz - hz, p.thigh, p.calf, leg.knee)
+        kx, kz = kx + hx, kz + hz
+        points[k, 0, 0], points[k, 0, 1] = hx, hz
+        points[k, 1, 0], points[k, 1, 1] = kx, kz
+        points[k, 2, 0], points[k, 2, 1] = wx, wz
+        out[Q0 + 2 * k], out[Q0 + 2 * k + 1] = q1, q2
+        mx += p.thigh_mass * (hx + p.thigh_com * (kx - hx)) + p.wheel_mass * wx
+        mx += p.calf_mass * (kx + p.calf_com * (wx - kx))
+        mz += p.thigh_mass * (hz + p.thigh_com * (kz - hz)) + p.wheel_mass * wz
+        mz += p.calf_mass * (kz + p.calf_com * (wz - kz))
+        slack = min(q1 - leg.thigh_min, leg.thigh_max - q1)
+        slack = min(slack, min(q2 - leg.calf_min, leg.calf_max - q2))
+        out[SLACK] = min(out[SLACK], slack)
+        d = math.hypot(wx - hx, wz - hz)
+        out[REACH] = min(out[REACH], min(d - leg.reach_min, leg.reach_max - d))
+    out[COM_X], out[COM_Z] = mx / p.mass, mz / p.mass
+
+
+@nb.njit(cache=True)
+def trunk_gap(g: Ground, p: Planar, body: Floats, look: float) -> float:
+    """Clearance of the trunk [m]."""
+    c, s = math.cos(body[2]), math.sin(body[2])
+    return float(box_clearance(g, body[0], body[1], c, s, p.half_length, p.half_height, look))
+
+
+@nb.njit(cache=True)
+def links_gap(g: Ground, p: Planar, points: Floats, look: float) -> float:
+    """Least clearance of thighs and calves, from the `points` of `posture` [m]."""
+    least = look
+    for k in range(2):
+        (hx, hz), (kx, kz), (wx, wz) = points[k, 0], points[k, 1], points[k, 2]
+        thigh = link_clearance(g, hx, hz, kx, kz, p.thigh_radius, look)
+        calf = link_clearance(g, kx, kz, wx, wz, p.calf_radius, look)
+        least = min(least, min(thigh, calf))
+    return least
 
 
 @nb.njit(cache=True)
@@ -167,34 +221,7 @@ def evaluate(
         points: (2, 3, 2) filled with hip, knee, wheel of the front and the rear leg.
         out: The record.
     """
-    c, s = math.cos(body[2]), math.sin(body[2])
-    mx, mz = p.trunk_mass * body[0], p.trunk_mass * body[1]
-    out[LINKS], out[SLACK], out[REACH] = look, np.inf, np.inf
-    for k in range(2):
-        leg = front if k == 0 else rear
-        hx = body[0] + c * leg.hip_x + s * leg.hip_z
-        hz = body[1] - s * leg.hip_x + c * leg.hip_z
-        wx, wz = wheels[2 * k], wheels[2 * k + 1]
-        kx, kz = knee_point(wx - hx, wz - hz, p.thigh, p.calf, leg.knee)
-        q1 = thigh_joint(kx, kz, body[2], leg)
-        q2 = calf_joint(wx - hx, wz - hz, p.thigh, p.calf, leg.knee)
-        kx, kz = kx + hx, kz + hz
-        points[k, 0, 0], points[k, 0, 1] = hx, hz
-        points[k, 1, 0], points[k, 1, 1] = kx, kz
-        points[k, 2, 0], points[k, 2, 1] = wx, wz
-        out[Q0 + 2 * k], out[Q0 + 2 * k + 1] = q1, q2
-        mx += p.thigh_mass * (hx + p.thigh_com * (kx - hx)) + p.wheel_mass * wx
-        mx += p.calf_mass * (kx + p.calf_com * (wx - kx))
-        mz += p.thigh_mass * (hz + p.thigh_com * (kz - hz)) + p.wheel_mass * wz
-        mz += p.calf_mass * (kz + p.calf_com * (wz - kz))
-        thigh = link_clearance(g, hx, hz, kx, kz, p.thigh_radius, look)
-        calf = link_clearance(g, kx, kz, wx, wz, p.calf_radius, look)
-        out[LINKS] = min(out[LINKS], min(thigh, calf))
-        slack = min(q1 - leg.thigh_min, leg.thigh_max - q1)
-        slack = min(slack, min(q2 - leg.calf_min, leg.calf_max - q2))
-        out[SLACK] = min(out[SLACK], slack)
-        d = math.hypot(wx - hx, wz - hz)
-        out[REACH] = min(out[REACH], min(d - leg.reach_min, leg.reach_max - d))
-    out[COM_X], out[COM_Z] = mx / p.mass, mz / p.mass
-    out[TRUNK] = box_clearance(g, body[0], body[1], c, s, p.half_length, p.half_height, look)
-    out[LEGS] = leg_gap(points[0], points[1], p.thigh_radius, p.calf_radius, p.wheel_radius)
+    posture(p, front, rear, body, wheels, points, out)
+    out[TRUNK] = trunk_gap(g, p, body, look)
+    out[LINKS] = links_gap(g, p, points, look)
+    out[LEGS] = legs_gap(p, points)

@@ -11,7 +11,21 @@ from numpy.typing import NDArray
 from stairwright.robot.description import Planar
 
 from .ground import Ground
-from .legs import COM_X, LEGS, LINKS, REACH, RECORD, SLACK, TRUNK, Leg, evaluate
+from .legs import (
+    COM_X,
+    LEGS,
+    LINKS,
+    REACH,
+    RECORD,
+    SLACK,
+    TRUNK,
+    Leg,
+    evaluate,
+    legs_gap,
+    links_gap,
+    posture,
+    trunk_gap,
+)
 
 Floats = NDArray[np.float64]
 
@@ -139,7 +153,6 @@ def polish(
     turn: float,
     fixed: NDArray[np.bool_],
     rounds: int,
-    look: float,
 ) -> float:
     """Levenberg-Marquardt on trunk poses `body` (n, 3), changed in place; returns the cost left.
 
@@ -153,11 +166,11 @@ def polish(
         turn: Length that one radian counts as in those differences [m].
         fixed: (n,) nodes that must not move.
         rounds: Most iterations.
-        look: Range of clearances looked at [m].
     """
     n = len(body)
+    look = max(wish[W_TRUNK], wish[W_LINKS])  # nothing farther away pulls
     unit = np.array([1.0, 1.0, turn])
-    record, points = np.empty(RECORD), np.empty((2, 3, 2))
+    records, record, points = np.empty((n, RECORD)), np.empty(RECORD), np.empty((2, 3, 2))
     r, rp, jac = np.empty((n, TERMS)), np.empty(TERMS), np.empty((TERMS, 3))
     h, grad = np.zeros((3 * n, 7)), np.zeros(3 * n)
     kept_h, kept_grad, best = h.copy(), grad.copy(), body.copy()
@@ -166,8 +179,8 @@ def polish(
     for _ in range(rounds):
         cost = _uneven(body, unit, slow, even)
         for k in range(n):
-            evaluate(g, p, front, rear, body[k], wheels[k], look, points, record)
-            _residuals(record, body[k], wheels[k], spans[k], wish, r[k])
+            evaluate(g, p, front, rear, body[k], wheels[k], look, points, records[k])
+            _residuals(records[k], body[k], wheels[k], spans[k], wish, r[k])
             for m in range(TERMS):
                 cost += r[k, m] * r[k, m]
             if cost >= least * (1.0 - 1e-12):
@@ -188,7 +201,15 @@ def polish(
                 for v in range(3):
                     x[:] = body[k]
                     x[v] += 1e-5
-                    evaluate(g, p, front, rear, x, wheels[k], look, points, record)
+                    record[:] = records[k]
+                    posture(p, front, rear, x, wheels[k], points, record)
+                    # What is far enough from everything stays so; most of the time goes here.
+                    if r[k, 6] > 0.0:
+                        record[TRUNK] = trunk_gap(g, p, x, look)
+                    if r[k, 7] > 0.0:
+                        record[LINKS] = links_gap(g, p, points, look)
+                    if r[k, 8] > 0.0:
+                        record[LEGS] = legs_gap(p, points)
                     _residuals(record, x, wheels[k], spans[k], wish, rp)
                     for m in range(TERMS):
                         jac[m, v] = (rp[m] - r[k, m]) * 1e5

@@ -86,7 +86,7 @@ def refine(
         po.polish(
             ground, p, *legs, nodes_body, wheels, spans, _wishes(robot, weights, share),
             20.0 * weights.smoothness / share, 600.0 * soft * weights.smoothness / share**3,
-            0.25 * scale(robot), fixed, 40, 0.06 * scale(robot),
+            0.25 * scale(robot), fixed, 40,
         )  # fmt: skip
         dense_s, dense_body = densify(path.pieces, path.corners, p, legs, nodes_s, nodes_body)
         record = evaluate_path(path, ground, robot, legs, dense_s, dense_body, friction)

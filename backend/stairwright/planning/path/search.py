@@ -84,8 +84,10 @@ class Search:
 
         grid = hips(rear)
         self.rear_table = table(rear, grid)
-        mirrored = front._replace(hip_x=0.0, hip_z=0.0) != rear._replace(hip_x=0.0, hip_z=0.0)
-        self.front_table = table(front, hips(front) if mirrored else grid)
+        same = all(
+            getattr(front, a) == getattr(rear, a) for a in ("knee", "reach_min", "reach_max")
+        )
+        self.front_table = table(front, grid if same else hips(front))
         self.ground = ground
         self.far = 2 * max(leg.reach_max for leg in self.legs) + math.hypot(
             front.hip_x - rear.hip_x, front.hip_z - rear.hip_z

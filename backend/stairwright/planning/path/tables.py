@@ -18,6 +18,7 @@ from stairwright.robot.description import Planar
 
 from .ground import Ground, box_clearance, link_clearance
 from .legs import Leg, knee_point
+from .links import faces_near, nearer
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -67,15 +68,20 @@ class LegTable(NamedTuple):
 
     Attributes:
         cost: Cost, INF where impossible.
-        moment: CoM moment of the leg pair about the world's origin [kg m].
+        moment: CoM moment of the leg pair about the wheel's centre, on the hip grid [kg m].
+        carried: What to add about the world's origin, per sample [kg m].
         x0, z0: Lattice index of the first column and row, per sample and pitch.
+        u, v: Column and row of the hip grid that those read.
         first, last: First possible column of a row and the one after the last (0, 0 if none).
     """
 
     cost: Floats32
     moment: Floats32
+    carried: Floats32
     x0: Ints
     z0: Ints
+    u: Ints
+    v: Ints
     first: Bytes
     last: Bytes
 
@@ -114,7 +120,7 @@ def hip_grid(
 ) -> tuple[Floats32, Floats32, Floats32]:
     """Cost, moment and world thigh angle per wheel sample and hip position, split by parity.
 
-    Arrays are (n, 2, 2, m, m), the last two (1, 2, 2, m, m): sample, parity of row and column,
+    Arrays are (n, 2, 2, m, m), the last two (2, 2, m, m): sample, parity of row and column,
     row // 2, column // 2, so that the body lattice (every second hip position) reads neighbours in
     memory. Moments [kg m] are about the wheel's centre.
     """
@@ -122,13 +128,19 @@ def hip_grid(
     m = size // 2 + 1
     fine = 0.5 * lat.step
     cost = np.full((n, 2, 2, m, m), INF, np.float32)
-    moment = np.zeros((1, 2, 2, m, m), np.float32)
-    angle = np.zeros((1, 2, 2, m, m), np.float32)
+    moment = np.zeros((2, 2, m, m), np.float32)
+    angle = np.zeros((2, 2, m, m), np.float32)
     near, far = leg.reach_min + b.reach, leg.reach_max - b.reach
     far = min(far, 0.9995 * (p.thigh + p.calf))
     span = leg.reach_max - leg.reach_min
     soft = 0.15 * (p.thigh + p.calf) / 2.0
     load = p.mass * 9.81 / 4.0 / p.leg_torque
+    thigh_far, calf_far = soft + p.thigh_radius, soft + p.calf_radius
+    deepest = -min(p.thigh_radius, p.calf_radius)  # no link in the ground has more clearance
+    faces, wheels = faces_near(g, centres[:, 0], centres[:, 1], far + max(thigh_far, calf_far))
+    x = (centres[:, 0] - centres[0, 0]).astype(np.float32)
+    z = (centres[:, 1] - centres[0, 1]).astype(np.float32)
+    thigh, calf, link = np.empty(n, np.float32), np.empty(n, np.float32), np.empty(4, np.float32)
     for v in range(size):
         dz = (v - lat.half) * fine
         for u in range(size):
@@ -140,19 +152,32 @@ def hip_grid(
             f = max(0.0, leg.reach_min + 0.1 * span - d) + max(0.0, d - leg.reach_max + 0.1 * span)
             f /= 0.1 * span
             tau = load * load * ((dx + ax) ** 2 + dx * dx)
-            at = (0, v % 2, u % 2, v // 2, u // 2)
+            at = (v % 2, u % 2, v // 2, u // 2)
             angle[at] = math.atan2(-ax, -az)
             moment[at] = p.thigh_mass * (dx + p.thigh_com * ax)
             moment[at] += p.calf_mass * (1.0 - p.calf_com) * (dx + ax)
             base = 0.2 * f * f + pulls.torque * tau
+            thigh[:], calf[:] = thigh_far * thigh_far, calf_far * calf_far
+            link[0], link[1], link[2], link[3] = dx, dz, ax, az
+            nearer(faces, wheels, x, z, link, thigh_far, thigh)
+            link[0], link[1], link[2], link[3] = dx + ax, dz + az, -dx - ax, -dz - az
+            nearer(faces, wheels, x, z, link, calf_far, calf)
             for i in range(n):
-                wx, wz = centres[i, 0], centres[i, 1]
-                hx, hz = wx + dx, wz + dz
-                kx, kz = hx + ax, hz + az
-                c = link_clearance(g, hx, hz, kx, kz, p.thigh_radius, soft)
-                if c < b.links:
-                    continue
-                c = min(c, link_clearance(g, kx, kz, wx, wz, p.calf_radius, soft))
+                if thigh[i] < 0.0 or calf[i] < 0.0:
+                    if deepest < b.links:
+                        continue
+                    hx, hz = centres[i, 0] + dx, centres[i, 1] + dz
+                    kx, kz = hx + ax, hz + az
+                    c = min(
+                        link_clearance(g, hx, hz, kx, kz, p.thigh_radius, soft),
+                        link_clearance(
+                            g, kx, kz, centres[i, 0], centres[i, 1], p.calf_radius, soft
+                        ),
+                    )
+                else:
+                    c = min(
+                        math.sqrt(thigh[i]) - p.thigh_radius, math.sqrt(calf[i]) - p.calf_radius
+                    )
                 if c < b.links:
                     continue
                 e = max(0.0, soft - c) / soft
@@ -185,8 +210,8 @@ def on_lattice(
     n, m = len(centres), cost.shape[3]
     fine = 0.5 * lat.step
     out = np.full((n, lat.pitches, m, lat.row), INF, np.float32)
-    mom = np.zeros((n, lat.pitches, m, lat.row), np.float32)
     x0, z0 = np.empty((n, lat.pitches), np.int32), np.empty((n, lat.pitches), np.int32)
+    us, vs = np.empty((n, lat.pitches), np.int32), np.empty((n, lat.pitches), np.int32)
     first = np.zeros((n, lat.pitches, m), np.uint8)
     last = np.zeros((n, lat.pitches, m), np.uint8)
     middle = np.float32(0.5 * (leg.thigh_min + leg.thigh_max))
@@ -195,7 +220,6 @@ def on_lattice(
     soft = np.float32(0.15)
     zero, weight = np.float32(0.0), np.float32(0.2)
     for i in range(n):
-        carried = np.float32(mass * centres[i, 0])
         for t in range(lat.pitches):
             pitch = (t - lat.pitches // 2) * lat.turn
             c, s = math.cos(pitch), math.sin(pitch)
@@ -205,15 +229,14 @@ def on_lattice(
             bz = math.ceil((centres[i, 1] - lat.half * fine - oz) / lat.step)
             u = int(round((bx * lat.step + ox - centres[i, 0]) / fine)) + lat.half
             v = int(round((bz * lat.step + oz - centres[i, 1]) / fine)) + lat.half
-            x0[i, t], z0[i, t] = bx, bz
+            x0[i, t], z0[i, t], us[i, t], vs[i, t] = bx, bz, u, v
             shift = np.float32(pitch) + middle
             for j in range(m - v // 2):
                 src = cost[like[i], v % 2, u % 2, v // 2 + j]
-                ang = angle[0, v % 2, u % 2, v // 2 + j]
-                mos = moment[0, v % 2, u % 2, v // 2 + j]
+                ang = angle[v % 2, u % 2, v // 2 + j]
                 width = min(lat.row, m - u // 2)
-                src, ang, mos = src[u // 2 :], ang[u // 2 :], mos[u // 2 :]
-                value, drag = out[i, t, j], mom[i, t, j]
+                src, ang = src[u // 2 :], ang[u // 2 :]
+                value = out[i, t, j]
                 for k in range(width):
                     w = ang[k] - shift
                     w = w - full * np.floor((w + turn_over) / full)
@@ -221,8 +244,6 @@ def on_lattice(
                     e = max(zero, soft - room) / soft
                     fits = src[k] + weight * e * e
                     value[k] = fits if room >= zero else INF
-                for k in range(width):
-                    drag[k] = mos[k] + carried
                 a, b = 0, width
                 while a < width and value[a] >= INF:
                     a += 1
@@ -230,7 +251,16 @@ def on_lattice(
                     b -= 1
                 if b > a:
                     first[i, t, j], last[i, t, j] = a, b
-    return LegTable(out, mom, x0, z0, first, last)
+    carried = (mass * centres[:, 0]).astype(np.float32)
+    return LegTable(out, moment, carried, x0, z0, us, vs, first, last)
+
+
+@nb.njit(cache=True)
+def moments(table: LegTable, i: int, t: int, row: int, a: int, b: int) -> Floats32:
+    """Columns [a, b) of the moments of sample `i` at pitch `t`, less what it `carried`."""
+    u, v = table.u[i, t], table.v[i, t]
+    out: Floats32 = table.moment[v % 2, u % 2, v // 2 + row, u // 2 + a : u // 2 + b]
+    return out
 
 
 @nb.njit(cache=True, nogil=True)
