@@ -9,14 +9,13 @@ planning again with it: the answer is physically true, not a guess from the sear
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable
-from concurrent.futures import Executor, ThreadPoolExecutor
-from functools import lru_cache, partial
+from concurrent.futures import Executor
+from functools import partial
 
 import numpy as np
 
-from .path.solve import QUICK, Blocked, Course, Solved
+from .path.solve import Blocked, Course
 from .plan import Limit, Pose, Problem
 from .relaxation import (
     AMPLE,
@@ -27,6 +26,7 @@ from .relaxation import (
     candidates_of,
     leg_torque,
 )
+from .threads import search_threads
 
 Way = tuple[list[Pose], list[int], float]  # poses, key poses, duration [s]
 
@@ -35,7 +35,6 @@ _MORE = (1.005, 1.04, 1.1, 1.25, 1.6, 2.5, 4.0)  # on the least factor: planning
 _SURE = 1.06  # relative precision of a value that only whole plans can tell
 _RIVALS = 2  # candidates for which planning is tried
 _ASKED = 2  # times that candidates are ranked anew, without those that led nowhere
-_THREADS = 2  # the compiled searches leave Python alone
 
 
 def explain(course: Course, blocked: Blocked) -> tuple[Problem, Way]:
@@ -45,14 +44,14 @@ def explain(course: Course, blocked: Blocked) -> tuple[Problem, Way]:
         course: The question without an answer.
         blocked: What its solution attempt returned.
     """
-    pool = _pool(os.getpid())
+    pool = search_threads()
     way = pool.submit(course.partial)
     problem = _name(course, blocked, pool)
     return problem, way.result()
 
 
 def _name(course: Course, blocked: Blocked, pool: Executor) -> Problem:
-    if blocked.opened:
+    if blocked.torque:
         torque = _torque(course, blocked)
         if torque is not None:
             return torque
@@ -67,12 +66,6 @@ def _name(course: Course, blocked: Blocked, pool: Executor) -> Problem:
         if not tried or not candidates:
             break
     return _hopeless(course, blocked, pool)
-
-
-@lru_cache(maxsize=1)
-def _pool(_process: int) -> Executor:
-    """Threads that live as long as the process: those of a search keep the memory it needs."""
-    return ThreadPoolExecutor(_THREADS, "obstruction")
 
 
 def _ranked(
@@ -174,8 +167,8 @@ def _confirmed(
 def _torque(course: Course, blocked: Blocked) -> Problem | None:
     """The problem if joint torque alone stands in the way."""
     candidate = leg_torque(course.robot)
-    strong = candidate.change(course, candidate.limit).solve(QUICK)
-    if not isinstance(strong, Solved):
+    strong = candidate.change(course, candidate.limit).quick()
+    if strong is None:
         return None
     used = max(candidate.limit - pose.margins.torque for pose in strong.poses)
     ratio = 1.001 * used / candidate.available

@@ -12,7 +12,7 @@ from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
 from .path.course import NoStand
-from .path.solve import BOLD, QUICK, Course, Solved, pose_course
+from .path.solve import BOLD, Course, pose_course
 
 Kind = Literal["reach", "clearance", "statics", "torque", "joint_limit"]
 
@@ -62,7 +62,7 @@ class Candidate:
             changed = self.change(course, self.at(ratio))
         except NoStand:
             return False
-        return isinstance(changed.solve(QUICK), Solved)
+        return changed.quick() is not None
 
 
 def candidates_of(course: Course) -> list[Candidate]:

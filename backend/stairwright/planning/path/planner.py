@@ -7,6 +7,7 @@ import time as clock
 from stairwright.errors import InputError
 from stairwright.planning.diagnosis import no_stand
 from stairwright.planning.plan import Plan, Problem
+from stairwright.planning.threads import search_threads
 from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -42,7 +43,7 @@ def plan_path(terrain: Terrain, robot: Robot, friction: float, weights: PathWeig
         at = terrain.points[0]
         problem = Problem(kind="start", at=at, progress=0.0, message=str(error))
         return make_plan(terrain, robot, friction, weights, begun, problem=problem)
-    found = course.solve()
+    found = course.solve(search_threads())
     if isinstance(found, Solved):
         plan = make_plan(
             terrain, robot, friction, weights, begun, found.poses, found.keys, found.total

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numba as nb
 import numpy as np
@@ -60,21 +61,31 @@ class Record:
         """(n,) least distance of trunk and links from the terrain [m]."""
         return np.minimum(self.poses[:, TRUNK], self.poses[:, LINKS])
 
-    @property
-    def room(self) -> Floats:
-        """(n,) least of all margins, each against its bound, in comparable sizes."""
-        margins: Floats = np.min(
+    @cached_property
+    def _rooms(self) -> Floats:
+        """(6, n) margins, each against its bound, in comparable sizes."""
+        margins: Floats = np.stack(
             [
                 self.clearance,
                 self.poses[:, LEGS] - LEGS_GAP,
                 0.2 * self.poses[:, SLACK],
                 self.com - LEAST_COM,
-                (self.leg_limit - self.torque) * 0.01,
                 (self.wheel_limit - self.wheel_torque) * 0.01,
-            ],
-            axis=0,
+                (self.leg_limit - self.torque) * 0.01,
+            ]
         )
         return margins
+
+    @property
+    def room(self) -> Floats:
+        """(n,) least of all margins."""
+        least: Floats = self._rooms.min(axis=0)
+        return least
+
+    @property
+    def only_torque(self) -> bool:
+        """Whether the legs' torque is the one bound that is violated."""
+        return bool(self._rooms[:-1].min() >= 0.0 > self._rooms[-1].min())
 
     @property
     def worst(self) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time as clock
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -41,24 +42,25 @@ HOPE = Bounds(trunk=-0.009, links=-0.009, legs=-0.009, reach=-0.006, thigh=-0.06
 class Rung:
     """One attempt: lattice refinement (above 1: coarser), bounds, and whether wheels may roll back.
 
-    A coarse rung costs a tenth of one at 1 and the polish makes as good a path from it.
+    A coarse rung costs a tenth of one at 1 and the polish makes as good a path from it. A `probe`
+    only asks whether a search comes through; where none has, nothing after it will.
     """
 
     fine: float
     bounds: Bounds
     roll_back: bool = False
+    probe: bool = False
 
 
-COARSE = (Rung(2.0, STRICT), Rung(1.7, BOLD))
-LADDER = (
-    *COARSE,
-    Rung(1.7, BOLD, True),
-    Rung(1.7, HOPE),
-    Rung(1.4, HOPE),
-    Rung(1.0, HOPE),
+LADDER = (  # rungs of one step are tried together; the first path is taken
+    (Rung(2.0, STRICT),),
+    (Rung(1.7, BOLD), Rung(1.7, HOPE, roll_back=True, probe=True)),
+    (Rung(1.7, BOLD, roll_back=True), Rung(1.7, HOPE)),
+    (Rung(1.4, HOPE), Rung(1.0, HOPE)),
 )
 QUICK = (Rung(1.7, BOLD), Rung(1.7, HOPE))  # enough to confirm that a changed problem has a plan
-_THIN = 0.01  # m; a path with a thinner CoM margin is compared with that of the next coarse rung
+_COARSE = 2  # steps of the ladder that are compared where a path is thin
+_THIN = 0.01  # m; CoM margin
 
 
 @dataclass(frozen=True)
@@ -83,10 +85,12 @@ class Blocked:
     Attributes:
         reached: Arc lengths where the way ends, or where a found way breaks a bound worst.
         opened: Whether a search came through at all.
+        torque: Whether a found way broke the bound of joint torque alone.
     """
 
     reached: tuple[float, float] | None
     opened: bool
+    torque: bool = False
 
 
 def pose_course(terrain: Terrain, robot: Robot, friction: float, weights: PathWeights) -> Course:
@@ -138,38 +142,48 @@ class Course:
             self.friction, self.reserve, cheap, roll_back, partial, self.searches,
         )  # fmt: skip
 
-    def solve(self, ladder: tuple[Rung, ...] = LADDER) -> Solved | Blocked:
-        """Climb the ladder until a path passes the certificate and is not needlessly thin."""
-        reached: tuple[float, float] | None = None
-        opened = False
-        best: Solved | None = None
-        for rung in ladder:
-            if best is not None and rung not in COARSE:
-                break
-            if rung.roll_back and not opened and not self.hopeful(rung.fine):
-                break
-            finding = self.find(rung.fine, rung.bounds, roll_back=rung.roll_back)
-            if finding.s is None:
-                if finding.reached and (reached is None or sum(finding.reached) > sum(reached)):
-                    reached = finding.reached
-                continue
-            opened = True
-            solved = self.finish(finding)
-            if not isinstance(solved, Solved):
-                reached = (float(solved[0]), float(solved[1]))
-            elif best is None or solved.margin > best.margin:
-                best = solved
-            if best is not None and best.margin > _THIN:
-                break
-        return best or Blocked(reached, opened)
+    def solve(self, pool: Executor) -> Solved | Blocked:
+        """Climb the ladder until a path passes the certificate and is not needlessly thin.
 
-    def hopeful(self, fine: float) -> bool:
-        """Whether a search that forgives more than rounding can hide comes through."""
-        return self.find(fine, HOPE, cheap=False, roll_back=True).quality > 0
+        Args:
+            pool: Who tries the rungs of one step.
+        """
+        best: Solved | None = None
+        blocked: list[Blocked] = []
+        for height, rungs in enumerate(LADDER, 1):
+            tried = [rung for rung in rungs if best is None or not rung.probe]
+            for answer in (pool.map if len(tried) > 1 else map)(self.attempt, tried):
+                if isinstance(answer, Blocked):
+                    blocked.append(answer)
+                elif best is None or answer.margin > best.margin:
+                    best = answer
+                if best is not None and height > _COARSE:
+                    return best
+            if best is not None and (best.margin > _THIN or height == _COARSE):
+                return best
+            if any(rung.probe for rung in tried) and not any(one.opened for one in blocked):
+                break
+        if best is not None:
+            return best
+        opened = any(one.opened for one in blocked)
+        ends = [one.reached for one in blocked if one.reached and one.opened == opened]
+        return Blocked(max(ends, key=sum, default=None), opened, any(one.torque for one in blocked))
+
+    def quick(self) -> Solved | None:
+        """The first path that a few rungs lead to."""
+        answers = (self.attempt(rung) for rung in QUICK)
+        return next((one for one in answers if isinstance(one, Solved)), None)
+
+    def attempt(self, rung: Rung) -> Solved | Blocked:
+        """What comes of one rung."""
+        finding = self.find(rung.fine, rung.bounds, not rung.probe, rung.roll_back)
+        if rung.probe:
+            return Blocked(None, finding.quality > 0)
+        return Blocked(finding.reached, False) if finding.s is None else self.finish(finding)
 
     def partial(self) -> tuple[list[Pose], list[int], float]:
         """Poses of the way as far as it goes, key poses and duration; nothing without a way."""
-        finding = self.find(COARSE[-1].fine, COARSE[-1].bounds, partial=True)
+        finding = self.find(1.7, BOLD, partial=True)
         if finding.s is None or finding.body is None or len(finding.s) < 2:
             return [], [], 0.0
         last = Stand((float(finding.s[-1, 0]), float(finding.s[-1, 1])), finding.body[-1])
@@ -184,7 +198,7 @@ class Course:
             return [], [], 0.0
         return make_poses(self.path, self.robot, found, self.weights)
 
-    def finish(self, finding: Finding) -> Solved | Floats:
+    def finish(self, finding: Finding) -> Solved | Blocked:
         """Polish and certify; where that fails, the pair of arc lengths at the worst place."""
         assert finding.s is not None
         assert finding.body is not None
@@ -192,15 +206,14 @@ class Course:
             self.path, self.ground, self.robot, self.legs, self.stands, finding.s, finding.body,
             self.friction, self.reserve, self.weights,
         )  # fmt: skip
-        worst: Floats = found.s[int(found.record.room.argmin())]
+        worst = found.s[int(found.record.room.argmin())]
+        blocked = Blocked((float(worst[0]), float(worst[1])), True, found.record.only_torque)
         if found.record.worst < 0.0:
-            return worst
+            return blocked
         poses, keys, total = make_poses(self.path, self.robot, found, self.weights)
         plan: Plan = make_plan(
             self.terrain, self.robot, self.friction, self.weights, clock.perf_counter(), poses,
             keys, total,
         )  # fmt: skip
         certificate = certify(plan)
-        if certificate.passed:
-            return Solved(poses, keys, total, certificate)
-        return worst
+        return Solved(poses, keys, total, certificate) if certificate.passed else blocked
