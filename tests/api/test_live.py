@@ -23,9 +23,9 @@ def line(server: Server) -> Iterator[ClientConnection]:
         yield connection
 
 
-def ask(line: ClientConnection, number: int, **body: Any) -> None:
+def ask(line: ClientConnection, number: int, keep: bool = True, **body: Any) -> None:
     question = {"terrain": STAIR, "method": "critical"} | body
-    line.send(json.dumps({"id": number, "body": question}))
+    line.send(json.dumps({"id": number, "keep": keep, "body": question}))
 
 
 def answer(line: ClientConnection) -> dict[str, Any]:
@@ -51,6 +51,21 @@ def test_only_the_newest_question_is_answered(line: ClientConnection) -> None:
     assert answers[-1]["plan"]["friction"] == pytest.approx(0.69)
     assert [one["id"] for one in answers] == sorted(one["id"] for one in answers)
     assert all(one["status"] == 200 for one in answers)
+
+
+def test_what_is_not_to_be_kept_is_the_same_plan_and_leaves_no_trace(
+    server: Server, line: ClientConnection
+) -> None:
+    plans = {}
+    for keep in (False, True):
+        ask(line, 1, keep, friction=0.77)
+        plans[keep] = answer(line)["plan"]
+        found = httpx.get(f"{server.url}/api/v1/plans/{plans[keep]['id']}").status_code
+        assert found == (200 if keep else 404)
+        del plans[keep]["solve_time"]
+    assert plans[False]["certificate"] is None
+    assert plans[True].pop("certificate")["passed"]
+    assert plans[False] == plans[True] | {"certificate": None}
 
 
 def test_a_question_can_be_taken_back(line: ClientConnection) -> None:

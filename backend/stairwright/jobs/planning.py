@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
 
 from stairwright.storage.documents import Entry
 from stairwright.storage.store import Store
@@ -13,6 +15,9 @@ from .engine import planning_engine
 from .pool import WorkerPool
 from .questions import PlanQuestion
 from .queue import FairQueue
+
+T = TypeVar("T")
+W = TypeVar("W")
 
 COURTESY = 0.1  # s that a solve may go on when nobody waits for it any more
 
@@ -26,11 +31,11 @@ class Answer:
     cached: bool
 
 
-class Flight:
+class Flight(Generic[T]):
     """One solve and how many wait for it."""
 
     def __init__(self) -> None:
-        self.task: asyncio.Task[Answer]
+        self.task: asyncio.Task[T]
         self.waiting = 0
         self.started = False
 
@@ -57,7 +62,8 @@ class Planning:
         self._store = store
         self._pool = pool
         self._deadline = deadline
-        self._flights: dict[str, Flight] = {}
+        self._answers: dict[str, Flight[Answer]] = {}
+        self._previews: dict[str, Flight[bytes]] = {}
 
     def stored(self, question: PlanQuestion) -> Answer | None:
         """The plan if it is known already. Reads the database: call it in a thread."""
@@ -76,39 +82,65 @@ class Planning:
             InputError: If the planner refuses the question.
             Failure: If it could not be solved now.
         """
-        flight = self._flights.get(question.key)
+        return await self._shared(self._answers, question, owner, self._solve)
+
+    async def preview(self, question: PlanQuestion, owner: str) -> bytes:
+        """The plan's JSON, which is not stored. As `solve` otherwise."""
+        return await self._shared(self._previews, question, owner, self._preview)
+
+    async def _shared(
+        self,
+        flights: dict[str, Flight[T]],
+        question: PlanQuestion,
+        owner: str,
+        answer: Callable[[PlanQuestion, str, Flight[T]], Coroutine[Any, Any, T]],
+    ) -> T:
+        """What `answer` returns; who asks the same meanwhile gets it too."""
+        flight = flights.get(question.key)
         if flight is None or flight.task.cancelling():
             self.queue.check()
-            flight = self._take_off(question, owner)
+            flight = self._take_off(flights, question, owner, answer)
         flight.waiting += 1
         try:
             return await asyncio.shield(flight.task)
         finally:
             flight.leave()
 
-    def _take_off(self, question: PlanQuestion, owner: str) -> Flight:
-        flight = Flight()
-        flight.task = asyncio.create_task(self._solve(question, owner, flight))
-        self._flights[question.key] = flight
+    def _take_off(
+        self,
+        flights: dict[str, Flight[T]],
+        question: PlanQuestion,
+        owner: str,
+        answer: Callable[[PlanQuestion, str, Flight[T]], Coroutine[Any, Any, T]],
+    ) -> Flight[T]:
+        flight = Flight[T]()
 
-        def landed(task: asyncio.Task[Answer]) -> None:
-            if self._flights.get(question.key) is flight:
-                del self._flights[question.key]
+        def landed(task: asyncio.Task[T]) -> None:
+            if flights.get(question.key) is flight:
+                del flights[question.key]
             if not task.cancelled():
                 task.exception()  # every caller may have gone
 
+        flight.task = asyncio.create_task(answer(question, owner, flight))
         flight.task.add_done_callback(landed)
+        flights[question.key] = flight
         return flight
 
-    async def _solve(self, question: PlanQuestion, owner: str, flight: Flight) -> Answer:
+    async def _solve(self, question: PlanQuestion, owner: str, flight: Flight[Answer]) -> Answer:
         folder = str(self._store.artefacts.folder)
-        async with self.queue.slot(owner):
-            flight.started = True
-            product = await self._pool.run(
-                work.solve, question.data, folder, deadline=self._deadline
-            )
+        product = await self._work(owner, flight, work.solve, question.data, folder)
         entry = await asyncio.to_thread(shelve_plan, self._store, question, product)
         return Answer(entry, product.content, cached=False)
+
+    async def _preview(self, question: PlanQuestion, owner: str, flight: Flight[bytes]) -> bytes:
+        return await self._work(owner, flight, work.preview, question.data)
+
+    async def _work(
+        self, owner: str, flight: Flight[Any], function: Callable[..., W], *args: Any
+    ) -> W:
+        async with self.queue.slot(owner):
+            flight.started = True
+            return await self._pool.run(function, *args, deadline=self._deadline)
 
 
 def shelve_plan(store: Store, question: PlanQuestion, product: work.Product) -> Entry:

@@ -50,12 +50,17 @@ def solve(question: Question, artefacts: str) -> Product:
     return _keep_plan(_plan(question), artefacts)
 
 
-def _plan(question: Question) -> Plan:
+def preview(question: Question) -> bytes:
+    """The JSON of a plan that is neither certified nor kept; else as `solve`."""
+    return _plan(question, certified=False).model_dump_json().encode()
+
+
+def _plan(question: Question, certified: bool = True) -> Plan:
     from stairwright.planning.planner import plan
 
     keys = ("terrain", "friction", "method", "weights")
     machine = _robot(orjson.dumps(question["robot"]))
-    return plan(robot=machine, **{key: question[key] for key in keys})
+    return plan(robot=machine, certified=certified, **{key: question[key] for key in keys})
 
 
 @lru_cache(maxsize=16)

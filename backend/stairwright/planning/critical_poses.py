@@ -42,6 +42,7 @@ def plan_critical(
     friction: float,
     weights: CriticalWeights,
     solver: type[PoseSearch] = PoseSearch,
+    certified: bool = True,
 ) -> Plan:
     """Initial pose, two optimal poses per obstacle, final pose.
 
@@ -51,6 +52,7 @@ def plan_critical(
         friction: Between wheels and terrain.
         weights: Q of eq 17, speed, and whether whole links are kept clear.
         solver: `PoseSearch`, or the reference `casadi_search.CasadiSearch`.
+        certified: Check the poses and the motion between them.
 
     Returns:
         The plan; infeasible with a problem where a pose has no solution or no equilibrium. The
@@ -88,7 +90,8 @@ def plan_critical(
         poses,
         problem,
         critical=[i for i, knot in enumerate(knots) if knot.optimal],
-        motion=_tipping(search, knots, poses),
+        motion=_tipping(search, knots, poses) if certified else None,
+        certified=certified,
         seconds=now() - started,
     )
 

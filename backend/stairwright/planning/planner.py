@@ -25,6 +25,8 @@ def plan(
     friction: float | None = None,
     method: Method = "path",
     weights: Mapping[str, float] | Model | None = None,
+    *,
+    certified: bool = True,
 ) -> Plan:
     """Plan the poses of `robot` over `terrain`.
 
@@ -35,6 +37,8 @@ def plan(
         method: ``path`` (dense certified path), ``critical`` (the paper's poses) or ``nominal``
             (standing pose kept).
         weights: Cost weights by name, see `stairwright.planning.weights`.
+        certified: Check single poses and the motion between them; without, ``critical`` is sooner.
+            A path is always certified.
 
     Returns:
         The plan; infeasible terrain gives a plan with a `problem`, never an exception.
@@ -57,7 +61,7 @@ def plan(
     if method == "critical":
         from .critical_poses import plan_critical
 
-        return plan_critical(ground, machine, mu, chosen)
+        return plan_critical(ground, machine, mu, chosen, certified=certified)
     from .nominal import plan_nominal
 
     return plan_nominal(ground, machine, mu, chosen)

@@ -63,8 +63,8 @@ def find_obstacles(path: WheelPath, low: float, high: float) -> list[Obstacle]:
     # Samples at the ends of pieces, and the first and the last one.
     ends = np.unique([0, len(s) - 1, *np.flatnonzero(np.isin(s, path.pieces[:, 1]))])
     found: list[Obstacle] = []
-    for first, last in _rough_stretches(s, gentle):
-        for a, b in _monotone_runs(z[first : last + 1]):
+    for first, last in _rough_stretches(s, gentle.tolist()):
+        for a, b in _monotone_runs(z[first : last + 1].tolist()):
             found.append(_obstacle(path, s, z, ends, first + a, first + b))
     return found
 
@@ -79,7 +79,7 @@ def _samples(path: WheelPath, low: float, high: float) -> Floats:
     return np.unique(np.concatenate([*parts, [high]]))
 
 
-def _rough_stretches(s: Floats, gentle: NDArray[np.bool_]) -> list[tuple[int, int]]:
+def _rough_stretches(s: Floats, gentle: list[bool]) -> list[tuple[int, int]]:
     """Index ranges (first, last sample) between treads."""
     out: list[tuple[int, int]] = []
     first = 0
@@ -102,7 +102,7 @@ def _rough_stretches(s: Floats, gentle: NDArray[np.bool_]) -> list[tuple[int, in
     return out
 
 
-def _monotone_runs(z: Floats) -> list[tuple[int, int]]:
+def _monotone_runs(z: list[float]) -> list[tuple[int, int]]:
     """Index ranges of rises and descents of at least `LOW`, smaller turns within them ignored."""
     out: list[tuple[int, int]] = []
     start, extreme, direction = 0, 0, 0.0

@@ -55,20 +55,21 @@ class PoseWriter:
         y = np.array([*trunk, *wheel_progress])
         _measure(self._body, self._course, self._friction, self._weight, y, q, record, points)
         r = record.tolist()
-        return Pose(
+        # The values are ours: validating them would take as long as finding them.
+        return Pose.model_construct(
             progress=progress,
             time=time,
             x_c=float(trunk[0]),
             z_c=float(trunk[1]),
             pitch=float(trunk[2]),
-            q=tuple(r[_Q:_WHEELS]),
+            q=(r[0], r[1], r[2], r[3]),
             wheels=_pairs(r[_WHEELS:_CONTACTS]),
             wheel_progress=(float(wheel_progress[0]), float(wheel_progress[1])),
             contacts=_pairs(r[_CONTACTS:_FORCES]),
             com=(r[_COM], r[_COM + 1]),
             collision_points=[(x, z) for x, z in points.tolist()],
             forces=_pairs(r[_FORCES:_COM]),
-            margins=Margins(
+            margins=Margins.model_construct(
                 clearance=r[_MARGINS],
                 com=_finite(r[_MARGINS + 1]),
                 friction=_finite(r[_MARGINS + 2]),

@@ -96,19 +96,20 @@ def wheel_path(terrain: Terrain, radius: float) -> WheelPath:
 
 def _raw_pieces(p: Floats, r: float) -> Floats:
     """Offset segments and the arcs between them, untrimmed; s0 holds the raw order only."""
-    step = np.diff(p, axis=0)
-    length = np.hypot(step[:, 0], step[:, 1])
-    t = step / length[:, None]
     rows: list[list[float]] = []
-    for i in range(len(t)):
-        rows.append([LINE, 0, length[i], p[i, 0] - r * t[i, 1], p[i, 1] + r * t[i, 0], *t[i]])
-        if i + 1 < len(t):
-            turn = math.atan2(t[i, 0] * t[i + 1, 1] - t[i, 1] * t[i + 1, 0], t[i] @ t[i + 1])
+    before: tuple[float, float] | None = None  # direction of the segment before
+    for (ax, az), (bx, bz) in itertools.pairwise(p.tolist()):
+        length = math.hypot(bx - ax, bz - az)
+        tx, tz = (bx - ax) / length, (bz - az) / length
+        if before is not None:
+            ux, uz = before
+            turn = math.atan2(ux * tz - uz * tx, ux * tx + uz * tz)
             if abs(abs(turn) - math.pi) < 1e-9:
                 turn = -math.pi  # the tip of a zero-width spike (slits are closed beforehand)
             if turn < -1e-12:
-                start = math.atan2(t[i, 0], -t[i, 1])
-                rows.append([ARC, 0, -turn * r, p[i + 1, 0], p[i + 1, 1], start, 0])
+                rows.append([ARC, 0, -turn * r, ax, az, math.atan2(ux, -uz), 0])
+        rows.append([LINE, 0, length, ax - r * tz, az + r * tx, tx, tz])
+        before = tx, tz
     return np.array(rows)
 
 

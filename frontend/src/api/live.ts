@@ -41,8 +41,11 @@ export function connectLive(): void {
   socket = fresh;
 }
 
-/** The plan; a newer question takes the place of one that is not answered yet. */
-export function livePlan(request: PlanRequest, abort: AbortSignal): Promise<Plan> {
+/**
+ * The plan; a newer question takes the place of one that is not answered yet. What is not to be
+ * kept comes sooner, but the service does not know it by its id.
+ */
+export function livePlan(request: PlanRequest, keep: boolean, abort: AbortSignal): Promise<Plan> {
   connectLive();
   const open = socket;
   if (open?.readyState !== WebSocket.OPEN) return postPlan(request, abort);
@@ -55,7 +58,7 @@ export function livePlan(request: PlanRequest, abort: AbortSignal): Promise<Plan
       settle()?.reject(abort.reason);
       if (open.readyState === WebSocket.OPEN) open.send(JSON.stringify({ id }));
     });
-    open.send(JSON.stringify({ id, body: request }));
+    open.send(JSON.stringify({ id, keep, body: request }));
   });
 }
 

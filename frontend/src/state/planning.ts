@@ -108,7 +108,9 @@ async function solve(question: Question, abort: AbortSignal): Promise<Plan> {
   const started = performance.now();
   const { method } = question.request;
   // Quick answers are small and many; long ones are better compressed, as HTTP does it.
-  const answer = await (method === "critical" ? livePlan : postPlan)(question.request, abort);
+  const answer = await (method === "critical"
+    ? livePlan(question.request, question.which !== "preview", abort)
+    : postPlan(question.request, abort));
   const trip = performance.now() - started;
   if (method !== "nominal") pace.measured(method === "path" ? "full" : "quick", trip, answer);
   return answer;

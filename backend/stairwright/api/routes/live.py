@@ -3,7 +3,8 @@
 A message is ``{"id": 7, "body": {…}}`` with the body of POST /plans; the answer is
 ``{"id": 7, "status": 200, "plan": {…}}``, or ``problem`` instead of ``plan`` with the status that
 REST would have. A newer question takes the place of one that is not answered yet, which gets no
-answer then; one without a body only does that.
+answer then; one without a body only does that. With ``"keep": false`` the answer comes sooner: key
+poses are not certified, and the plan is not stored, so its id leads nowhere.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from stairwright.api.problems import Problem, from_validation, problem_of
 from stairwright.api.services import Services
 from stairwright.documents import Model
 
-from .plans import answered
+from .plans import answered, previewed
 
 router = APIRouter(prefix="/plans")
 _PATH = f"{PLANS_PATH}/live"
@@ -35,6 +36,7 @@ class LiveQuestion(Model):
 
     id: int = Field(ge=0, le=2**53)
     body: PlanRequest | None = None
+    keep: bool = True
 
 
 @router.websocket("/live")
@@ -60,13 +62,10 @@ async def _answer(websocket: WebSocket, content: str | bytes) -> None:
     try:
         asked = _parsed(content, services.settings.body_limit)
         number = asked.get("id")
-        body = _question(asked).body
-        if body is None:
+        question = _question(asked)
+        if question.body is None:
             return
-        answer = await answered(services, body, owner_of(websocket.scope))
-        plan = answer.content
-        if answer.cached:
-            plan = await asyncio.to_thread(gzip.decompress, plan)
+        plan = await _plan(services, question.body, question.keep, owner_of(websocket.scope))
         head = orjson.dumps({"id": number, "status": status})
         reply = head[:-1] + b',"plan":' + plan + b"}"
     except Exception as error:  # noqa: BLE001 - told to the client, and to the log where it must
@@ -77,6 +76,17 @@ async def _answer(websocket: WebSocket, content: str | bytes) -> None:
     await websocket.send_text(reply.decode())
     seconds = time.perf_counter() - start
     record(services.metrics, websocket.scope, "LIVE", _PATH, status, seconds)
+
+
+async def _plan(services: Services, body: PlanRequest, keep: bool, owner: str) -> bytes:
+    if not keep:
+        return await previewed(services, body, owner)
+    answer = await answered(services, body, owner)
+    return (
+        await asyncio.to_thread(gzip.decompress, answer.content)
+        if answer.cached
+        else answer.content
+    )
 
 
 def _parsed(content: str | bytes, limit: int) -> dict[str, Any]:

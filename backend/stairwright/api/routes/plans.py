@@ -75,6 +75,12 @@ async def answered(services: Services, body: PlanRequest, owner: str) -> Answer:
     return answer
 
 
+async def previewed(services: Services, body: PlanRequest, owner: str) -> bytes:
+    """The JSON of a new answer that is not stored."""
+    question = await asyncio.to_thread(plan_question, services, body)
+    return await services.planning.preview(question, owner)
+
+
 def _look_up(services: Services, body: PlanRequest) -> tuple[PlanQuestion, Answer | None]:
     question = plan_question(services, body)
     return question, services.planning.stored(question)

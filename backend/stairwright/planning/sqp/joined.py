@@ -52,11 +52,13 @@ def imbalance(body: Body, course: Course, rules: Rules, begin: Floats, end: Floa
         return 0.0
     worst, start, x = 0.0, np.full(5, np.nan), np.empty(9)
     wanted, wheels = np.empty(7), np.empty(2)
+    hardest = tipping[np.argmax(missing[tipping])]
+    before = -1
     for k in range(_TRIES + 1):
-        i = tipping[np.argmax(missing[tipping])]
-        if k > 0:
-            i = tipping[(len(tipping) - 1) * (k - 1) // (_TRIES - 1)]
-        share = i / n
+        i = hardest if k == 0 else tipping[(len(tipping) - 1) * (k - 1) // (_TRIES - 1)]
+        if k > 0 and (i in (hardest, before)):
+            continue
+        before, share = i, i / n
         for j in range(7):
             wanted[j] = begin[j] + share * (end[j] - begin[j])
         wheels[:] = begin[7:] + share * ways
