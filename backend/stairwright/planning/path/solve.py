@@ -158,16 +158,17 @@ class Course:
                 elif best is None or answer.margin > best.margin:
                     best = answer
                 if best is not None and height > _COARSE:
-                    return best
-            if best is not None and (best.margin > _THIN or height == _COARSE):
+                    break  # the other rung may take on
+            if best is not None and (height >= _COARSE or best.margin > _THIN):
                 return best
             if any(rung.probe for rung in tried) and not any(one.opened for one in blocked):
                 break
-        if best is not None:
-            return best
-        opened = any(one.opened for one in blocked)
-        ends = [one.reached for one in blocked if one.reached and one.opened == opened]
-        return Blocked(max(ends, key=sum, default=None), opened, any(one.torque for one in blocked))
+        ends = [one for one in blocked if one.reached]
+        found = [one for one in ends if one.opened] or ends  # rather where a way breaks a bound
+        return Blocked(
+            max((one.reached for one in found if one.reached), key=sum, default=None),
+            any(one.opened for one in blocked), any(one.torque for one in blocked),
+        )  # fmt: skip
 
     def quick(self) -> Solved | None:
         """The first path that a few rungs lead to."""

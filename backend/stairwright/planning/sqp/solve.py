@@ -26,6 +26,7 @@ Ints = NDArray[np.int64]
 
 TOLERANCE = 1e-9  # m and rad; the largest violation of a solution
 _STEP = 1e-6  # m and rad; a smaller step ends the iteration
+_LAST = 3e-5  # m and rad; after such a whole step the next one would be that small
 _ROUNDS = 60
 _PATIENCE = 8  # rounds in which a violation must fall by `_FALL`, or there is no solution near
 _FALL = 0.8
@@ -106,6 +107,8 @@ def solve_pose(
         y += shorten * step
         st, trial, rows, other = trial, st, other, rows
         count, least, value = number, slack, new
+        if size < _LAST and shorten == 1.0 and -least <= TOLERANCE:
+            break
     x[:3], x[3:7], x[7:] = st.y[:3], st.q, st.y[3:]
     return value, max(0.0, -least), rounds
 
