@@ -176,6 +176,7 @@ def test_compiled_equals_plain(name: str) -> None:
                 [3.0, 29.0, -2.0, 27.0],
                 random.normal(0, 0.5, 3),
                 random.uniform(0.5, 1.0, 1),
+                [0.4],
             ]
         )
         assert len(row) == WIDTH

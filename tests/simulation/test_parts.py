@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stairwright as sw
-from stairwright.control.setpoint import RATES, SURGES, WIDTH
+from stairwright.control.setpoint import PROGRESS, RATES, SURGES, WIDTH
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
 from stairwright.planning.interpolation import reference
@@ -93,6 +93,27 @@ def test_track_limits_joint_speed() -> None:
     line = track_of(plan, joint_speed=0.5)
     rates = np.abs(line.rows[:, RATES + 2 : RATES + 6]).max(axis=1) * line.speeds
     assert rates.max() <= 0.5 + 1e-6
+
+
+def travel(places: np.ndarray) -> np.ndarray:
+    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(places, axis=0).T))])
+
+
+def test_a_trunk_that_swings_above_standing_wheels_takes_its_time() -> None:
+    """There progress tells little: on a scale of it alone a swing went by in half its time."""
+    ramp = [(-1.3, 0.0), (0.0, 0.0), (0.169, 0.365), (0.436, 0.365), (0.436, 0.311)]
+    plan = sw.plan({"points": [*ramp, (0.886, 0.294), (2.186, 0.294)]}, "a1_wheeled", 0.35)
+    course, line = reference(plan), track_of(plan)
+    moved = travel(course.trunk[:, :2])
+    assert (np.diff(moved) / np.diff(course.progress)).max() > 30.0
+    way = travel(line.rows[:, 9:11])
+    mean = 0.5 * (line.speeds[1:] + line.speeds[:-1])
+    driven = np.concatenate([[0.0], np.cumsum(line.step / mean)])
+    marks = np.arange(0.05, moved[-1], 0.05)
+    planned = np.diff(np.interp(marks, moved, course.time))
+    assert (np.diff(np.interp(marks, way * moved[-1] / way[-1], driven)) > 0.95 * planned).all()
+    assert line.rows[-1, PROGRESS] == pytest.approx(course.progress[-1])
+    assert (np.diff(line.rows[:, PROGRESS]) > 0.0).all()
 
 
 def test_accelerations_belong_to_the_speeds() -> None:

@@ -126,7 +126,7 @@ def contact_control(
     """Torques (12,) before the motors' limits; updates the memory in place.
 
     `record` is of `parameters`, `pieces` and `corners` of the `WheelPath`, `qpos` (19,) and `qvel`
-    (18,) are measured, `target` (30,) is a row in the order of `setpoint`, `yaw_rate` is commanded.
+    (18,) are measured, `target` (31,) is a row in the order of `setpoint`, `yaw_rate` is commanded.
     The memory is `places` (4,), `forces` (8,) and `learnt` (1,).
     """
     p = record[0]

@@ -20,7 +20,8 @@ RATES = 11  # the rate of column k is column RATES + k
 FORCES = slice(22, 26)
 SURGES = 26  # accelerations of pitch and CoM, the columns from `PITCH` on
 SHARE = 29  # of the friction that the static forces need
-WIDTH = 30
+PROGRESS = 30  # the plan's
+WIDTH = 31
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ class Setpoint:
 
     @classmethod
     def from_row(cls, row: Floats, yaw_rate: float = 0.0) -> Setpoint:
-        """The set point held by a row (30,) in the module's order."""
+        """The set point held by a row (31,) in the module's order."""
         rates = row[RATES : 2 * RATES]
         return cls(
             wheel_progress=row[WHEELS],

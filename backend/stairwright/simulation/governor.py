@@ -1,5 +1,8 @@
 """How fast the plan advances: its own timing, limits along it, and a leash to the robot.
 
+What advances is the way: the plan's progress, and where the trunk swings above wheels that hardly
+roll, a share of the trunk's motion, so that a swing takes its time.
+
 The plan runs on its own clock, because a purely measured progress stalls (the robot waits for the
 plan and the plan for the robot). A leash holds it back: it slows down when it is ahead of the
 wheels, stops when it is too far ahead and retreats with a robot that slides back. It hurries after
@@ -22,6 +25,7 @@ from stairwright.control.setpoint import (
     FORCES,
     JOINTS,
     PITCH,
+    PROGRESS,
     RATES,
     SHARE,
     SURGES,
@@ -36,7 +40,9 @@ from stairwright.terrain.wheel_path import WheelPath
 
 Floats = NDArray[np.float64]
 
-STEP = 0.0025  # m of progress between the rows of a track
+STEP = 0.0025  # m of way between the rows of a track
+SWING = 0.3  # of the trunk's motion counts as way, where that is more than the progress
+TURN = 0.25  # m that a radian of the trunk's pitch counts as
 RATE_REACH = 0.005  # m; rates are differences over this far, both ways
 LIMIT_REACH = 0.03  # m; a speed limit holds this far before and after its place
 ACCELERATION = 0.4  # m/s^2, along the plan
@@ -47,13 +53,13 @@ HURRY = 1.5  # how much faster than planned it may follow a robot that is ahead
 
 @dataclass(frozen=True)
 class Track:
-    """A reference on an even grid of progress, ready for compiled code.
+    """A reference on an even grid of way, ready for compiled code.
 
     Attributes:
-        start: Progress of the first row [m].
-        step: Progress between rows [m].
-        rows: (n, 30) set points; rates are per metre of progress, accelerations per its square.
-        speeds: (n,) allowed speed of the progress [m/s].
+        start: Way of the first row, which is its progress [m].
+        step: Way between rows [m].
+        rows: (n, 31) set points; rates are per metre of way, accelerations per its square.
+        speeds: (n,) allowed speed along the way [m/s].
     """
 
     start: float
@@ -63,7 +69,7 @@ class Track:
 
     @property
     def end(self) -> float:
-        """Progress of the last row [m]."""
+        """Way of the last row [m]."""
         return self.start + self.step * (len(self.rows) - 1)
 
     @property
@@ -88,7 +94,8 @@ def track(
         friction: The plan's Coulomb friction.
         settings: Speed and joint speed are limited by them.
     """
-    first, last = float(reference.progress[0]), float(reference.progress[-1])
+    way = _way(reference)
+    first, last = float(way[0]), float(way[-1])
     count = max(3, math.ceil((last - first) / STEP) + 1)
     grid = np.linspace(first, last, count)
     columns = np.column_stack(
@@ -111,11 +118,9 @@ def track(
     ) == (WHEELS, JOINTS, PITCH, COM, TRUNK)
     for k in order:
         column = columns[:, k]
-        rows[:, k] = np.interp(grid, reference.progress, column)
+        rows[:, k] = np.interp(grid, way, column)
         low, high = np.maximum(grid - RATE_REACH, first), np.minimum(grid + RATE_REACH, last)
-        rise = np.interp(high, reference.progress, column) - np.interp(
-            low, reference.progress, column
-        )
+        rise = np.interp(high, way, column) - np.interp(low, way, column)
         rows[:, RATES + k] = rise / (high - low)
     for k in range(SURGES, SHARE):
         rate = rows[:, RATES + PITCH + k - SURGES]
@@ -127,18 +132,27 @@ def track(
     resting = np.empty((count, 5))
     resting_forces(*ground, weight, friction, places, com, resting)
     rows[:, FORCES], rows[:, SHARE] = resting[:, :4], resting[:, 4]
-    speeds = _speeds(reference, grid, rows, robot, settings)
+    rows[:, PROGRESS] = np.interp(grid, way, reference.progress)
+    speeds = _speeds(np.interp(grid, way, reference.time), grid, rows, robot, settings)
     return Track(first, grid[1] - grid[0], rows, speeds)
 
 
+def _way(reference: Reference) -> Floats:
+    """(n,) what the plan advances along [m]; it rises strictly, as the progress does."""
+    trunk = np.diff(reference.trunk, axis=0)
+    moved = np.hypot(trunk[:, 0], trunk[:, 1]) + TURN * np.abs(trunk[:, 2])
+    steps = np.maximum(np.diff(reference.progress), SWING * moved)
+    way: Floats = reference.progress[0] + np.concatenate([[0.0], np.cumsum(steps)])
+    return way
+
+
 def _speeds(
-    reference: Reference, grid: Floats, rows: Floats, robot: Robot, settings: ControllerSettings
+    time: Floats, grid: Floats, rows: Floats, robot: Robot, settings: ControllerSettings
 ) -> Floats:
-    """Allowed speed of the progress (n,): timing, joint and wheel speed limits, acceleration."""
+    """Allowed speed along the way (n,): timing, joint and wheel speed limits, acceleration."""
     if settings.speed is not None:
         speeds = np.full(len(grid), settings.speed)
     else:
-        time = np.interp(grid, reference.progress, reference.time)
         step = np.diff(grid) / np.maximum(np.diff(time), 1e-9)
         speeds = np.minimum(np.append(step, step[-1]), np.append(step[0], step))
     joint_rates = np.abs(rows[:, RATES + JOINTS.start : RATES + JOINTS.stop]).max(axis=1)
@@ -161,9 +175,9 @@ def _speeds(
     return bounded
 
 
-def cruise(line: Track, progress: float) -> Floats:
-    """(2,) speeds of the wheel pairs at `progress` when nothing holds the plan back [m/s]."""
-    k = min(max(int((progress - line.start) / line.step), 0), len(line.rows) - 1)
+def cruise(line: Track, way: float) -> Floats:
+    """(2,) speeds of the wheel pairs at `way` when nothing holds the plan back [m/s]."""
+    k = min(max(int((way - line.start) / line.step), 0), len(line.rows) - 1)
     speeds: Floats = line.speeds[k] * line.rows[k, RATES : RATES + 2]
     return speeds
 
@@ -181,12 +195,12 @@ def advance(
     clock: Floats,
     target: Floats,
 ) -> None:
-    """Advance the plan by one control step and write the set point into `target` (30,).
+    """Advance the plan by one control step and write the set point into `target` (31,).
 
     `start`, `step`, `rows` and `speeds` are of the `Track`; `leash` is how far the plan may run
     ahead [m]; `places` (4,) are where the wheels are, NaN before the first measurement; `moving`
-    tells whether the plan may advance yet; `clock` (3,) holds progress [m], its rate [m/s] and the
-    robot's lag [m], and is updated in place.
+    tells whether the plan may advance yet; `clock` (3,) holds the way [m], its rate [m/s] and the
+    wheels' lag [m], and is updated in place.
     """
     last = len(rows) - 1
     spot = min(max((clock[0] - start) / step, 0.0), float(last))
@@ -202,6 +216,7 @@ def advance(
         behind_rear = rear - 0.5 * (places[2] + places[3])
         # Along the plan's own direction, so that it also holds where a wheel rolls back.
         lag = (behind_front * df + behind_rear * dr) / max(df * df + dr * dr, 1e-6)
+        lag *= 0.5 * (abs(df) + abs(dr))  # of wheels, not of a trunk that swings
     rate = 0.0
     if moving:
         allowed = speeds[k] + share * (speeds[k + 1] - speeds[k])
@@ -211,10 +226,10 @@ def advance(
             rate = allowed * min(HURRY, 1.0 - lag / leash * (HURRY - 1.0))
     reach = 1.0 * dt  # m/s: the rate itself changes by at most 1 m/s^2
     rate = min(max(rate, clock[1] - 4 * reach), clock[1] + reach)
-    progress = min(max(clock[0] + rate * dt, start), start + step * last)
-    rate = (progress - clock[0]) / dt
-    clock[0], clock[1], clock[2] = progress, rate, lag
-    spot = (progress - start) / step
+    way = min(max(clock[0] + rate * dt, start), start + step * last)
+    rate = (way - clock[0]) / dt
+    clock[0], clock[1], clock[2] = way, rate, lag
+    spot = (way - start) / step
     k = min(int(spot), last - 1)
     share = spot - k
     for j in range(rows.shape[1]):

@@ -95,9 +95,7 @@ def run(
                 score, sensors,
             )  # fmt: skip
             now = begun + k * dt
-            keep_sample(
-                every, cursor, samples, now, qpos, qvel, ctrl, sensors, clock, target, places
-            )
+            keep_sample(every, cursor, samples, now, qpos, qvel, ctrl, sensors, target, places)
             if loaded or int(sensors[16]) != wheels:
                 return k
         for _ in range(substeps):

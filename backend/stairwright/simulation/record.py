@@ -8,7 +8,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.control.setpoint import JOINTS, PITCH
+from stairwright.control.setpoint import JOINTS, PITCH, PROGRESS
 from stairwright.robot.description import LEGS
 
 from .governor import Track
@@ -20,9 +20,9 @@ Floats = NDArray[np.float64]
 # Columns of a sample.
 _TIME = 0
 _QPOS, _QVEL, _TORQUE = slice(1, 20), slice(20, 38), slice(38, 50)
-_CONTACTS, _CLOCK, _TARGET = slice(50, 66), slice(66, 69), slice(69, 76)
-_PLACES = slice(76, 80)
-_WIDTH = 80
+_CONTACTS, _PROGRESS, _TARGET = slice(50, 66), 66, slice(67, 74)
+_PLACES = slice(74, 78)
+_WIDTH = 78
 
 
 class Recorder:
@@ -34,7 +34,7 @@ class Recorder:
         radius: Of the wheels [m].
 
     Attributes:
-        samples: (capacity, 80), the first `len(recorder)` of them taken.
+        samples: (capacity, 78), the first `len(recorder)` of them taken.
         cursor: (2,) number of samples, and control steps to let pass before the next.
     """
 
@@ -48,11 +48,11 @@ class Recorder:
         if len(self) + steps > len(self.samples):
             self.samples = np.vstack([self.samples, np.empty((len(self) + steps, _WIDTH))])
 
-    def take(self, data: Any, clock: Floats, target: Floats, places: Floats) -> None:
+    def take(self, data: Any, target: Floats, places: Floats) -> None:
         """Keep the state of `data` (an MjData) and what was asked for, if it is time to."""
         self.reserve(1)
         state = (data.time, data.qpos, data.qvel, data.ctrl, data.sensordata)
-        keep_sample(self.every, self.cursor, self.samples, *state, clock, target, places)
+        keep_sample(self.every, self.cursor, self.samples, *state, target, places)
 
     def __len__(self) -> int:
         """How many samples there are."""
@@ -79,7 +79,7 @@ class Recorder:
             pitch=np.unwrap(pitch),
             pitch_desired=target[:, PITCH].copy(),
             progress=self._progress(rows[:, _PLACES]),
-            progress_desired=rows[:, _CLOCK][:, 0].copy(),
+            progress_desired=rows[:, _PROGRESS].copy(),
             contact_force=forces,
         )
 
@@ -114,7 +114,6 @@ def keep_sample(
     qvel: Floats,
     torque: Floats,
     contacts: Floats,
-    clock: Floats,
     target: Floats,
     places: Floats,
 ) -> None:
@@ -127,5 +126,5 @@ def keep_sample(
     cursor[0] += 1
     row[0] = time
     row[1:20], row[20:38], row[38:50] = qpos, qvel, torque
-    row[50:66], row[66:69], row[69:76] = contacts[:16], clock, target[:7]
-    row[76:80] = places
+    row[50:66], row[66], row[67:74] = contacts[:16], target[PROGRESS], target[:7]
+    row[74:78] = places

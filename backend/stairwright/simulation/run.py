@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from stairwright.control.compiled import parameters
 from stairwright.control.controller import Controller
-from stairwright.control.setpoint import RATES, Setpoint
+from stairwright.control.setpoint import PROGRESS, RATES, Setpoint
 from stairwright.control.settings import ControllerSettings
 from stairwright.documents import content_hash
 from stairwright.planning.interpolation import reference
@@ -156,8 +156,9 @@ class Run:
                 cause = ("timeout", "")
                 break
         self.wall = time.perf_counter() - begin
-        reached = self.clock[0] - self.track.start
-        return Ending(cause[0], self.time, (reached, total), self._end_error(), cause[1])
+        first, last = self.track.rows[[0, -1], PROGRESS]
+        reached = (float(self.target[PROGRESS] - first), float(last - first))
+        return Ending(cause[0], self.time, reached, self._end_error(), cause[1])
 
     def _chunk(self, moving: bool) -> tuple[str, str] | None:
         """Some control steps; the cause and its words if the rollout is over."""
@@ -200,7 +201,7 @@ class Run:
             if loop.diverged(data.qpos, data.qvel):
                 break
             wheels = self._tick(moving, *self.sensors.sense(data.qpos, data.qvel))
-            self.recorder.take(data, self.clock, self.target, self.places)
+            self.recorder.take(data, self.target, self.places)
             if data.sensordata[16] != wheels or self.loads.loads:
                 self._touch(self.time + k * self.dt)
             mujoco.mj_step(self.model, data, CONTROL_STEPS)
