@@ -1,9 +1,9 @@
 """Does what is planned succeed when it is carried out? Random profiles, rolled out four ways.
 
-    python benchmarks/robustness.py [--count 300] [--first 0] [--workers N] [--cache FOLDER]
-        [--quick] [--json FILE]
+    python benchmarks/robustness.py [--count 300] [--first 0] [--friction 0.6] [--workers N]
+        [--cache FOLDER] [--quick] [--json FILE]
 
-Every profile of `profiles.py` is planned for both robots at friction 0.6. Plans called feasible are
+Every profile of `profiles.py` is planned for both robots at one friction. Plans called feasible are
 rolled out at that friction, with the true friction 0.1 lower, at 0.2 m/s (planned for it), and at
 0.2 m/s asked of the controller. A profile with places that no wheel can stand on at the lower
 friction, a slope steeper than its cone, cannot succeed there; such failures are marked.
@@ -54,12 +54,14 @@ class Way:
     controller: tuple[tuple[str, float], ...] = ()
 
 
-WAYS = (
-    Way("friction as planned", FRICTION, 0.12),
-    Way("true friction 0.1 lower", FRICTION - 0.1, 0.12),
-    Way("planned for 0.2 m/s", FRICTION, 0.2),
-    Way("driven at 0.2 m/s", FRICTION, 0.12, (("speed", 0.2),)),
-)
+def ways_at(friction: float) -> tuple[Way, ...]:
+    """All ways of plans made for `friction`."""
+    return (
+        Way("friction as planned", friction, 0.12),
+        Way("true friction 0.1 lower", friction - 0.1, 0.12),
+        Way("planned for 0.2 m/s", friction, 0.2),
+        Way("driven at 0.2 m/s", friction, 0.12, (("speed", 0.2),)),
+    )
 
 
 @dataclass(frozen=True)
@@ -77,27 +79,27 @@ class Result:
     stands: bool = True  # whether the plan's poses have equilibrium at the true friction
 
 
-def planned(seed: int, robot: str, speed: float, cache: str | None) -> Plan:
+def planned(seed: int, robot: str, friction: float, speed: float, cache: str | None) -> Plan:
     """The plan of a profile, from the cache if it is there."""
     _, terrain = random_profile(seed)
     if cache is None:
-        return sw.plan(terrain, robot, FRICTION, weights={"speed": speed})
+        return sw.plan(terrain, robot, friction, weights={"speed": speed})
     weights = parse_weights("path", {"speed": speed}).model_dump()
-    name = plan_id(terrain, sw.load_robot(robot), FRICTION, "path", weights)
+    name = plan_id(terrain, sw.load_robot(robot), friction, "path", weights)
     file = Path(cache) / f"{name}.json"
     if file.is_file():
         return Plan.model_validate_json(file.read_text(encoding="utf-8"))
-    plan = sw.plan(terrain, robot, FRICTION, weights={"speed": speed})
+    plan = sw.plan(terrain, robot, friction, weights={"speed": speed})
     file.write_text(plan.model_dump_json(by_alias=True), encoding="utf-8")
     return plan
 
 
-def judge(seed: int, robot: str, ways: tuple[Way, ...], cache: str | None) -> list[Result]:
-    """Plan one profile for one robot and roll it out in all `ways`."""
+def judge(seed: int, robot: str, friction: float, cache: str | None) -> list[Result]:
+    """Plan one profile for one robot at `friction` and roll it out in all ways."""
     kind, _ = random_profile(seed)
     results = []
-    for way in ways:
-        plan = planned(seed, robot, way.speed, cache)
+    for way in ways_at(friction):
+        plan = planned(seed, robot, friction, way.speed, cache)
         if not plan.feasible:
             reason = plan.problem.message if plan.problem else ""
             return [Result(seed, kind, robot, "", plan.status, reason)]
@@ -112,16 +114,16 @@ def judge(seed: int, robot: str, ways: tuple[Way, ...], cache: str | None) -> li
     return results
 
 
-def _job(job: tuple[int, str], ways: tuple[Way, ...], cache: str | None) -> list[Result]:
-    return judge(*job, ways, cache)
+def _job(job: tuple[int, str], friction: float, cache: str | None) -> list[Result]:
+    return judge(*job, friction, cache)
 
 
 def judge_all(
-    seeds: Iterable[int], workers: int, cache: str | None = None, ways: tuple[Way, ...] = WAYS
+    seeds: Iterable[int], workers: int, cache: str | None = None, friction: float = FRICTION
 ) -> Iterator[Result]:
     """Results of many profiles, in order."""
     jobs = [(seed, robot) for seed in seeds for robot in ROBOTS]
-    work = partial(_job, ways=ways, cache=cache)
+    work = partial(_job, friction=friction, cache=cache)
     if workers == 1:
         for job in jobs:
             yield from work(job)
@@ -170,7 +172,8 @@ def run(quick: bool = False, **options: Any) -> list[Row]:
     first = options.get("first", 0)
     workers = options.get("workers") or len(os.sched_getaffinity(0))
     results = []
-    for result in judge_all(range(first, first + count), workers, options.get("cache")):
+    seeds, friction = range(first, first + count), options.get("friction", FRICTION)
+    for result in judge_all(seeds, workers, options.get("cache"), friction):
         results.append(result)
         if result.outcome != "success":
             print(failure(result), flush=True)
@@ -181,6 +184,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--count", type=int)
+    parser.add_argument("--friction", type=float, help="planned for; more than 0.1")
     parser.add_argument("--workers", type=int, help="processes; all cores by default")
     parser.add_argument("--cache", help="keep plans in this folder")
     parser.add_argument("--quick", action="store_true", help="9 profiles")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from stairwright.planning.path.ground import link_clearance, make_ground
-from stairwright.planning.path.links import faces_near, nearer
+from stairwright.planning.path.links import ground_near, nearer
 
 REACH = 0.05
 
@@ -24,13 +24,12 @@ def test_gaps_are_those_of_one_link_after_another(seed):
     wheels = np.stack(
         [np.sort(rng.uniform(ground.x[0], ground.x[-1], 40)), rng.uniform(-0.5, 0.8, 40)], axis=1
     )
-    faces, near = faces_near(ground, wheels[:, 0], wheels[:, 1], 0.8)
-    x, z = (wheels - wheels[0]).astype(np.float32).T
+    near = ground_near(ground, wheels, 0.8)
     buried = 0
     for _ in range(50):
         link = rng.uniform(-0.35, 0.35, 4).astype(np.float32)
         best = np.full(40, REACH**2, np.float32)
-        nearer(faces, near, np.ascontiguousarray(x), np.ascontiguousarray(z), link, REACH, best)
+        nearer(near, link, REACH, best)
         begin = wheels + link[:2]
         end = begin + link[2:]
         one = [link_clearance(ground, *a, *b, 0.0, REACH) for a, b in zip(begin, end, strict=True)]

@@ -82,11 +82,9 @@ async def _plan(services: Services, body: PlanRequest, keep: bool, owner: str) -
     if not keep:
         return await previewed(services, body, owner)
     answer = await answered(services, body, owner)
-    return (
-        await asyncio.to_thread(gzip.decompress, answer.content)
-        if answer.cached
-        else answer.content
-    )
+    if answer.cached:
+        return await asyncio.to_thread(gzip.decompress, answer.content)
+    return answer.content
 
 
 def _parsed(content: str | bytes, limit: int) -> dict[str, Any]:

@@ -78,7 +78,9 @@ async def answered(services: Services, body: PlanRequest, owner: str) -> Answer:
 async def previewed(services: Services, body: PlanRequest, owner: str) -> bytes:
     """The JSON of a new answer that is not stored."""
     question = await asyncio.to_thread(plan_question, services, body)
-    return await services.planning.preview(question, owner)
+    content = await services.planning.preview(question, owner)
+    services.metrics.plans.labels("false").inc()
+    return content
 
 
 def _look_up(services: Services, body: PlanRequest) -> tuple[PlanQuestion, Answer | None]:

@@ -1,15 +1,20 @@
-"""How far a link is from the ground, for all wheel samples at once: loops that compilers vectorise.
+"""How far legs are from the ground, for all wheel samples at once: loops that compilers vectorise.
 
 Float32 in metres from the first sample: good for 1e-6 m on a window of the search.
 """
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from .ground import Ground
+from stairwright.robot.description import Planar
+
+from .ground import Ground, link_clearance
 
 Floats32 = NDArray[np.float32]
 Floats = NDArray[np.float64]
@@ -18,19 +23,25 @@ Ints = NDArray[np.int64]
 BURIED = np.float32(-1.0)  # squared gap of a link that starts in the ground or crosses its face
 
 
-@nb.njit(cache=True, nogil=True)
-def faces_near(g: Ground, x: Floats, z: Floats, reach: float) -> tuple[Floats32, Ints]:
-    """The ground's segments that come within `reach` of wheels, and which wheels those are.
+class Near(NamedTuple):
+    """The ground near wheels; lengths are differences from the first wheel's centre [m].
 
-    Args:
-        g: The ground.
-        x, z: (n,) wheel centres, x rising [m].
-        reach: In x [m].
-
-    Returns:
-        (k, 6) corner, vector, top above the lowest of its wheels, 1 / length^2; all but the last
-        two as differences from the first wheel's centre. (k, 2) first and last + 1 of the wheels.
+    Attributes:
+        x, z: (n,) wheel centres.
+        faces: (k, 6) corner, vector, top above the lowest of its wheels, 1 / length^2.
+        wheels: (k, 2) first and last + 1 of the wheels that a face is near to.
     """
+
+    x: Floats32
+    z: Floats32
+    faces: Floats32
+    wheels: Ints
+
+
+@nb.njit(cache=True, nogil=True)
+def ground_near(g: Ground, centres: Floats, reach: float) -> Near:
+    """What of the ground comes within `reach` [m] in x of wheels at `centres` (n, 2), x rising."""
+    x, z = centres[:, 0], centres[:, 1]
     a = int(np.searchsorted(g.x, x[0] - reach))
     b = int(np.searchsorted(g.x, x[-1] + reach, side="right"))
     a, b = max(a - 1, 0), min(b, len(g.x) - 1)
@@ -49,23 +60,60 @@ def faces_near(g: Ground, x: Floats, z: Floats, reach: float) -> tuple[Floats32,
         faces[count, 5] = 1.0 / max(ex * ex + ez * ez, 1e-18)
         wheels[count, 0], wheels[count, 1] = first, last
         count += 1
-    return faces[:count], wheels[:count]
+    return Near(
+        (x - x[0]).astype(np.float32), (z - z[0]).astype(np.float32), faces[:count], wheels[:count]
+    )
+
+
+@nb.njit(cache=True, nogil=True)
+def ground_clearance(
+    g: Ground, near: Near, p: Planar, centres: Floats, hip: tuple[float, float],
+    thigh: tuple[float, float], look: float, least: float, out: Floats32,
+) -> None:  # fmt: skip
+    """Fill `out` (n,) with the clearance of a leg that moves with the wheel [m].
+
+    Args:
+        g, near: The ground, and what of it is near.
+        p: The robot.
+        centres: (n, 2) wheel centres [m].
+        hip: From the wheel's centre [m].
+        thigh: Its vector [m].
+        look: Clearances beyond this are not told apart [m].
+        least: Clearances below this are not told apart [m].
+        out: (n,) filled.
+    """
+    link, other = np.empty(4, np.float32), np.empty(len(out), np.float32)
+    reach, calf_reach = look + p.thigh_radius, look + p.calf_radius
+    out[:], other[:] = reach * reach, calf_reach * calf_reach
+    knee = (hip[0] + thigh[0], hip[1] + thigh[1])
+    link[0], link[1], link[2], link[3] = hip[0], hip[1], thigh[0], thigh[1]
+    nearer(near, link, reach, out)
+    link[0], link[1], link[2], link[3] = knee[0], knee[1], -knee[0], -knee[1]
+    nearer(near, link, calf_reach, other)
+    deepest = -min(p.thigh_radius, p.calf_radius)  # no link in the ground has more clearance
+    for i in range(len(out)):
+        if out[i] >= 0.0 and other[i] >= 0.0:
+            out[i] = min(math.sqrt(out[i]) - p.thigh_radius, math.sqrt(other[i]) - p.calf_radius)
+        elif deepest < least:
+            out[i] = deepest
+        else:
+            x, z = centres[i, 0], centres[i, 1]
+            kx, kz = x + knee[0], z + knee[1]
+            upper = link_clearance(g, x + hip[0], z + hip[1], kx, kz, p.thigh_radius, look)
+            out[i] = min(upper, link_clearance(g, kx, kz, x, z, p.calf_radius, look))
 
 
 @nb.njit(cache=True, error_model="numpy", fastmath=True, nogil=True)
-def nearer(
-    faces: Floats32, wheels: Ints, x: Floats32, z: Floats32, link: Floats32, reach: float,
-    best: Floats32,
-) -> None:  # fmt: skip
+def nearer(near: Near, link: Floats32, reach: float, best: Floats32) -> None:
     """Lower `best` to the squared gap between the ground and a link that moves with the wheel.
 
     Args:
-        faces, wheels: Of `faces_near`.
-        x, z: (n,) wheel centres less the first [m].
+        near: The ground.
         link: (4,) where it begins, from the wheel's centre, and its vector [m].
         reach: Larger gaps leave `best` as it is [m].
         best: (n,) squared gaps [m^2], `BURIED` where the link begins in the ground or crosses it.
     """
+    x, z, faces, wheels = near.x, near.z, near.faces, near.wheels
     ax, az, lx, lz = link[0], link[1], link[2], link[3]
     zero, one, buried = np.float32(0.0), np.float32(1.0), BURIED
     over = one / max(lx * lx + lz * lz, np.float32(1e-18))

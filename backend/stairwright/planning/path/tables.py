@@ -18,7 +18,7 @@ from stairwright.robot.description import Planar
 
 from .ground import Ground, box_clearance, link_clearance
 from .legs import Leg, knee_point
-from .links import faces_near, nearer
+from .links import ground_clearance, ground_near
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -135,12 +135,8 @@ def hip_grid(
     span = leg.reach_max - leg.reach_min
     soft = 0.15 * (p.thigh + p.calf) / 2.0
     load = p.mass * 9.81 / 4.0 / p.leg_torque
-    thigh_far, calf_far = soft + p.thigh_radius, soft + p.calf_radius
-    deepest = -min(p.thigh_radius, p.calf_radius)  # no link in the ground has more clearance
-    faces, wheels = faces_near(g, centres[:, 0], centres[:, 1], far + max(thigh_far, calf_far))
-    x = (centres[:, 0] - centres[0, 0]).astype(np.float32)
-    z = (centres[:, 1] - centres[0, 1]).astype(np.float32)
-    thigh, calf, link = np.empty(n, np.float32), np.empty(n, np.float32), np.empty(4, np.float32)
+    around = ground_near(g, centres, far + soft + max(p.thigh_radius, p.calf_radius))
+    clear = np.empty(n, np.float32)
     for v in range(size):
         dz = (v - lat.half) * fine
         for u in range(size):
@@ -157,30 +153,11 @@ def hip_grid(
             moment[at] = p.thigh_mass * (dx + p.thigh_com * ax)
             moment[at] += p.calf_mass * (1.0 - p.calf_com) * (dx + ax)
             base = 0.2 * f * f + pulls.torque * tau
-            thigh[:], calf[:] = thigh_far * thigh_far, calf_far * calf_far
-            link[0], link[1], link[2], link[3] = dx, dz, ax, az
-            nearer(faces, wheels, x, z, link, thigh_far, thigh)
-            link[0], link[1], link[2], link[3] = dx + ax, dz + az, -dx - ax, -dz - az
-            nearer(faces, wheels, x, z, link, calf_far, calf)
+            ground_clearance(g, around, p, centres, (dx, dz), (ax, az), soft, b.links, clear)
             for i in range(n):
-                if thigh[i] < 0.0 or calf[i] < 0.0:
-                    if deepest < b.links:
-                        continue
-                    hx, hz = centres[i, 0] + dx, centres[i, 1] + dz
-                    kx, kz = hx + ax, hz + az
-                    c = min(
-                        link_clearance(g, hx, hz, kx, kz, p.thigh_radius, soft),
-                        link_clearance(
-                            g, kx, kz, centres[i, 0], centres[i, 1], p.calf_radius, soft
-                        ),
-                    )
-                else:
-                    c = min(
-                        math.sqrt(thigh[i]) - p.thigh_radius, math.sqrt(calf[i]) - p.calf_radius
-                    )
-                if c < b.links:
+                if clear[i] < b.links:
                     continue
-                e = max(0.0, soft - c) / soft
+                e = max(0.0, soft - clear[i]) / soft
                 cost[i, v % 2, u % 2, v // 2, u // 2] = pulls.clearance * 0.25 * e * e + base
     return cost, moment, angle
 
