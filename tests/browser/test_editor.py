@@ -6,17 +6,16 @@ import itertools
 import json
 import math
 import re
+import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import pytest
 
-from .conftest import TERRAIN
+from .conftest import TERRAIN, Product
 
 if TYPE_CHECKING:
-    from playwright.sync_api import WebSocket
-
-    from .conftest import Product
+    from playwright.sync_api import Page, WebSocket, WebSocketRoute
 
 pytestmark = [pytest.mark.browser]
 
@@ -81,6 +80,38 @@ def test_poses_follow_a_drag_without_that_connection(offline_live: Product) -> N
     offline_live.open().fresh()
     _held(offline_live)
     assert offline_live.errors == []
+
+
+def test_previews_that_were_slow_once_are_tried_again(page: Page) -> None:
+    """A hiccup makes the quick method look no quicker than the full one."""
+    came = []
+
+    def relay(line: WebSocketRoute) -> None:
+        service = line.connect_to_server()
+
+        def late(answer: str | bytes) -> None:
+            came.append(answer)
+            if len(came) <= 2:
+                time.sleep(1.0)
+            line.send(answer)
+
+        line.on_message(service.send)
+        service.on_message(late)
+
+    page.route_web_socket("**/plans/live", relay)
+    held = Product(page).open().choose_terrain("stairs-us-7-11")
+    box = held.vertex(6).locator("rect").bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    for step in range(300):
+        page.mouse.move(box["x"] + 20 * math.sin(step / 5), box["y"] + 10 * math.sin(step / 7))
+        page.wait_for_timeout(50)
+        if len(came) > 4:
+            break
+    page.mouse.up()
+    assert len(came) > 4
+    assert held.planned().errors == []
 
 
 def test_x_cannot_pass_a_neighbour(product: Product) -> None:
