@@ -107,7 +107,7 @@ def test_a_worker_killed_while_idle_is_replaced() -> None:
         pid = await pool.run(os.getpid, deadline=10)
         os.kill(pid, signal.SIGKILL)
         await until(lambda: gone(pid))
-        await asyncio.sleep(3 * pools.CHECK_EVERY)
+        await asyncio.sleep(3 * pools.RESPITE)
         assert await pool.run(os.getpid, deadline=10) != pid
 
     tell(story)

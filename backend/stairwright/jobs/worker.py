@@ -1,17 +1,21 @@
-"""The first thing that a worker process does."""
+"""The inside of a worker process: what it sets up, and how it works off its tasks."""
 
 from __future__ import annotations
 
 import ctypes
 import gc
 import os
+import pickle
 import resource
 import signal
+import socket
+import struct
 import sys
+import traceback
 from dataclasses import dataclass
+from typing import Any
 
-from .board import read_board
-
+LENGTH = struct.Struct("!Q")  # before each message: its length without this
 _PR_SET_PDEATHSIG = 1
 
 
@@ -30,11 +34,39 @@ class Limits:
     sealed: bool = False
 
 
-def initialise(limits: Limits, board: str) -> None:
-    """Set the limits and the signals; `board` is the path of the pool's board."""
-    read_board(board)
+def serve(channel: socket.socket, limits: Limits) -> None:
+    """Answer every task that comes until the other side closes the channel."""
+    _initialise(limits)
+    with channel, channel.makefile("rb") as tasks:
+        while len(head := tasks.read(LENGTH.size)) == LENGTH.size:
+            channel.sendall(_outcome(tasks.read(*LENGTH.unpack(head))))
+
+
+def packed(message: Any) -> bytes:
+    """A message as it goes over the channel."""
+    content = pickle.dumps(message)
+    return LENGTH.pack(len(content)) + content
+
+
+def _outcome(task: bytes) -> bytes:
+    """Whether a function returned, and what it returned or raised."""
+    try:
+        function, args = pickle.loads(task)  # noqa: S301 - from the process that started this one
+        return packed((True, function(*args)))
+    except MemoryError:
+        return packed((False, MemoryError()))
+    except Exception as error:  # noqa: BLE001 - raised again on the other side
+        error.add_note(f"In a worker:\n{traceback.format_exc()}")
+        try:
+            return packed((False, error))
+        except Exception:  # noqa: BLE001 - not every exception can travel
+            return packed((False, RuntimeError(traceback.format_exc())))
+
+
+def _initialise(limits: Limits) -> None:
     gc.freeze()  # what was imported before the fork; a look at all of it takes longer than a plan
     signal.signal(signal.SIGTERM, signal.SIG_DFL)  # at once, even inside compiled code
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the service, which ends us
     die_with_parent()
     if limits.nice:
         os.nice(limits.nice)
