@@ -25,7 +25,7 @@ from .path.course import NoStand, Stand, find_stands, stand
 from .plan import Plan, Pose, Problem
 from .pose_locations import Obstacle, find_obstacles, front_places
 from .pose_search import Found, Place, PoseSearch
-from .poses import PoseWriter
+from .poses import complete_poses
 from .solver import now
 from .timing import pose_times
 from .weights import CriticalWeights
@@ -206,13 +206,10 @@ def _ahead(knots: list[_Knot]) -> list[_Knot]:
 
 def _poses(search: PoseSearch, knots: list[_Knot], speed: float) -> list[Pose]:
     wheels = np.array([knot.wheels for knot in knots])
+    trunks = np.array([knot.trunk for knot in knots])
+    joints = np.array([knot.joints for knot in knots])
     times = pose_times(wheels, speed)
-    progress = wheels.mean(axis=1) - wheels[0].mean()
-    writer = PoseWriter(search.robot, search.path, search.friction)
-    return [
-        writer.write(knot.trunk, knot.wheels, knot.joints, float(progress[i]), float(times[i]))
-        for i, knot in enumerate(knots)
-    ]
+    return complete_poses(search.robot, search.path, search.friction, trunks, wheels, joints, times)
 
 
 def _unbalanced(search: PoseSearch, poses: list[Pose]) -> Problem | None:

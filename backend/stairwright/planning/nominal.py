@@ -16,7 +16,7 @@ from .assembly import assemble
 from .diagnosis import no_stand, statics_limit
 from .path.course import NoStand, find_stands
 from .plan import Limit, Plan, Pose, Problem
-from .poses import PoseWriter
+from .poses import complete_poses
 from .solver import now
 from .timing import pose_times
 from .weights import NominalWeights
@@ -109,7 +109,6 @@ def _poses(
     standing = kinematics.standing_joints(robot)
     drop = robot.nominal_height - robot.wheel.radius
     times = pose_times(wheels, speed)
-    progress = wheels.mean(axis=1) - wheels[0].mean()
     front, rear = path.centres(wheels[:, 0]), path.centres(wheels[:, 1])
     line = front - rear
     pitch = -np.arctan2(line[:, 1], line[:, 0])
@@ -117,17 +116,9 @@ def _poses(
     hips = np.array([robot.hips.front, robot.hips.rear]).mean(axis=0)
     up = kinematics.rotate(pitch, np.tile([-hips[0], drop - hips[1]], (len(pitch), 1)))
     trunk = (front + rear) / 2 + up
-    writer = PoseWriter(robot, path, friction)
-    return [
-        writer.write(
-            (float(trunk[i, 0]), float(trunk[i, 1]), float(pitch[i])),
-            (float(wheels[i, 0]), float(wheels[i, 1])),
-            standing,
-            float(progress[i]),
-            float(times[i]),
-        )
-        for i in range(len(wheels))
-    ]
+    joints = np.tile(standing, (len(wheels), 1))
+    trunks = np.column_stack([trunk, pitch])
+    return complete_poses(robot, path, friction, trunks, wheels, joints, times)
 
 
 def _first_problem(friction: float, poses: list[Pose]) -> Problem | None:

@@ -9,15 +9,16 @@ two. A flight whose treads are too short for a tread is one obstacle.
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
 
+import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.terrain.wheel_path import WheelPath
+from stairwright.terrain.wheel_path import WheelPath, sample
 
+Flags = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
@@ -56,32 +57,49 @@ class Obstacle:
 
 def find_obstacles(path: WheelPath, low: float, high: float) -> list[Obstacle]:
     """Obstacles between the arc lengths `low` and `high`, in order."""
-    s = _samples(path, low, high)
-    z = path.centres(s)[:, 1]
-    step = np.diff(s)
-    gentle = np.abs(np.diff(z)) <= math.sin(LEVEL) * step + 1e-12
-    # Samples at the ends of pieces, and the first and the last one.
-    ends = np.unique([0, len(s) - 1, *np.flatnonzero(np.isin(s, path.pieces[:, 1]))])
-    found: list[Obstacle] = []
-    for first, last in _rough_stretches(s, gentle.tolist()):
-        for a, b in _monotone_runs(z[first : last + 1].tolist()):
-            found.append(_obstacle(path, s, z, ends, first + a, first + b))
-    return found
+    rows = _obstacles(path.pieces, path.radius, float(low), float(high))
+    return [Obstacle(*row) for row in rows.tolist()]
 
 
-def _samples(path: WheelPath, low: float, high: float) -> Floats:
-    ends = path.pieces[:, 1]
-    marks = np.concatenate([[low], ends[(ends > low) & (ends < high)], [high]])
-    parts = [
-        np.linspace(a, b, max(1, int(np.ceil((b - a) / _STEP))), endpoint=False)
-        for a, b in itertools.pairwise(marks)
-    ]
-    return np.unique(np.concatenate([*parts, [high]]))
+@nb.njit(cache=True)
+def _obstacles(pieces: Floats, radius: float, low: float, high: float) -> Floats:
+    """Rows with the numbers of an `Obstacle`."""
+    s, ends = _samples(pieces[:, 1], low, high)
+    z = sample(pieces, radius, s)[:, 1].copy()
+    gentle = np.abs(np.diff(z)) <= math.sin(LEVEL) * np.diff(s) + 1e-12
+    found = np.empty((len(s), 5))
+    count = 0
+    for first, last in _rough_stretches(s, gentle):
+        for a, b in _monotone_runs(z[first : last + 1]):
+            found[count] = _obstacle(pieces, radius, s, z, ends, first + a, first + b)
+            count += 1
+    return found[:count].copy()
 
 
-def _rough_stretches(s: Floats, gentle: list[bool]) -> list[tuple[int, int]]:
+@nb.njit(cache=True)
+def _samples(begins: Floats, low: float, high: float) -> tuple[Floats, Ints]:
+    """Arc lengths at most `_STEP` apart, and which of them are ends of pieces (or `low`, `high`).
+
+    `begins` holds where the pieces of the curve begin.
+    """
+    inner = begins[(begins > low) & (begins < high)]
+    marks = np.concatenate((np.array([low]), inner, np.array([high])))
+    s, ends = [low], [0]
+    for k in range(len(marks) - 1):
+        a, b = marks[k], marks[k + 1]
+        n = max(1, math.ceil((b - a) / _STEP))
+        for i in range(1, n):
+            s.append(a + i * ((b - a) / n))
+        if b > s[-1]:  # a piece may have no length
+            ends.append(len(s))
+            s.append(b)
+    return np.array(s), np.array(ends)
+
+
+@nb.njit(cache=True)
+def _rough_stretches(s: Floats, gentle: Flags) -> list[tuple[int, int]]:
     """Index ranges (first, last sample) between treads."""
-    out: list[tuple[int, int]] = []
+    out = [(0, 0) for _ in range(0)]
     first = 0
     i, n = 0, len(gentle)
     while i < n:
@@ -102,9 +120,10 @@ def _rough_stretches(s: Floats, gentle: list[bool]) -> list[tuple[int, int]]:
     return out
 
 
-def _monotone_runs(z: list[float]) -> list[tuple[int, int]]:
+@nb.njit(cache=True)
+def _monotone_runs(z: Floats) -> list[tuple[int, int]]:
     """Index ranges of rises and descents of at least `LOW`, smaller turns within them ignored."""
-    out: list[tuple[int, int]] = []
+    out = [(0, 0) for _ in range(0)]
     start, extreme, direction = 0, 0, 0.0
     for i in range(1, len(z)):
         if direction == 0.0:
@@ -120,7 +139,10 @@ def _monotone_runs(z: list[float]) -> list[tuple[int, int]]:
     return out
 
 
-def _obstacle(path: WheelPath, s: Floats, z: Floats, ends: Ints, a: int, b: int) -> Obstacle:
+@nb.njit(cache=True)
+def _obstacle(
+    pieces: Floats, radius: float, s: Floats, z: Floats, ends: Ints, a: int, b: int
+) -> tuple[float, float, float, float, float]:
     """The obstacle between two samples: whole arcs, without level pieces at its ends."""
     first = int(np.searchsorted(ends, a, side="right")) - 1
     last = int(np.searchsorted(ends, b, side="left"))
@@ -128,14 +150,14 @@ def _obstacle(path: WheelPath, s: Floats, z: Floats, ends: Ints, a: int, b: int)
     level = np.abs(np.diff(z[marks])) <= math.sin(LEVEL) * np.diff(s[marks]) + 1e-12
     steep = np.flatnonzero(~level)
     if len(steep):
-        a, b = int(marks[steep[0]]), int(marks[steep[-1] + 1])
-    height = float(z[b] - z[a])
+        a, b = marks[steep[0]], marks[steep[-1] + 1]
+    height = z[b] - z[a]
     # The normal (-sin, cos) of the steepest place; samples lie at pieces' ends, so look between.
     middle = (s[a:b] + s[a + 1 : b + 1]) / 2
-    slope = -math.copysign(1.0, height) * path.normals(middle)[:, 0]
-    steepest = float(slope.max())
-    place = float(middle[np.flatnonzero(slope >= steepest - 1e-6)[-1]])
-    return Obstacle(float(s[a]), float(s[b]), height, abs(height) / max(steepest, 1e-3), place)
+    slope = -math.copysign(1.0, height) * sample(pieces, radius, middle)[:, 2]
+    steepest = slope.max()
+    place = middle[np.flatnonzero(slope >= steepest - 1e-6)[-1]]
+    return s[a], s[b], height, abs(height) / max(steepest, 1e-3), place
 
 
 def front_places(obstacles: list[Obstacle], radius: float, end: float) -> list[tuple[float, float]]:

@@ -26,56 +26,67 @@ _SNAP = 1e-6  # rad; a joint that far beyond its limit is put onto it
 _Q, _WHEELS, _CONTACTS, _FORCES, _COM, _MARGINS, _RECORD = 0, 4, 8, 12, 16, 18, 22
 
 
-class PoseWriter:
-    """Completes poses of one robot on one terrain."""
+def complete_poses(
+    robot: Robot, path: WheelPath, friction: float, trunks: Floats, wheels: Floats, joints: Floats,
+    times: Floats,
+) -> list[Pose]:  # fmt: skip
+    """Pose documents of trunk poses with the wheels at places of the wheel-centre curve.
 
-    def __init__(self, robot: Robot, path: WheelPath, friction: float) -> None:
-        self._body, self._course = make_body(robot), make_course(path)
-        self._friction, self._weight = friction, weight_of(robot)
-        self._points = robot.collision_points.count
+    Args:
+        robot: The robot.
+        path: The wheel-centre curve.
+        friction: Between wheels and terrain.
+        trunks: (n, 3) x, z [m] and pitch [rad].
+        wheels: (n, 2) arc lengths of the front and the rear wheels [m].
+        joints: (n, 4) planar joints [rad], which count where a wheel is out of reach.
+        times: (n,) planned times since the start [s].
+    """
+    records = np.empty((len(trunks), _RECORD))
+    points = np.empty((len(trunks), robot.collision_points.count, 2))
+    _measure_all(
+        make_body(robot), make_course(path), friction, weight_of(robot),
+        np.hstack([trunks, wheels]), joints, records, points,
+    )  # fmt: skip
+    progress = wheels.mean(axis=1) - wheels[0].mean()
+    columns = (trunks, wheels, records, points, progress, times)
+    return [_pose(*row) for row in zip(*(column.tolist() for column in columns), strict=True)]
 
-    def write(
-        self,
-        trunk: tuple[float, float, float],
-        wheel_progress: tuple[float, float],
-        q: Floats,
-        progress: float,
-        time: float,
-    ) -> Pose:
-        """The pose document of a trunk pose with the wheels at places of the wheel-centre curve.
 
-        Args:
-            trunk: x, z [m] and pitch [rad].
-            wheel_progress: Arc lengths of the front and the rear wheels [m].
-            q: (4,) planar joints, which count where a wheel is out of reach.
-            progress: Mean arc length since the start [m].
-            time: Planned time since the start [s].
-        """
-        record, points = np.empty(_RECORD), np.empty((self._points, 2))
-        y = np.array([*trunk, *wheel_progress])
-        _measure(self._body, self._course, self._friction, self._weight, y, q, record, points)
-        r = record.tolist()
-        # The values are ours: validating them would take as long as finding them.
-        return Pose.model_construct(
-            progress=progress,
-            time=time,
-            x_c=float(trunk[0]),
-            z_c=float(trunk[1]),
-            pitch=float(trunk[2]),
-            q=(r[0], r[1], r[2], r[3]),
-            wheels=_pairs(r[_WHEELS:_CONTACTS]),
-            wheel_progress=(float(wheel_progress[0]), float(wheel_progress[1])),
-            contacts=_pairs(r[_CONTACTS:_FORCES]),
-            com=(r[_COM], r[_COM + 1]),
-            collision_points=[(x, z) for x, z in points.tolist()],
-            forces=_pairs(r[_FORCES:_COM]),
-            margins=Margins.model_construct(
-                clearance=r[_MARGINS],
-                com=_finite(r[_MARGINS + 1]),
-                friction=_finite(r[_MARGINS + 2]),
-                torque=_finite(r[_MARGINS + 3]),
-            ),
-        )
+def _pose(
+    trunk: list[float], wheels: list[float], r: list[float], points: list[list[float]],
+    progress: float, time: float,
+) -> Pose:  # fmt: skip
+    """The document of one pose; the values are ours: validating takes as long as finding them."""
+    return Pose.model_construct(
+        progress=progress,
+        time=time,
+        x_c=trunk[0],
+        z_c=trunk[1],
+        pitch=trunk[2],
+        q=(r[0], r[1], r[2], r[3]),
+        wheels=_pairs(r[_WHEELS:_CONTACTS]),
+        wheel_progress=(wheels[0], wheels[1]),
+        contacts=_pairs(r[_CONTACTS:_FORCES]),
+        com=(r[_COM], r[_COM + 1]),
+        collision_points=[(x, z) for x, z in points],
+        forces=_pairs(r[_FORCES:_COM]),
+        margins=Margins.model_construct(
+            clearance=r[_MARGINS],
+            com=_finite(r[_MARGINS + 1]),
+            friction=_finite(r[_MARGINS + 2]),
+            torque=_finite(r[_MARGINS + 3]),
+        ),
+    )
+
+
+@nb.njit(cache=True)
+def _measure_all(
+    body: Body, course: Course, friction: float, weight: float, y: Floats, q: Floats,
+    records: Floats, points: Floats,
+) -> None:  # fmt: skip
+    """`_measure` for each row."""
+    for i in range(len(y)):
+        _measure(body, course, friction, weight, y[i], q[i], records[i], points[i])
 
 
 @nb.njit(cache=True)

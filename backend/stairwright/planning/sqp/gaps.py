@@ -124,15 +124,15 @@ def _point(
             if gap > best:
                 best, face = gap, k
         least = min(least, best - task.clearance)
-        f = course.faces[face]
+        nx, nz, offset = _face(course, face)
         count = add_row(
-            rows, count, PLANE, i, -1, -1, f[0], f[1], 1.0, f[2] + task.clearance,
+            rows, count, PLANE, i, -1, -1, nx, nz, 1.0, offset + task.clearance,
             best - task.clearance,
         )  # fmt: skip
     return count, least
 
 
-@nb.njit(cache=True)
+@nb.njit(cache=True, inline="always")
 def _trunk(
     body: Body, course: Course, task: Task, st: State, cell: int,
     rows: Rows, count: int, least: float,
@@ -141,12 +141,12 @@ def _trunk(
     points, normals = st.points, st.normals
     best, axis, sign = -np.inf, 0, 0.0
     for k in range(course.spans[cell, 0], course.spans[cell, 1]):
-        f = course.faces[k]
+        nx, nz, offset = _face(course, k)
         low = np.inf
         for i in range(4):
-            low = min(low, f[0] * points[i, 0] + f[1] * points[i, 1])
-        if low - f[2] > best:
-            best, axis = low - f[2], k
+            low = min(low, nx * points[i, 0] + nz * points[i, 1])
+        if low - offset > best:
+            best, axis = low - offset, k
     first, last = course.spans[cell, 2], course.spans[cell, 3]
     for k in range(2):
         half = body.planar.half_length if k == 0 else body.planar.half_height
@@ -161,11 +161,11 @@ def _trunk(
             best, axis, sign = -high - half, k, -1.0
     least = min(least, best - task.clearance)
     if sign == 0.0:
-        f = course.faces[axis]
-        offset = f[2] + task.clearance
+        nx, nz, offset = _face(course, axis)
+        offset += task.clearance
         for i in range(4):
-            value = f[0] * points[i, 0] + f[1] * points[i, 1] - offset
-            count = add_row(rows, count, PLANE, i, -1, -1, f[0], f[1], 1.0, offset, value)
+            value = nx * points[i, 0] + nz * points[i, 1] - offset
+            count = add_row(rows, count, PLANE, i, -1, -1, nx, nz, 1.0, offset, value)
         return count, least
     offset = task.clearance
     offset += body.planar.half_length if axis == 0 else body.planar.half_height
@@ -177,7 +177,7 @@ def _trunk(
     return count, least
 
 
-@nb.njit(cache=True)
+@nb.njit(cache=True, inline="always")
 def _link(
     course: Course, task: Task, st: State, cell: int, a: int, b: int, normal: int, radius: float,
     rows: Rows, count: int, least: float,
@@ -187,12 +187,10 @@ def _link(
     nx, nz = st.normals[normal, 0], st.normals[normal, 1]
     best, axis, sign = -np.inf, 0, 0.0
     for k in range(course.spans[cell, 0], course.spans[cell, 1]):
-        f = course.faces[k]
-        low = min(
-            f[0] * points[a, 0] + f[1] * points[a, 1], f[0] * points[b, 0] + f[1] * points[b, 1]
-        )
-        if low - f[2] > best:
-            best, axis = low - f[2], k
+        fx, fz, offset = _face(course, k)
+        low = min(fx * points[a, 0] + fz * points[a, 1], fx * points[b, 0] + fz * points[b, 1])
+        if low - offset > best:
+            best, axis = low - offset, k
     first, last = course.spans[cell, 2], course.spans[cell, 3]
     low, high = np.inf, -np.inf
     for i in range(first, last):
@@ -205,10 +203,11 @@ def _link(
     bound = radius + task.clearance
     least = min(least, best - bound)
     if sign == 0.0:
-        f = course.faces[axis]
+        fx, fz, offset = _face(course, axis)
+        offset += bound
         for i in (a, b):
-            value = f[0] * points[i, 0] + f[1] * points[i, 1] - f[2] - bound
-            count = add_row(rows, count, PLANE, i, -1, -1, f[0], f[1], 1.0, f[2] + bound, value)
+            value = fx * points[i, 0] + fz * points[i, 1] - offset
+            count = add_row(rows, count, PLANE, i, -1, -1, fx, fz, 1.0, offset, value)
         return count, least
     for i in range(first, last):
         x, z = course.points[i, 0], course.points[i, 1]
@@ -248,7 +247,7 @@ def _legs(
     return count, least
 
 
-@nb.njit(cache=True)
+@nb.njit(cache=True, inline="always")
 def _segment(
     st: State, point: int, a: int, b: int, normal: int, length: float, offset: float,
     rows: Rows, count: int, least: float,
@@ -271,3 +270,9 @@ def _segment(
     value -= offset
     least = min(least, value)
     return add_row(rows, count, APART, point, end, -1, 0.0, 0.0, 1.0, offset, value), least
+
+
+@nb.njit(cache=True, inline="always")
+def _face(course: Course, k: int) -> tuple[float, float, float]:
+    """Normal and offset of a cell's face."""
+    return course.faces[k, 0], course.faces[k, 1], course.faces[k, 2]

@@ -9,24 +9,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .cells import Course
-from .nearest import nearest
+from .gaps import collect
+from .nearest import BETWEEN, nearest
 from .places import room
+from .rows import Rows, Task, new_rows
 from .search import TOLERANCE, Rules
-from .state import Body, com, new_state, place
+from .state import Body, State, com, new_state, place
 
 Floats = NDArray[np.float64]
 
 _STEP = 0.01  # m between places looked at
 _TRIES = 6  # places where the even motion tips that are solved for
 _SPARE = 0.002  # m that the CoM keeps from where balance ends
+_MOVES = 5  # of the trunk, until the CoM is where it must be
+_INSIDE = 5e-4  # m; so far inside it is aimed for, since legs take a part of each move back
 
 
 @nb.njit(cache=True)
 def imbalance(body: Body, course: Course, rules: Rules, begin: Floats, end: Floats) -> float:
     """How far the CoM of the even motion lies where no clear pose keeps balance [m]; 0 if nowhere.
 
-    Where the even motion tips, the clear pose nearest to it that does not is looked for: at the
-    worst place, and at a few others.
+    Where the even motion tips, a clear pose near it that does not is looked for: at the worst
+    place, and at a few others.
 
     Args:
         body: The robot.
@@ -51,7 +55,7 @@ def imbalance(body: Body, course: Course, rules: Rules, begin: Floats, end: Floa
     if len(tipping) == 0:
         return 0.0
     worst, start, x = 0.0, np.full(5, np.nan), np.empty(9)
-    wanted, wheels = np.empty(7), np.empty(2)
+    wanted, wheels, rows = np.empty(7), np.empty(2), new_rows()
     hardest = tipping[np.argmax(missing[tipping])]
     before = -1
     for k in range(_TRIES + 1):
@@ -66,6 +70,9 @@ def imbalance(body: Body, course: Course, rules: Rules, begin: Floats, end: Floa
         spare = min(_SPARE, 0.5 * (high - low))
         if low <= high:
             way = (low + spare, high - spare)
+            _even(begin, end, share, y)
+            if _moved(body, course, rules, way, y, st, rows):
+                continue
             _, violation = nearest(body, course, rules, wheels, wanted, way, start, x)
             if violation <= TOLERANCE:
                 continue
@@ -73,6 +80,34 @@ def imbalance(body: Body, course: Course, rules: Rules, begin: Floats, end: Floa
         if k == 0:
             break
     return worst
+
+
+@nb.njit(cache=True)
+def _moved(
+    body: Body, course: Course, rules: Rules, com_way: tuple[float, float], y: Floats, st: State,
+    rows: Rows,
+) -> bool:  # fmt: skip
+    """Whether a pose is clear once its trunk is moved along until the CoM is where it must be.
+
+    Args:
+        body, course, rules: See `imbalance`.
+        com_way: Least and largest x of the CoM [m].
+        y: (5,) x, z, pitch, arc lengths of the wheels; x is changed.
+        st, rows: Scratch.
+    """
+    low, high = com_way
+    inner = min(_INSIDE, (high - low) / 2)
+    for _ in range(_MOVES):
+        if not place(body, course, y, st):
+            return False
+        at = com(st, 0)
+        if low <= at <= high:
+            break
+        y[0] += min(max(at, low + inner), high - inner) - at
+    lower, upper, none = rules.lower.copy(), rules.upper.copy(), np.zeros(7)
+    lower[7:], upper[7:] = y[3:], y[3:]
+    task = Task(none, none, lower, upper, BETWEEN, rules.apart, -np.inf, True, low, high)
+    return bool(collect(body, course, task, st, rows)[1] >= -TOLERANCE)
 
 
 @nb.njit(cache=True)
