@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Generic, TypeVar
 
 from stairwright.storage.documents import Entry
@@ -39,11 +40,18 @@ class Flight(Generic[T]):
         self.waiting = 0
         self.started = False
 
-    def leave(self) -> None:
-        """One waits no longer. The last one takes the solve along.
+    async def answer(self) -> T:
+        """What comes of it. The last one who waits no longer takes the solve along.
 
         What is solved already is left a moment to finish, since a new worker is dearer.
         """
+        self.waiting += 1
+        try:
+            return await asyncio.shield(self.task)
+        finally:
+            self._leave()
+
+    def _leave(self) -> None:
         self.waiting -= 1
         if self.waiting == 0 and not self.task.done():
             delay = COURTESY if self.started else 0.0
@@ -63,7 +71,6 @@ class Planning:
         self._pool = pool
         self._deadline = deadline
         self._answers: dict[str, Flight[Answer]] = {}
-        self._previews: dict[str, Flight[bytes]] = {}
 
     def stored(self, question: PlanQuestion) -> Answer | None:
         """The plan if it is known already. Reads the database: call it in a thread."""
@@ -82,49 +89,33 @@ class Planning:
             InputError: If the planner refuses the question.
             Failure: If it could not be solved now.
         """
-        return await self._shared(self._answers, question, owner, self._solve)
+        key = question.key
+        flight = self._answers.get(key)
+        if flight is None or flight.task.cancelling():
+            flight = self._answers[key] = self._take_off(self._solve, question, owner)
+            flight.task.add_done_callback(partial(self._landed, key))
+        return await flight.answer()
 
     async def preview(self, question: PlanQuestion, owner: str) -> bytes:
-        """The plan's JSON, which is not stored. As `solve` otherwise."""
-        return await self._shared(self._previews, question, owner, self._preview)
-
-    async def _shared(
-        self,
-        flights: dict[str, Flight[T]],
-        question: PlanQuestion,
-        owner: str,
-        answer: Callable[[PlanQuestion, str, Flight[T]], Coroutine[Any, Any, T]],
-    ) -> T:
-        """What `answer` returns; who asks the same meanwhile gets it too."""
-        flight = flights.get(question.key)
-        if flight is None or flight.task.cancelling():
-            self.queue.check()
-            flight = self._take_off(flights, question, owner, answer)
-        flight.waiting += 1
-        try:
-            return await asyncio.shield(flight.task)
-        finally:
-            flight.leave()
+        """The plan's JSON, which is neither stored nor shared with who asks the same."""
+        return await self._take_off(self._preview, question, owner).answer()
 
     def _take_off(
         self,
-        flights: dict[str, Flight[T]],
+        work: Callable[[PlanQuestion, str, Flight[T]], Coroutine[Any, Any, T]],
         question: PlanQuestion,
         owner: str,
-        answer: Callable[[PlanQuestion, str, Flight[T]], Coroutine[Any, Any, T]],
     ) -> Flight[T]:
+        self.queue.check()
         flight = Flight[T]()
-
-        def landed(task: asyncio.Task[T]) -> None:
-            if flights.get(question.key) is flight:
-                del flights[question.key]
-            if not task.cancelled():
-                task.exception()  # every caller may have gone
-
-        flight.task = asyncio.create_task(answer(question, owner, flight))
-        flight.task.add_done_callback(landed)
-        flights[question.key] = flight
+        flight.task = asyncio.create_task(work(question, owner, flight))
+        flight.task.add_done_callback(_heard)
         return flight
+
+    def _landed(self, key: str, task: asyncio.Task[Answer]) -> None:
+        flight = self._answers.get(key)
+        if flight is not None and flight.task is task:
+            del self._answers[key]
 
     async def _solve(self, question: PlanQuestion, owner: str, flight: Flight[Answer]) -> Answer:
         folder = str(self._store.artefacts.folder)
@@ -141,6 +132,11 @@ class Planning:
         async with self.queue.slot(owner):
             flight.started = True
             return await self._pool.run(function, *args, deadline=self._deadline)
+
+
+def _heard(task: asyncio.Task[Any]) -> None:
+    if not task.cancelled():
+        task.exception()  # every caller may have gone
 
 
 def shelve_plan(store: Store, question: PlanQuestion, product: work.Product) -> Entry:

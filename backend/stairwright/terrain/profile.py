@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from functools import cached_property
 from typing import Annotated, Literal
 
@@ -81,29 +83,30 @@ def simplify(points: Floats) -> Floats:
     Of several points with one x only those matter that an observer above can see: the first, the
     highest and the last. A zero-width spike stays: it obstructs.
     """
-    out: list[Floats] = []
+    p: list[list[float]] = points.tolist()  # plain numbers: numpy is slow on one at a time
+    out: list[tuple[float, float]] = []
     i = 0
-    while i < len(points):
+    while i < len(p):
         j = i
-        while j + 1 < len(points) and points[j + 1, 0] - points[i, 0] <= MERGE_DISTANCE:
+        while j + 1 < len(p) and p[j + 1][0] - p[i][0] <= MERGE_DISTANCE:
             j += 1
-        column = points[i : j + 1]
-        top = column[np.argmax(column[:, 1])]
-        for point in (column[0], np.array([column[0, 0], top[1]]), column[-1]):
-            if not out or np.hypot(*(point - out[-1])) > MERGE_DISTANCE:
-                out.append(np.array([column[0, 0], point[1]]))
+        first, last = p[i], p[j]
+        top = max(z for _, z in p[i : j + 1])
+        for x, z in (first, (first[0], top), last):
+            if not out or math.dist((x, z), out[-1]) > MERGE_DISTANCE:
+                out.append((first[0], z))
         i = j + 1
-    return _join_collinear(np.array(out))
+    return np.array(_join_collinear(out))
 
 
-def _join_collinear(p: Floats) -> Floats:
-    keep = [0]
-    for i in range(1, len(p) - 1):
-        a, b = p[i] - p[keep[-1]], p[i + 1] - p[i]
-        cross = a[0] * b[1] - a[1] * b[0]
-        if abs(cross) > 1e-12 * max(1.0, float(np.hypot(*a))) or a @ b < 0:
-            keep.append(i)
-    return p[[*keep, len(p) - 1]]
+def _join_collinear(p: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    keep = p[:1]
+    for (bx, bz), (cx, cz) in itertools.pairwise(p[1:]):
+        ax, az = bx - keep[-1][0], bz - keep[-1][1]
+        ox, oz = cx - bx, cz - bz
+        if abs(ax * oz - az * ox) > 1e-12 * max(1.0, math.hypot(ax, az)) or ax * ox + az * oz < 0:
+            keep.append((bx, bz))
+    return [*keep, p[-1]]
 
 
 def height_at(vertices: Floats, x: Floats) -> Floats:
