@@ -31,6 +31,7 @@ _ROUNDS = 60
 _PATIENCE = 8  # rounds in which a violation must fall by `_FALL`, or there is no solution near
 _FALL = 0.8
 _HALVINGS = 8
+_MEMORY = 6  # rounds; a step must better the worst of so many (Grippo, Lampariello, Lucidi 1986)
 _LEAST_CURVATURE = 1e-3
 _LONGEST = (0.15, 0.15, 0.5, 0.05, 0.05)  # m, m, rad, m, m; of one step
 _RELAXED = 1e4  # cost of what linearised constraints lack where they contradict each other
@@ -69,6 +70,7 @@ def solve_pose(
     force = np.zeros(len(free) + 1)
     holding, penalty, rounds = 0, 1.0, 0
     closest, since = np.inf, 0
+    values, worsts = np.full(_MEMORY, -np.inf), np.zeros(_MEMORY)  # of the last rounds
     g, H, A = np.empty(5), np.empty((5, 5)), np.empty((len(rows.value), len(free)))
     while rounds < _ROUNDS:
         rounds += 1
@@ -92,7 +94,8 @@ def solve_pose(
             if abs(step[k]) > _LONGEST[k]:
                 shorten = min(shorten, _LONGEST[k] / abs(step[k]))
         slope = (g * step).sum() - penalty * worst * (0.0 if relaxed else 1.0)
-        now, accepted = value + penalty * worst, False
+        values[rounds % _MEMORY], worsts[rounds % _MEMORY] = value, worst
+        now, accepted = (values + penalty * worsts).max(), False
         for _ in range(_HALVINGS):
             if place(body, course, y + shorten * step, trial):
                 number, slack = collect(body, course, task, trial, other)
