@@ -67,6 +67,35 @@ def test_results_and_exceptions_come_back() -> None:
     tell(story)
 
 
+def test_the_worker_that_was_at_work_last_is_asked_first() -> None:
+    async def story(pool: WorkerPool) -> None:
+        both = await asyncio.gather(*(pool.run(time.sleep, 0.3, deadline=10) for _ in range(2)))
+        assert both == [None, None]  # two workers are there
+        last = await pool.run(os.getpid, deadline=10)
+        assert [await pool.run(os.getpid, deadline=10) for _ in range(5)] == [last] * 5
+
+    tell(story, workers=2)
+
+
+def test_answers_longer_than_a_socket_holds_come_back_whole() -> None:
+    async def story(pool: WorkerPool) -> None:
+        content = os.urandom(20 * 2**20)
+        assert await pool.run(bytes, content, deadline=20) == content
+
+    tell(story)
+
+
+def test_what_cannot_travel_is_told_all_the_same() -> None:
+    async def story(pool: WorkerPool) -> None:
+        with pytest.raises(TypeError, match="pickle"):
+            await pool.run(open, os.devnull, deadline=10)
+        with pytest.raises(json.JSONDecodeError) as failed:
+            await pool.run(json.loads, "{", deadline=10)
+        assert "json/decoder.py" in "".join(failed.value.__notes__)  # the log needs the place
+
+    tell(story)
+
+
 def test_a_deadline_kills_the_worker_and_the_next_task_runs() -> None:
     async def story(pool: WorkerPool) -> None:
         before = await pool.run(os.getpid, deadline=10)

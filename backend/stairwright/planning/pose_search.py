@@ -28,7 +28,7 @@ APART = 0.006  # m between front and rear leg
 TRIES = 4  # places where many first guesses are tried when the usual ones find nothing
 FREE = 1e3  # m; a bound that bounds nothing
 _TIPPED = 20.0  # 1/m; what lost balance on the way weighs against room for the CoM
-_TURN = 0.05  # 1/rad^2; what turning the joints weighs against room for the CoM
+_TURN = 0.06  # 1/rad^2; what turning the joints weighs against room for the CoM
 _NOTHING = np.full(5, np.nan)
 _ANYWHERE = np.array([[-np.inf, np.inf]])
 

@@ -25,11 +25,13 @@ from stairwright.api.services import Services
 from stairwright.jobs.planning import Answer
 from stairwright.jobs.questions import PlanQuestion
 from stairwright.planning.plan import Plan
+from stairwright.terrain.profile import Terrain
 
 from . import stored
 
 router = APIRouter(prefix="/plans", tags=["plans"])
 PlanId = Annotated[str, Path(max_length=64, examples=["p-0123456789abcdef"])]
+AT_ONCE = 200  # points of a terrain that is ready sooner than a thread would be
 PlanFormat = Literal["json", "csv", "npz", "mcap", "mjcf"]
 PLAN_MEDIA = (
     "application/json",
@@ -77,7 +79,10 @@ async def answered(services: Services, body: PlanRequest, owner: str) -> Answer:
 
 async def previewed(services: Services, body: PlanRequest, owner: str) -> bytes:
     """The JSON of a new answer that is not stored."""
-    question = await asyncio.to_thread(plan_question, services, body)
+    if isinstance(body.terrain, Terrain) and len(body.terrain.points) <= AT_ONCE:
+        question = plan_question(services, body)
+    else:
+        question = await asyncio.to_thread(plan_question, services, body)
     content = await services.planning.preview(question, owner)
     services.metrics.plans.labels("false").inc()
     return content

@@ -123,17 +123,17 @@ def nearer(near: Near, link: Floats32, reach: float, best: Floats32) -> None:
         if faces[k, 4] < bottom:
             continue
         a, b = wheels[k, 0], wheels[k, 1]
-        near, far = faces[k, 0] - high, faces[k, 0] + faces[k, 2] - low
-        while a < b and x[a] < near:
+        first, last = faces[k, 0] - high, faces[k, 0] + faces[k, 2] - low
+        while a < b and x[a] < first:
             a += 1
-        while b > a and x[b - 1] > far:
+        while b > a and x[b - 1] > last:
             b -= 1
         cx, cz = faces[k, 0] - ax, faces[k, 1] - az
         ex, ez, short = faces[k, 2], faces[k, 3], faces[k, 5]
         turn, along = lx * ez - lz * ex, lx * ex + lz * ez
         u, v, out = x[a:b], z[a:b], best[a:b]
         for i in range(b - a):
-            # From the link's begin to the face's; `cross` > 0 on the ground's side of either.
+            # From the link's begin to the face's; s, f: on which side of link and of face.
             rx, rz = cx - u[i], cz - v[i]
             re, rl = rx * ex + rz * ez, rx * lx + rz * lz
             s, f = lx * rz - lz * rx, ez * rx - ex * rz

@@ -21,6 +21,7 @@ Floats = NDArray[np.float64]
 _STEP = 0.01  # m between places looked at
 _TRIES = 6  # places where the even motion tips that are solved for
 _SPARE = 0.002  # m that the CoM keeps from where balance ends
+_LIFTS = (0.0, -0.04, 0.04)  # m; a trunk that cannot be there as high as it is may be so
 _MOVES = 5  # of the trunk, until the CoM is where it must be
 _INSIDE = 5e-4  # m; so far inside it is aimed for, since legs take a part of each move back
 
@@ -87,27 +88,32 @@ def _moved(
     body: Body, course: Course, rules: Rules, com_way: tuple[float, float], y: Floats, st: State,
     rows: Rows,
 ) -> bool:  # fmt: skip
-    """Whether a pose is clear once its trunk is moved along until the CoM is where it must be.
+    """Whether a pose is clear once its trunk is moved to where the CoM must be.
 
     Args:
         body, course, rules: See `imbalance`.
         com_way: Least and largest x of the CoM [m].
-        y: (5,) x, z, pitch, arc lengths of the wheels; x is changed.
+        y: (5,) x, z, pitch, arc lengths of the wheels; x and z are changed.
         st, rows: Scratch.
     """
     low, high = com_way
     inner = min(_INSIDE, (high - low) / 2)
-    for _ in range(_MOVES):
-        if not place(body, course, y, st):
-            return False
-        at = com(st, 0)
-        if low <= at <= high:
-            break
-        y[0] += min(max(at, low + inner), high - inner) - at
     lower, upper, none = rules.lower.copy(), rules.upper.copy(), np.zeros(7)
     lower[7:], upper[7:] = y[3:], y[3:]
     task = Task(none, none, lower, upper, BETWEEN, rules.apart, -np.inf, True, low, high)
-    return bool(collect(body, course, task, st, rows)[1] >= -TOLERANCE)
+    x, z = y[0], y[1]
+    for lift in _LIFTS:
+        y[0], y[1] = x, z + lift
+        for _ in range(_MOVES):
+            if not place(body, course, y, st):
+                break
+            at = com(st, 0)
+            if low <= at <= high:
+                if collect(body, course, task, st, rows)[1] >= -TOLERANCE:
+                    return True
+                break
+            y[0] += min(max(at, low + inner), high - inner) - at
+    return False
 
 
 @nb.njit(cache=True)
