@@ -142,6 +142,29 @@ def test_a_worker_killed_while_idle_is_replaced() -> None:
     tell(story)
 
 
+@pytest.mark.parametrize("error", [EOFError, BrokenPipeError])
+def test_failing_to_fork_costs_no_worker(
+    error: type[Exception], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The process that workers are forked from died: before it was asked, or while it forked."""
+    process = launch.context().Process
+    begin, failures = process.start, [error()]
+
+    def start(self: object) -> None:
+        if failures:
+            raise failures.pop()
+        begin(self)
+
+    monkeypatch.setattr(pools, "RETRY", 0.05)
+    monkeypatch.setattr(process, "start", start)
+
+    async def story(pool: WorkerPool) -> None:
+        assert await pool.run(json.loads, "1", deadline=10) == 1
+        assert not failures
+
+    tell(story)
+
+
 def test_cancelling_the_caller_kills_the_worker() -> None:
     async def story(pool: WorkerPool) -> None:
         pid = await pool.run(os.getpid, deadline=10)

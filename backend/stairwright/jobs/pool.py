@@ -84,7 +84,7 @@ class WorkerPool:
         while True:
             try:
                 worker = await WorkerProcess.start(self._limits)
-            except OSError:
+            except (OSError, EOFError):
                 logger.exception("a worker of the pool %s cannot be started", self.name)
                 await asyncio.sleep(RETRY)
                 continue

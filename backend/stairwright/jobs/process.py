@@ -38,6 +38,7 @@ class WorkerProcess(asyncio.Protocol):
 
         Raises:
             OSError: If the system has no room for it.
+            EOFError: If the process that it is forked from ends meanwhile.
         """
         ours, theirs = socket.socketpair()
         try:
