@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import shapely
 
 import stairwright as sw
 from stairwright.planning.certificate import certify
+from stairwright.planning.path import refine
+from stairwright.planning.path.contacts import path_intervals
+from stairwright.planning.path.densify import contact_changes
+from stairwright.planning.path.lattice import LAG
 from stairwright.robot import kinematics as kin
 from stairwright.terrain.profile import Terrain
+from stairwright.terrain.wheel_path import wheel_path
 
 ROBOTS = ("a1_wheeled", "a1_wheeled_x")
 STAIR = [(-1.5, 0.0), (0.0, 0.0), (0.0, 0.36), (1.5, 0.36)]
@@ -204,6 +210,59 @@ def test_certificate_refuses_tampered_plans():
     bent = (pose.q[0], pose.q[1] - 1.5, pose.q[2], pose.q[3])
     assert "slack of the joint limits" in failed(with_pose(q=bent))
     assert "samples out of balance" in failed(certify(plan.model_copy(update={"friction": 0.05})))
+
+
+def links_clearance(plan, samples):
+    """Least distance of the links from the ground while poses are interpolated [m], by shapely."""
+    robot = plan.robot_description
+    knots = np.arange(len(plan.poses))
+    at = np.linspace(0, knots[-1], samples * knots[-1] + 1)
+    poses = np.array([(p.x_c, p.z_c, p.pitch, *p.q) for p in plan.poses])
+    x, z, pitch, *q = (np.interp(at, knots, column) for column in poses.T)
+    frames = kin.forward(robot, x, z, pitch, np.stack(q, axis=1))
+    ground = shapely.LineString(plan.terrain.vertices)
+    least = [
+        shapely.distance(ground, shapely.linestrings(np.stack([a, b], axis=2))) - radius
+        for a, b, radius in (
+            (frames.hips, frames.knees, robot.thigh.radius),
+            (frames.knees, frames.wheels, robot.calf.radius),
+        )
+    ]
+    return float(np.min(least))
+
+
+@pytest.mark.parametrize(("less", "passed"), [(0.0006, True), (-0.0001, False)])
+def test_certificate_tells_clearances_apart_to_less_than_a_millimetre(stair_plan, less, passed):
+    """However far the robot moves between two samples elsewhere."""
+    robot = stair_plan.robot_description
+    thicker = links_clearance(stair_plan, 60) - less
+    changed = {
+        part: getattr(robot, part).model_copy(
+            update={"radius": getattr(robot, part).radius + thicker}
+        )
+        for part in ("thigh", "calf")
+    }
+    plan = stair_plan.model_copy(update={"robot_description": robot.model_copy(update=changed)})
+    (check,) = [c for c in certify(plan).checks if c.name == "clearance of the links"]
+    assert check.passed == passed
+    assert check.value <= links_clearance(plan, 60) + 1e-9
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_what_changes_between_two_nodes_is_kept_at_both(robot):
+    """Contacts change where no node lies; the CoM keeps what holds there too."""
+    path = wheel_path(terrain(STAIR), sw.load_robot(robot).wheel.radius)
+    radius = sw.load_robot(robot).wheel.radius
+    s = np.stack([np.linspace(0.6, path.length - 0.2, 90), np.linspace(0.1, 1.6, 90)], axis=1)
+    spans = refine._intervals(path, radius, s, 0.6, 0.5)
+    at = contact_changes(path.pieces, path.corners, s)
+    assert len(at) > 4
+    between = np.stack([np.interp(at, np.arange(90), s[:, k]) for k in range(2)], axis=1)
+    there = np.empty((len(at), 6))
+    path_intervals(path.pieces, path.corners, radius, between, 0.6, 0.5, LAG, there)
+    for k in (np.floor(at).astype(int), np.ceil(at).astype(int)):
+        assert np.all(spans[k, ::2] >= there[:, ::2])
+        assert np.all(spans[k, 1::2] <= there[:, 1::2])
 
 
 def test_same_question_same_answer():

@@ -68,6 +68,24 @@ def _far_apart(
     return bad
 
 
+def contact_changes(pieces: Floats, corners: Floats, s: Floats) -> Floats:
+    """Where contacts change between nodes, as fractional node numbers (m,).
+
+    Args:
+        pieces, corners: The wheel-centre curve.
+        s: (n, 2) arc lengths of front and rear wheel.
+    """
+    marks = np.concatenate([pieces[1:, 1], corners - TOUCH, corners, corners + TOUCH])
+    found = [np.empty(0)]
+    for wheel in range(2):
+        a, b = s[:-1, wheel], s[1:, wheel]
+        lo, hi = np.minimum(a, b), np.maximum(a, b)
+        for mark in marks[(marks > lo.min()) & (marks < hi.max())]:
+            k = np.flatnonzero((lo < mark) & (mark < hi))
+            found.append(k + (mark - a[k]) / (b[k] - a[k]))
+    return np.concatenate(found)
+
+
 def densify(
     pieces: Floats,
     corners: Floats,
@@ -88,16 +106,7 @@ def densify(
         The denser `s` and `body`.
     """
     t = np.arange(len(s), dtype=float)
-    marks = np.concatenate([pieces[1:, 1], corners - TOUCH, corners, corners + TOUCH])
-    added = [t]
-    for wheel in range(2):
-        a, b = s[:-1, wheel], s[1:, wheel]
-        lo, hi = np.minimum(a, b), np.maximum(a, b)
-        inside = marks[(marks > lo.min()) & (marks < hi.max())]
-        for mark in inside:
-            k = np.flatnonzero((lo < mark) & (mark < hi))
-            added.append(k + (mark - a[k]) / (b[k] - a[k]))
-    u = np.unique(np.concatenate(added))
+    u = np.unique(np.concatenate([t, contact_changes(pieces, corners, s)]))
     u = u[np.concatenate([[True], np.diff(u) > 1e-6])]
     for _ in range(_PASSES):
         dense_s = np.stack([np.interp(u, t, s[:, k]) for k in range(2)], axis=1)

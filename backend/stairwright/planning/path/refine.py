@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ from stairwright.terrain.wheel_path import WheelPath
 from . import polish as po
 from .contacts import path_intervals
 from .course import Stand, scale, stand_height
-from .densify import densify
+from .densify import contact_changes, densify
 from .ground import Ground
 from .lattice import LAG
 from .legs import Leg
@@ -22,10 +23,10 @@ from .record import Record, evaluate_path
 
 Floats = NDArray[np.float64]
 
-_BODY_SHARE = 0.3  # body motion counts this much against wheel travel in a node's spacing
 _CLEAR = 0.016  # m; clearance that the polish aims at
-# Smoothing, and metres of path per node, of one attempt after the other.
-_TRIES = ((1.0, 0.009), (0.5, 0.006), (0.15, 0.006))
+# Of one attempt after the other: smoothing, metres of path per node, and how much the trunk moving
+# counts as path against the wheels' travel.
+_TRIES = ((1.0, 0.009, 0.3), (0.5, 0.006, 0.6), (0.15, 0.006, 0.6))
 _LOST = -0.004  # m; a second attempt that breaks a bound by more is not mended by a third
 
 
@@ -53,32 +54,37 @@ def refine(
     friction: float,
     reserve: float,
     weights: PathWeights,
-) -> Refined:
-    """Turn lattice poses into dense, smooth ones; the smoothest attempt that keeps all bounds."""
-    best: Refined | None = None
+) -> Iterator[Refined]:
+    """Turn lattice poses into dense, smooth ones: one attempt after the other, the smoothest first.
+
+    Args:
+        path, ground, robot, legs: The terrain and the robot.
+        stands: Where the path begins and ends.
+        s: (n, 2) arc lengths of front and rear wheel [m].
+        body: (n, 3) trunk poses.
+        friction: Coulomb friction.
+        reserve: Lower friction that is kept where the terrain allows it.
+        weights: What to trade off.
+    """
     body = body.copy()
-    s = s.copy()
     for k in range(2):
         body[-k] = stands[k].body
-    u = _spacing(s, body)
-    for tries, (soft, spacing) in enumerate(_TRIES):
-        n = max(40, int(u[-1] / (spacing * scale(robot))))
+    p, size = robot.planar, scale(robot)
+    for tries, (soft, spacing, swing) in enumerate(_TRIES):
+        u = _spacing(s, body, swing)
+        n = max(40, int(u[-1] / (spacing * size)))
         even = np.linspace(0.0, u[-1], n)
         hop = even[1]
         nodes_s = np.stack([np.interp(even, u, s[:, k]) for k in range(2)], axis=1)
         nodes_body = np.stack([np.interp(even, u, body[:, k]) for k in range(3)], axis=1)
-        nodes_s = _smooth(nodes_s, soft * 0.01 * scale(robot) / hop)
-        nodes_body = _smooth(nodes_body, soft * 0.05 * scale(robot) / hop)
+        nodes_s = _smooth(nodes_s, soft * 0.01 * size / hop)
+        nodes_body = _smooth(nodes_body, soft * 0.05 * size / hop)
         if (np.diff(s, axis=0) >= 0).all():
             nodes_s = np.maximum.accumulate(nodes_s, axis=0)
         for k in range(2):
             nodes_s[-k], nodes_body[-k] = stands[k].wheels, stands[k].body
         nodes_body = np.ascontiguousarray(nodes_body)
-        spans = np.empty((n, 6))
-        p = robot.planar
-        path_intervals(
-            path.pieces, path.corners, p.wheel_radius, nodes_s, friction, reserve, LAG, spans
-        )
+        spans = _intervals(path, p.wheel_radius, nodes_s, friction, reserve)
         wheels = np.concatenate([path.centres(nodes_s[:, k]) for k in range(2)], axis=1)
         fixed = np.zeros(n, np.bool_)
         fixed[0] = fixed[-1] = True
@@ -86,24 +92,49 @@ def refine(
         po.polish(
             ground, p, *legs, nodes_body, wheels, spans, _wishes(robot, weights, share),
             20.0 * weights.smoothness / share, 600.0 * soft * weights.smoothness / share**3,
-            0.25 * scale(robot), fixed, 40,
+            0.25 * size, fixed, 40,
         )  # fmt: skip
         dense_s, dense_body = densify(path.pieces, path.corners, p, legs, nodes_s, nodes_body)
         record = evaluate_path(path, ground, robot, legs, dense_s, dense_body, friction)
-        found = Refined(dense_s, dense_body, record)
-        if best is None or record.worst > best.record.worst:
-            best = found
-        if record.good or (tries > 0 and record.worst < _LOST):
+        yield Refined(dense_s, dense_body, record)
+        if tries > 0 and record.worst < _LOST:
             break
-    assert best is not None
-    return best
 
 
-def _spacing(s: Floats, body: Floats) -> Floats:
-    """Path parameter (n,) of lattice poses: wheel travel and some of the body's motion."""
+def best_of(attempts: Iterable[Refined]) -> Refined:
+    """The first that keeps all bounds, else the one that breaks them least."""
+    found: list[Refined] = []
+    for attempt in attempts:
+        if attempt.record.good:
+            return attempt
+        found.append(attempt)
+    return max(found, key=lambda one: one.record.worst)
+
+
+def _intervals(path: WheelPath, r: float, s: Floats, friction: float, reserve: float) -> Floats:
+    """CoM intervals (n, 6) of nodes, see `path_intervals`, each also good to the next ones.
+
+    Where contacts change between two nodes both keep what holds there: the CoM moves linearly.
+    """
+    n = len(s)
+    at = contact_changes(path.pieces, path.corners, s)
+    between = np.stack([np.interp(at, np.arange(n), s[:, k]) for k in range(2)], axis=1)
+    spans = np.empty((n + len(at), 6))
+    path_intervals(
+        path.pieces, path.corners, r, np.concatenate([s, between]), friction, reserve, LAG, spans
+    )
+    nodes, changes = spans[:n], spans[n:]
+    for k in (np.floor(at).astype(int), np.ceil(at).astype(int)):
+        np.maximum.at(nodes[:, ::2], k, changes[:, ::2])
+        np.minimum.at(nodes[:, 1::2], k, changes[:, 1::2])
+    return nodes
+
+
+def _spacing(s: Floats, body: Floats, swing: float) -> Floats:
+    """Path parameter (n,) of lattice poses: wheel travel and `swing` times the trunk's."""
     rolled = 0.5 * np.abs(np.diff(s, axis=0)).sum(axis=1)
     moved = np.hypot(np.diff(body[:, 0]), np.diff(body[:, 1])) + 0.25 * np.abs(np.diff(body[:, 2]))
-    return np.concatenate([[0.0], np.cumsum(np.hypot(rolled, _BODY_SHARE * moved) + 1e-9)])
+    return np.concatenate([[0.0], np.cumsum(np.hypot(rolled, swing * moved) + 1e-9)])
 
 
 def _smooth(a: Floats, sigma: float) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time as clock
+from collections.abc import Iterator
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 
@@ -21,7 +22,7 @@ from .course import Stand, find_stands
 from .ground import Ground, make_ground
 from .lattice import Finding
 from .legs import LEGS_GAP, Leg, make_legs
-from .refine import Refined, refine
+from .refine import Refined, best_of, refine
 from .tables import Bounds
 from .windows import Searches, find_path
 
@@ -188,10 +189,7 @@ class Course:
         if finding.s is None or finding.body is None or len(finding.s) < 2:
             return [], [], 0.0
         last = Stand((float(finding.s[-1, 0]), float(finding.s[-1, 1])), finding.body[-1])
-        found = refine(
-            self.path, self.ground, self.robot, self.legs, (self.stands[0], last), finding.s,
-            finding.body, self.friction, self.reserve, self.weights,
-        )  # fmt: skip
+        found = best_of(self._refine(finding, (self.stands[0], last)))
         bad = np.flatnonzero(found.record.room < 0.0)
         if len(bad):
             found = found.until(int(bad[0]))
@@ -201,20 +199,33 @@ class Course:
 
     def finish(self, finding: Finding) -> Solved | Blocked:
         """Polish and certify; where that fails, the pair of arc lengths at the worst place."""
+        found: list[Refined] = []
+        for attempt in self._refine(finding, self.stands):
+            solved = self._certified(attempt) if attempt.record.good else None
+            if solved is not None:
+                return solved
+            found.append(attempt)
+        best = max(found, key=lambda one: one.record.worst)
+        if best.record.worst >= 0.0 and not best.record.good:
+            solved = self._certified(best)
+            if solved is not None:
+                return solved
+        worst = best.s[int(best.record.room.argmin())]
+        return Blocked((float(worst[0]), float(worst[1])), True, best.record.only_torque)
+
+    def _refine(self, finding: Finding, stands: tuple[Stand, Stand]) -> Iterator[Refined]:
         assert finding.s is not None
         assert finding.body is not None
-        found: Refined = refine(
-            self.path, self.ground, self.robot, self.legs, self.stands, finding.s, finding.body,
+        return refine(
+            self.path, self.ground, self.robot, self.legs, stands, finding.s, finding.body,
             self.friction, self.reserve, self.weights,
         )  # fmt: skip
-        worst = found.s[int(found.record.room.argmin())]
-        blocked = Blocked((float(worst[0]), float(worst[1])), True, found.record.only_torque)
-        if found.record.worst < 0.0:
-            return blocked
+
+    def _certified(self, found: Refined) -> Solved | None:
         poses, keys, total = make_poses(self.path, self.robot, found, self.weights)
         plan: Plan = make_plan(
             self.terrain, self.robot, self.friction, self.weights, clock.perf_counter(), poses,
             keys, total,
         )  # fmt: skip
         certificate = certify(plan)
-        return Solved(poses, keys, total, certificate) if certificate.passed else blocked
+        return Solved(poses, keys, total, certificate) if certificate.passed else None
