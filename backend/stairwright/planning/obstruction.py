@@ -31,8 +31,8 @@ from .threads import search_threads
 Way = tuple[list[Pose], list[int], float]  # poses, key poses, duration [s]
 
 _ROUGH = 1.3  # relative precision of a factor before other quantities were asked
-_MORE = (1.005, 1.04, 1.1, 1.25, 1.6, 2.5, 4.0)  # on the least factor: planning is tried there
-_SURE = 1.06  # relative precision of a value that only whole plans can tell
+_MORE = (1.005, 1.05, 1.15, 1.3, 1.7, 2.5, 4.0)  # on the least factor: planning is tried there
+_SURE = 1.15  # relative precision of a value that only whole plans can tell
 _RIVALS = 2  # candidates for which planning is tried
 _ASKED = 2  # times that candidates are ranked anew, without those that led nowhere
 
@@ -79,10 +79,10 @@ def _ranked(
     least = _least(course, first, math.inf, _ROUGH, pool)
     low, ratio = least or (1.0, math.inf)
     ranked = [(first, ratio)] if least else []
-    others = [one for one in others if one.highest(ratio) > 1.0]
-    opened = pool.map(lambda one: one.opens(course, one.highest(ratio)), others)
-    for candidate in [one for one, opens in zip(others, opened, strict=True) if opens]:
-        found = _least(course, candidate, ratio, 1.0 + CLOSE, pool)
+    asked = [(one, one.highest(ratio)) for one in others if one.highest(ratio) > 1.0]
+    opened = list(pool.map(lambda one: one[0].opens(course, one[1]), asked))
+    for candidate, high in [one for one, opens in zip(asked, opened, strict=True) if opens]:
+        found = _least(course, candidate, ratio, 1.0 + CLOSE, pool, high)
         if found is not None:
             ratio = found[1]
             ranked.insert(0, (candidate, ratio))
@@ -99,13 +99,27 @@ def _ranked(
 
 
 def _least(
-    course: Course, candidate: Candidate, below: float, close: float, pool: Executor
+    course: Course,
+    candidate: Candidate,
+    below: float,
+    close: float,
+    pool: Executor,
+    known: float = math.inf,
 ) -> tuple[float, float] | None:
-    """Factors of which the larger opens the way, if less than `below`, and the smaller does not."""
+    """Factors of which the larger opens the way, if less than `below`, and the smaller does not.
+
+    Args:
+        course, candidate, pool: Who asks about what.
+        below: The factor is of interest if it is less.
+        close: Largest quotient of the factors.
+        known: A factor that opens the way.
+    """
     high = candidate.highest(below)
     if high <= 1.0:
         return None
     opens = partial(candidate.opens, course)
+    if known <= high:
+        return _narrow(opens, 1.0, known, close, pool)
     middle = math.sqrt(high)
     half, whole = pool.map(opens, (middle, high))
     if half:

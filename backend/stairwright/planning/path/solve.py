@@ -33,9 +33,10 @@ RESERVE = 0.1  # friction that a plan does without where the terrain allows it
 # What lattice poses keep: a little more than the final bounds (strict); as much less as rounding to
 # the lattice may take from a pose that is really possible (bold: the polish must repair it); or so
 # much less that a search without success settles the matter (hope; the polish repairs many of its
-# finds, and sooner than a finer lattice would spare it the work).
+# finds, and sooner than a finer lattice would spare it the work); or what lies between (keen).
 STRICT = Bounds(trunk=0.006, links=0.006, legs=LEGS_GAP, reach=0.003, thigh=0.0, com=0.005)
 BOLD = Bounds(trunk=-0.003, links=-0.003, legs=-0.003, reach=0.0, thigh=-0.02, com=-0.01)
+KEEN = Bounds(trunk=-0.006, links=-0.006, legs=-0.006, reach=-0.003, thigh=-0.04, com=-0.015)
 HOPE = Bounds(trunk=-0.009, links=-0.009, legs=-0.009, reach=-0.006, thigh=-0.06, com=-0.02)
 
 
@@ -57,7 +58,7 @@ LADDER = (  # rungs of one step are tried together; the first path is taken
     (Rung(2.0, STRICT),),
     (Rung(1.7, BOLD), Rung(1.7, HOPE, roll_back=True, probe=True)),
     (Rung(1.7, BOLD, roll_back=True), Rung(1.7, HOPE)),
-    (Rung(1.4, HOPE), Rung(1.0, HOPE)),
+    (Rung(1.4, KEEN), Rung(1.25, HOPE)),
 )
 QUICK = (Rung(1.7, BOLD), Rung(1.7, HOPE))  # enough to confirm that a changed problem has a plan
 _COARSE = 2  # steps of the ladder that are compared where a path is thin
