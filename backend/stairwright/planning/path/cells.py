@@ -24,6 +24,7 @@ from .tables import INF, Floats32, Lattice, LegTable, moments
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Bytes = NDArray[np.uint8]
+Flags = NDArray[np.bool_]
 
 FULL_MARGIN = 0.06  # m; more CoM margin is no better
 RESERVED = 101  # quality from here on: equilibrium also at the reserved friction
@@ -73,12 +74,11 @@ def build_cells(
     lat: Lattice,
     friction: float,
     reserve: float,
-    lag: float,
     com: float,
 ) -> Cells:
     """All pairs of samples whose wheels are `near`..`far` apart and that can stand at all.
 
-    The front wheel runs from sample `i0` to `i1`.
+    The front wheel runs from sample `i0` to `i1`. CoM intervals with lag are left to `lag_spans`.
     """
     n = len(s)
     index = np.full((n, n), -1, np.int32)
@@ -108,10 +108,6 @@ def build_cells(
         front[m], rear[m], index[i, j] = i, j, m
         spans[m, 0], spans[m, 1] = lo, hi
         spans[m, 2], spans[m, 3] = pair_interval(pieces, corners, r, s[i], s[j], reserve, GENTLE)
-        lo, hi = lagged_interval(pieces, corners, r, s[i], s[j], friction, lag)
-        if lo > hi:
-            lo = hi = 0.5 * (spans[m, 0] + spans[m, 1])
-        spans[m, 4], spans[m, 5] = lo, hi
         slope[m] = math.atan2(centres[i, 1] - centres[j, 1], centres[i, 0] - centres[j, 0])
         middle = int(round(-0.8 * slope[m] / lat.turn)) + lat.pitches // 2
         t0[m] = min(lat.pitches - lat.nt, max(0, middle - lat.nt // 2))
@@ -123,6 +119,26 @@ def build_cells(
         front[:m].copy(), rear[:m].copy(), index, spans[:m].copy(),
         t0[:m].copy(), z0[:m].copy(), x0[:m].copy(), slope[:m].copy(), origin,
     )  # fmt: skip
+
+
+@nb.njit(cache=True, nogil=True)
+def lag_spans(
+    cells: Cells,
+    wanted: Flags,
+    pieces: Floats,
+    corners: Floats,
+    r: float,
+    s: Floats,
+    friction: float,
+    lag: float,
+) -> None:
+    """Fill the CoM intervals with lag of the `wanted` (n,) cells: they take the longest of all."""
+    for c in np.flatnonzero(wanted):
+        i, j, spans = cells.front[c], cells.rear[c], cells.spans[c]
+        lo, hi = lagged_interval(pieces, corners, r, s[i], s[j], friction, lag)
+        if lo > hi:
+            lo = hi = 0.5 * (spans[0] + spans[1])
+        spans[4], spans[5] = lo, hi
 
 
 @nb.njit(cache=True, nogil=True)
@@ -205,10 +221,10 @@ def columns(
 
 
 @nb.njit(cache=True, error_model="numpy", fastmath=True)
-def quality(w: World, cells: Cells, c: int, out: Bytes) -> bool:
-    """Quality of the poses of cell `c` into the zeroed flat volume `out`: more is safer.
+def quality(w: World, cells: Cells, c: int, rows: Flags, out: Bytes) -> None:
+    """Quality of the poses of some `rows` (nt, nz) of cell `c` into the flat volume `out`.
 
-    Returns whether any pose is possible. Collisions between the legs are not looked at yet.
+    More is safer, 0 is impossible. Collisions between the legs are not looked at.
     """
     lat = w.lat
     i, j = cells.front[c], cells.rear[c]
@@ -223,12 +239,15 @@ def quality(w: World, cells: Cells, c: int, out: Bytes) -> bool:
     scale = np.float32(1.0 / FULL_MARGIN)
     step, advance = np.float32(lat.step), share * np.float32(lat.step)
     one = np.float32(1.0)
-    found = False
     x_first = np.float32(cells.x0[c] * lat.step)
     carried = mass * (w.front_table.carried[i] + w.rear_table.carried[j])
     for t in range(lat.nt):
         tt = cells.t0[c] + t
         for z in range(lat.nz):
+            if not rows[t, z]:
+                continue
+            begin = row_start(lat, t, z)
+            out[begin : begin + lat.nx] = 0
             fz, rz, tz, sf, sr, st, a, b = columns(w, cells, c, t, z)
             if b <= a:
                 continue
@@ -237,9 +256,7 @@ def quality(w: World, cells: Cells, c: int, out: Bytes) -> bool:
             rc = w.rear_table.cost[j, tt, rz, a + sr : b + sr]
             rm = moments(w.rear_table, j, tt, rz, a + sr, b + sr)
             tc = w.trunk[tt, tz, a + st : b + st]
-            begin = row_start(lat, t, z)
             row = out[begin + a : begin + b]
-            some = np.uint8(0)
             first = share * (x_first + np.float32(a) * step) + carried
             for x in range(b - a):
                 e = fc[x] + rc[x] + tc[x]
@@ -251,9 +268,4 @@ def quality(w: World, cells: Cells, c: int, out: Bytes) -> bool:
                 level = more if mr >= least else base
                 level = level if m >= least else np.float32(0.0)
                 level = level if e < INF else np.float32(0.0)
-                q = np.uint8(level)
-                row[x] = q
-                some = some | q
-            if some > 0:
-                found = True
-    return found
+                row[x] = np.uint8(level)

@@ -9,6 +9,7 @@ on the best way to it: one byte a pose, so a cell costs microseconds.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numba as nb
 import numpy as np
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 from .cells import Cells, World, quality, row_start, volume_size
 from .collide import legs_clear
 from .kernels import dilate, gather, reach
+from .tables import Floats32, Lattice
 from .volumes import Volumes, offset
 
 Ints = NDArray[np.int32]
@@ -31,7 +33,7 @@ def flood(w: World, cells: Cells, v: Volumes, source: int, seed: Ints, moves: in
     Args:
         w: The problem.
         cells: Its cells.
-        v: Their volumes: `quality` and `width` are filled.
+        v: Their volumes: `width` is filled.
         source: Start cell.
         seed: (3,) lattice pose (t, z, x, window indices) round which the source is entered.
         moves: How many of `MOVES` are allowed.
@@ -39,11 +41,9 @@ def flood(w: World, cells: Cells, v: Volumes, source: int, seed: Ints, moves: in
     lat = w.lat
     size, margin = volume_size(lat), reach(lat)
     pad, result = np.zeros(size, np.uint8), np.zeros(size, np.uint8)
-    clear = np.ones(lat.nx, np.bool_)
+    fresh = make_fresh(lat)
     changed = False
     for c in range(len(cells.front)):
-        if v.dead[c]:
-            continue
         lo, hi = size, 0
         for m in range(moves):
             p = cells.origin[c, m]
@@ -72,69 +72,115 @@ def flood(w: World, cells: Cells, v: Volumes, source: int, seed: Ints, moves: in
         k = v.slot[c]
         if k < 0:
             k = v.used[0]
-            v.quality[k] = 0
-            if not quality(w, cells, c, v.quality[k]):
-                v.dead[c] = True
-                continue
             v.used[0] += 1
             v.slot[c] = k
             v.width[k] = 0
-        if _grow(w, cells, v, c, lo, hi, result, clear):
+        if _grow(w, cells, v, c, lo, hi, result, fresh):
             changed = True
     return changed
 
 
+class Fresh(NamedTuple):
+    """Poses of a cell to which a way leads for the first time: room for all that it has.
+
+    Attributes:
+        at: Position in the cell's volume.
+        width: Of the way.
+        x, z: Of the trunk from the front wheel [m].
+        cos, sin: Of its pitch.
+        clear: Whether the legs keep clear of each other.
+        rows: (nt, nz) rows of the cell to which wider ways lead; all false between two cells.
+        quality: (volume,) of poses in these rows.
+    """
+
+    at: Ints
+    width: Bytes
+    x: Floats32
+    z: Floats32
+    cos: Floats32
+    sin: Floats32
+    clear: Flags
+    rows: Flags
+    quality: Bytes
+
+
+@nb.njit(cache=True, nogil=True)
+def make_fresh(lat: Lattice) -> Fresh:
+    """Room for the poses of a cell."""
+    n = lat.nt * lat.nz * lat.nx
+    return Fresh(
+        np.empty(n, np.int32), np.empty(n, np.uint8), np.empty(n, np.float32),
+        np.empty(n, np.float32), np.empty(n, np.float32), np.empty(n, np.float32),
+        np.empty(n, np.bool_), np.zeros((lat.nt, lat.nz), np.bool_),
+        np.empty(volume_size(lat), np.uint8),
+    )  # fmt: skip
+
+
 @nb.njit(cache=True, nogil=True)
 def _grow(
-    w: World, cells: Cells, v: Volumes, c: int, lo: int, hi: int, result: Bytes, clear: Flags
+    w: World, cells: Cells, v: Volumes, c: int, lo: int, hi: int, result: Bytes, fresh: Fresh
 ) -> bool:
     """Widen the ways to poses of cell `c` to what `result` holds in [lo, hi); True if any grew."""
     lat = w.lat
-    quality, width = v.quality[v.slot[c]], v.width[v.slot[c]]
-    q, u, r = quality[lo:hi], width[lo:hi], result[lo:hi]
-    some = np.uint8(0)
-    for k in range(hi - lo):
-        least = q[k] if q[k] < r[k] else r[k]
-        grown = least if least > u[k] else np.uint8(0)
-        r[k] = grown
-        some = some | grown
-    if some == 0:
-        return False
-    changed = False
-    i, j = cells.front[c], cells.rear[c]
-    wheels = (w.centres[i, 0], w.centres[i, 1], w.centres[j, 0], w.centres[j, 1])
+    slot = v.slot[c]
+    width, rows, quality_of = v.width[slot], fresh.rows, fresh.quality
     page = lat.row * (lat.nz + 4)
-    for t in range(max(0, lo // page - 2), min(lat.nt, hi // page - 1)):
+    begin, end = max(0, lo // page - 2), min(lat.nt, hi // page - 1)
+    some = False
+    for t in range(begin, end):
+        for z in range(lat.nz):
+            k = row_start(lat, t, z)
+            a, b = max(k, lo), min(k + lat.nx, hi)
+            if a >= b:
+                continue
+            r, u, wider = result[a:b], width[a:b], 0
+            for x in range(b - a):
+                wider += r[x] > u[x]
+            if wider:
+                rows[t, z] = some = True
+    if not some:
+        return False
+    quality(w, cells, c, rows, quality_of)
+    i, j = cells.front[c], cells.rear[c]
+    left, low = cells.x0[c] * lat.step - w.centres[i, 0], cells.z0[c] * lat.step - w.centres[i, 1]
+    changed, count = False, 0
+    for t in range(begin, end):
         pitch = (cells.t0[c] + t - lat.pitches // 2) * lat.turn
         cos, sin = math.cos(pitch), math.sin(pitch)
         for z in range(lat.nz):
-            begin = row_start(lat, t, z)
-            if begin + lat.nx <= lo or begin >= hi:
+            if not rows[t, z]:
                 continue
-            a, b = max(begin, lo), min(begin + lat.nx, hi)
-            q, u, r = quality[a:b], width[a:b], result[a:b]
-            first, last, some = b - a, 0, np.uint8(0)
+            rows[t, z] = False
+            k = row_start(lat, t, z)
+            a, b = max(k, lo), min(k + lat.nx, hi)
+            q, r, u = quality_of[a:b], result[a:b], width[a:b]
             for x in range(b - a):
-                some = some | r[x]
-            if some == 0:
-                continue
-            for x in range(b - a):
-                if r[x] > 0 and u[x] == 0:
-                    first, last = min(first, x), x + 1
-            if last > 0:
-                legs_clear(
-                    w.robot, w.front, w.rear, w.legs_gap, wheels, cells.x0[c] * lat.step, lat.step,
-                    (cells.z0[c] + z) * lat.step, cos, sin, a - begin + first, a - begin + last,
-                    clear,
-                )  # fmt: skip
-            for x in range(b - a):
-                if r[x] > 0:
-                    if u[x] == 0 and not clear[a - begin + x]:
-                        q[x] = 0
-                    else:
-                        u[x] = r[x]
-                        v.best[c] = max(v.best[c], r[x])
-                        v.first[c] = min(v.first[c], a + x)
-                        v.last[c] = max(v.last[c], a + x + 1)
-                        changed = True
+                least = min(q[x], r[x])
+                if least <= u[x]:
+                    continue
+                if u[x] > 0:
+                    u[x] = least
+                    v.best[c] = max(v.best[c], least)
+                    changed = True
+                    continue
+                fresh.at[count], fresh.width[count] = a + x, least
+                fresh.x[count] = left + (a - k + x) * lat.step
+                fresh.z[count] = low + z * lat.step
+                fresh.cos[count], fresh.sin[count] = cos, sin
+                count += 1
+    if count == 0:
+        return changed
+    apart = (w.centres[j, 0] - w.centres[i, 0], w.centres[j, 1] - w.centres[i, 1])
+    legs_clear(
+        w.robot, w.front, w.rear, w.legs_gap, apart, fresh.x[:count], fresh.z[:count],
+        fresh.cos[:count], fresh.sin[:count], fresh.clear[:count],
+    )  # fmt: skip
+    for k in range(count):
+        at = fresh.at[k]
+        if fresh.clear[k]:
+            width[at] = fresh.width[k]
+            v.best[c] = max(v.best[c], fresh.width[k])
+            v.first[c] = min(v.first[c], at)
+            v.last[c] = max(v.last[c], at + 1)
+            changed = True
     return changed

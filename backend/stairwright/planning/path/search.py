@@ -12,7 +12,7 @@ from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
-from .cells import FORWARD, MOVES, Cells, World, build_cells
+from .cells import FORWARD, MOVES, Cells, World, build_cells, lag_spans
 from .cheapest import cheapest, trace
 from .course import Stand, sample_course, scale, stand_height
 from .flood import flood
@@ -142,7 +142,7 @@ class Search:
         i1, j1 = self._index(self.end)
         cells = build_cells(
             self.path.pieces, self.path.corners, p.wheel_radius, self.s, self.centres,
-            0, len(self.s) - 1, self.near, self.far, lat, friction, reserve, LAG, com,
+            0, len(self.s) - 1, self.near, self.far, lat, friction, reserve, com,
         )  # fmt: skip
         source, goal = int(cells.number[i0, j0]), int(cells.number[i1, j1])
         exits = np.flatnonzero(cells.front == len(self.s) - 1)
@@ -187,6 +187,10 @@ class Search:
             ]
         )
         smooth = 0.25 * self.weights.smoothness
+        lag_spans(
+            cells, v.best >= level, self.path.pieces, self.path.corners, p.wheel_radius, self.s,
+            friction, LAG,
+        )  # fmt: skip
         for _ in range(1 if moves == FORWARD else 2 * _SWEEPS):
             if not cheapest(w, cells, v, source, seed, moves, smooth, pulls, level):
                 break

@@ -33,9 +33,8 @@ class Volumes(NamedTuple):
     Attributes:
         slot: (n,) row of a cell in the arrays below, -1 where there is none.
         used: (1,) rows used.
-        dead: (n,) whether a cell has no possible pose.
-        quality: (rows, volume) quality of poses, see `cells.quality`.
-        width: (rows, volume) least quality on the best way to a pose, 0 where there is none.
+        width: (rows, volume) least quality (see `cells.quality`) on the best way to a pose, 0 where
+            there is none.
         value: (rows, volume) cost of the cheapest way.
         first, last: (n,) range of positions in `width` that are reached; first >= last: none are.
         best: (n,) largest width of a cell.
@@ -44,8 +43,6 @@ class Volumes(NamedTuple):
 
     slot: Ints
     used: Ints
-    dead: NDArray[np.bool_]
-    quality: Bytes
     width: Bytes
     value: Floats32
     first: Ints
@@ -74,8 +71,8 @@ def make_volumes(n: int, lat: Lattice) -> Volumes:
     """Empty volumes for `n` cells; they share memory with earlier ones of this thread."""
     size = volume_size(lat)
     return Volumes(
-        np.full(n, -1, np.int32), np.zeros(1, np.int32), np.zeros(n, np.bool_),
-        _array("quality", n, size, np.uint8), _array("width", n, size, np.uint8),
+        np.full(n, -1, np.int32), np.zeros(1, np.int32),
+        _array("width", n, size, np.uint8),
         _array("value", n, size, np.float32),
         np.full(n, size, np.int32), np.zeros(n, np.int32), np.zeros(n, np.uint8),
         np.full(n, size, np.int32), np.zeros(n, np.int32),
