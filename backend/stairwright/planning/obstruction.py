@@ -58,7 +58,7 @@ def _name(course: Course, blocked: Blocked, pool: Executor) -> Problem:
     candidates = candidates_of(course)
     for _ in range(_ASKED):
         ranked = _ranked(course, candidates, pool)
-        answer = _confirmed(course, ranked, pool, alone=not blocked.opened)
+        answer = _confirmed(course, ranked, pool)
         if answer is not None:
             return _problem(course, blocked, *answer)
         tried = [candidate for candidate, _ in ranked]
@@ -151,7 +151,7 @@ def _narrow(
 
 
 def _confirmed(
-    course: Course, ranked: list[tuple[Candidate, float]], pool: Executor, alone: bool = True
+    course: Course, ranked: list[tuple[Candidate, float]], pool: Executor
 ) -> tuple[Candidate, float] | None:
     """The least factor with which a certified plan exists, and on which of the `ranked`.
 
@@ -161,15 +161,14 @@ def _confirmed(
         course: The question.
         ranked: Candidates and factors.
         pool: Who tries.
-        alone: Try the first factor alone: it mostly does, unless searches came through before.
     """
     tries = sorted(
         {(min(ratio * more, one.most), k)
          for k, (one, ratio) in enumerate(ranked[:_RIVALS]) for more in _MORE}
     )  # fmt: skip
     low: dict[int, float] = {}
-    for begin in range(-1 if alone else 0, len(tries), 2):
-        group = tries[max(0, begin) : begin + 2]
+    for begin in range(0, len(tries), 2):
+        group = tries[begin : begin + 2]
         answers = pool.map(lambda one: ranked[one[1]][0].solves(course, one[0]), group)
         for (ratio, k), enough in zip(group, answers, strict=True):
             candidate = ranked[k][0]
