@@ -252,14 +252,13 @@ def test_certificate_tells_clearances_apart_to_less_than_a_millimetre(stair_plan
 def test_what_changes_between_two_nodes_is_kept_at_both(robot):
     """Contacts change where no node lies; the CoM keeps what holds there too."""
     path = wheel_path(terrain(STAIR), sw.load_robot(robot).wheel.radius)
-    radius = sw.load_robot(robot).wheel.radius
     s = np.stack([np.linspace(0.6, path.length - 0.2, 90), np.linspace(0.1, 1.6, 90)], axis=1)
-    spans = refine._intervals(path, radius, s, 0.6, 0.5)
     at = contact_changes(path.pieces, path.corners, s)
+    spans = refine._intervals(path, s, at, 0.6, 0.5)
     assert len(at) > 4
     between = np.stack([np.interp(at, np.arange(90), s[:, k]) for k in range(2)], axis=1)
     there = np.empty((len(at), 6))
-    path_intervals(path.pieces, path.corners, radius, between, 0.6, 0.5, LAG, there)
+    path_intervals(path.pieces, path.corners, path.radius, between, 0.6, 0.5, LAG, there)
     for k in (np.floor(at).astype(int), np.ceil(at).astype(int)):
         assert np.all(spans[k, ::2] >= there[:, ::2])
         assert np.all(spans[k, 1::2] <= there[:, 1::2])

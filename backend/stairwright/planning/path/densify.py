@@ -88,25 +88,26 @@ def contact_changes(pieces: Floats, corners: Floats, s: Floats) -> Floats:
 
 def densify(
     pieces: Floats,
-    corners: Floats,
     p: Planar,
     legs: tuple[Leg, Leg],
     s: Floats,
     body: Floats,
+    changes: Floats,
 ) -> tuple[Floats, Floats]:
     """Insert nodes where contacts change, then halve intervals until linear motion fits.
 
     Args:
-        pieces, corners: The wheel-centre curve.
+        pieces: The wheel-centre curve.
         p, legs: The robot.
         s: (n, 2) arc lengths of front and rear wheel.
         body: (n, 3) trunk poses.
+        changes: Of `contact_changes`.
 
     Returns:
         The denser `s` and `body`.
     """
     t = np.arange(len(s), dtype=float)
-    u = np.unique(np.concatenate([t, contact_changes(pieces, corners, s)]))
+    u = np.unique(np.concatenate([t, changes]))
     u = u[np.concatenate([[True], np.diff(u) > 1e-6])]
     for _ in range(_PASSES):
         dense_s = np.stack([np.interp(u, t, s[:, k]) for k in range(2)], axis=1)

@@ -84,7 +84,8 @@ def refine(
         for k in range(2):
             nodes_s[-k], nodes_body[-k] = stands[k].wheels, stands[k].body
         nodes_body = np.ascontiguousarray(nodes_body)
-        spans = _intervals(path, p.wheel_radius, nodes_s, friction, reserve)
+        changes = contact_changes(path.pieces, path.corners, nodes_s)
+        spans = _intervals(path, nodes_s, changes, friction, reserve)
         wheels = np.concatenate([path.centres(nodes_s[:, k]) for k in range(2)], axis=1)
         fixed = np.zeros(n, np.bool_)
         fixed[0] = fixed[-1] = True
@@ -94,7 +95,7 @@ def refine(
             20.0 * weights.smoothness / share, 600.0 * soft * weights.smoothness / share**3,
             0.25 * size, fixed, 40,
         )  # fmt: skip
-        dense_s, dense_body = densify(path.pieces, path.corners, p, legs, nodes_s, nodes_body)
+        dense_s, dense_body = densify(path.pieces, p, legs, nodes_s, nodes_body, changes)
         record = evaluate_path(path, ground, robot, legs, dense_s, dense_body, friction)
         yield Refined(dense_s, dense_body, record)
         if tries > 0 and record.worst < _LOST:
@@ -111,22 +112,24 @@ def best_of(attempts: Iterable[Refined]) -> Refined:
     return max(found, key=lambda one: one.record.worst)
 
 
-def _intervals(path: WheelPath, r: float, s: Floats, friction: float, reserve: float) -> Floats:
+def _intervals(
+    path: WheelPath, s: Floats, changes: Floats, friction: float, reserve: float
+) -> Floats:
     """CoM intervals (n, 6) of nodes, see `path_intervals`, each also good to the next ones.
 
     Where contacts change between two nodes both keep what holds there: the CoM moves linearly.
     """
     n = len(s)
-    at = contact_changes(path.pieces, path.corners, s)
-    between = np.stack([np.interp(at, np.arange(n), s[:, k]) for k in range(2)], axis=1)
-    spans = np.empty((n + len(at), 6))
+    between = np.stack([np.interp(changes, np.arange(n), s[:, k]) for k in range(2)], axis=1)
+    spans = np.empty((n + len(changes), 6))
     path_intervals(
-        path.pieces, path.corners, r, np.concatenate([s, between]), friction, reserve, LAG, spans
-    )
-    nodes, changes = spans[:n], spans[n:]
-    for k in (np.floor(at).astype(int), np.ceil(at).astype(int)):
-        np.maximum.at(nodes[:, ::2], k, changes[:, ::2])
-        np.minimum.at(nodes[:, 1::2], k, changes[:, 1::2])
+        path.pieces, path.corners, path.radius, np.concatenate([s, between]), friction, reserve,
+        LAG, spans,
+    )  # fmt: skip
+    nodes, there = spans[:n], spans[n:]
+    for k in (np.floor(changes).astype(int), np.ceil(changes).astype(int)):
+        np.maximum.at(nodes[:, ::2], k, there[:, ::2])
+        np.minimum.at(nodes[:, 1::2], k, there[:, 1::2])
     return nodes
 
 
