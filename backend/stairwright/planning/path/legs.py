@@ -148,33 +148,42 @@ RECORD = 11
 def posture(
     p: Planar, front: Leg, rear: Leg, body: Floats, wheels: Floats, points: Floats, out: Floats
 ) -> None:
-    """Fill what `evaluate` tells without looking at the ground: joints, CoM, slack, reach."""
+    """Fill `points` and what of a record needs neither ground nor joint angles: CoM, reach."""
     c, s = math.cos(body[2]), math.sin(body[2])
     mx, mz = p.trunk_mass * body[0], p.trunk_mass * body[1]
-    out[SLACK], out[REACH] = np.inf, np.inf
+    out[REACH] = np.inf
     for k in range(2):
         leg = front if k == 0 else rear
         hx = body[0] + c * leg.hip_x + s * leg.hip_z
         hz = body[1] - s * leg.hip_x + c * leg.hip_z
         wx, wz = wheels[2 * k], wheels[2 * k + 1]
         kx, kz = knee_point(wx - hx, wz - hz, p.thigh, p.calf, leg.knee)
-        q1 = thigh_joint(kx, kz, body[2], leg)
-        q2 = calf_joint(wx - hx, wz - hz, p.thigh, p.calf, leg.knee)
         kx, kz = kx + hx, kz + hz
         points[k, 0, 0], points[k, 0, 1] = hx, hz
         points[k, 1, 0], points[k, 1, 1] = kx, kz
         points[k, 2, 0], points[k, 2, 1] = wx, wz
-        out[Q0 + 2 * k], out[Q0 + 2 * k + 1] = q1, q2
         mx += p.thigh_mass * (hx + p.thigh_com * (kx - hx)) + p.wheel_mass * wx
         mx += p.calf_mass * (kx + p.calf_com * (wx - kx))
         mz += p.thigh_mass * (hz + p.thigh_com * (kz - hz)) + p.wheel_mass * wz
         mz += p.calf_mass * (kz + p.calf_com * (wz - kz))
-        slack = min(q1 - leg.thigh_min, leg.thigh_max - q1)
-        slack = min(slack, min(q2 - leg.calf_min, leg.calf_max - q2))
-        out[SLACK] = min(out[SLACK], slack)
         d = math.hypot(wx - hx, wz - hz)
         out[REACH] = min(out[REACH], min(d - leg.reach_min, leg.reach_max - d))
     out[COM_X], out[COM_Z] = mx / p.mass, mz / p.mass
+
+
+@nb.njit(cache=True)
+def joints(p: Planar, front: Leg, rear: Leg, pitch: float, points: Floats, out: Floats) -> None:
+    """Fill joint angles and their least slack, from the `points` of `posture`."""
+    out[SLACK] = np.inf
+    for k in range(2):
+        leg = front if k == 0 else rear
+        (hx, hz), (kx, kz), (wx, wz) = points[k, 0], points[k, 1], points[k, 2]
+        q1 = thigh_joint(kx - hx, kz - hz, pitch, leg)
+        q2 = calf_joint(wx - hx, wz - hz, p.thigh, p.calf, leg.knee)
+        out[Q0 + 2 * k], out[Q0 + 2 * k + 1] = q1, q2
+        slack = min(q1 - leg.thigh_min, leg.thigh_max - q1)
+        slack = min(slack, min(q2 - leg.calf_min, leg.calf_max - q2))
+        out[SLACK] = min(out[SLACK], slack)
 
 
 @nb.njit(cache=True)
@@ -222,6 +231,7 @@ def evaluate(
         out: The record.
     """
     posture(p, front, rear, body, wheels, points, out)
+    joints(p, front, rear, body[2], points, out)
     out[TRUNK] = trunk_gap(g, p, body, look)
     out[LINKS] = links_gap(g, p, points, look)
     out[LEGS] = legs_gap(p, points)

@@ -21,6 +21,7 @@ from .legs import (
     TRUNK,
     Leg,
     evaluate,
+    joints,
     legs_gap,
     links_gap,
     posture,
@@ -29,7 +30,8 @@ from .legs import (
 
 Floats = NDArray[np.float64]
 
-TERMS = 13
+TERMS, HINGES = 13, 11  # residuals of a node; the first of them are never negative
+BAND = 6  # second differences tie an unknown to those of two nodes further
 # Indices of `wish`: target values, then weights of the residuals.
 (
     W_MARGIN, W_RESERVE, W_LAG, W_TRUNK, W_LINKS, W_LEGS, W_SLACK, W_REACH,
@@ -39,6 +41,9 @@ WISHES = 17
 
 
 HARD = 600.0  # weight of what must not be violated
+_STEP = 1e-5  # m and rad; of finite differences
+_LINEAR = 1e-4  # m and rad; a node that has moved by less is extrapolated
+_FIXED = 1e12  # stiffness that no node moves against
 _GAIN = 0.01  # cost of a quarter of a millimetre too little: a smaller gain ends the polish
 
 
@@ -76,66 +81,119 @@ def _residuals(
 
 
 @nb.njit(cache=True)
-def _solve_band(a: Floats, b: Floats, width: int) -> None:
-    """In-place banded Cholesky solve; a[i, k] = H[i, i - k]. The solution is left in `b`."""
-    n = len(b)
+def _differentiate(
+    g: Ground,
+    p: Planar,
+    front: Leg,
+    rear: Leg,
+    which: NDArray[np.bool_],
+    body: Floats,
+    wheels: Floats,
+    spans: Floats,
+    w: Floats,
+    look: float,
+    records: Floats,
+    r: Floats,
+    jac: Floats,
+    own: Floats,
+) -> None:
+    """Fill derivatives `jac` (n, 3, TERMS) of residuals `r` of some nodes, and their part of H."""
+    x, record, points, moved = np.empty(3), np.empty(RECORD), np.empty((2, 3, 2)), np.empty(TERMS)
+    for k in np.flatnonzero(which):
+        x[:], record[:] = body[k], records[k]
+        for a in range(3):
+            x[a] = body[k, a] + _STEP
+            posture(p, front, rear, x, wheels[k], points, record)
+            # What is far enough from its limits stays so; most of the time goes here.
+            if r[k, 9] > 0.0:
+                joints(p, front, rear, x[2], points, record)
+            if r[k, 6] > 0.0:
+                record[TRUNK] = trunk_gap(g, p, x, look)
+            if r[k, 7] > 0.0:
+                record[LINKS] = links_gap(g, p, points, look)
+            if r[k, 8] > 0.0:
+                record[LEGS] = legs_gap(p, points)
+            _residuals(record, x, wheels[k], spans[k], w, moved)
+            for m in range(TERMS):
+                jac[k, a, m] = (moved[m] - r[k, m]) * (1.0 / _STEP)
+            x[a] = body[k, a]
+        for a in range(3):
+            for b in range(a, 3):
+                total = 0.0
+                for m in range(TERMS):
+                    total += jac[k, a, m] * jac[k, b, m]
+                own[k, a, b - a] = total
+
+
+@nb.njit(cache=True)
+def _extrapolate(base: Floats, jac: Floats, body: Floats, seen: Floats, r: Floats) -> None:
+    """Residuals `r` of a node near to where it was looked at (`seen`: there, `base`)."""
+    x, z, pitch = body[0] - seen[0], body[1] - seen[1], body[2] - seen[2]
+    for m in range(TERMS):
+        r[m] = base[m] + jac[0, m] * x + jac[1, m] * z + jac[2, m] * pitch
+    for m in range(HINGES):
+        r[m] = max(0.0, r[m])
+
+
+@nb.njit(cache=True)
+def _solve_band(a: Floats, b: Floats) -> None:
+    """Solve H x = b in place for a banded H, a[i, k] = H[i, i + k]; `b` becomes x.
+
+    Both have `BAND` more rows than there are unknowns.
+    """
+    n = len(b) - BAND
     for i in range(n):
-        for j in range(max(0, i - width), i + 1):
-            v = a[i, i - j]
-            for k in range(max(0, i - width), j):
-                if j - k <= width:
-                    v -= a[i, i - k] * a[j, j - k]
-            if i == j:
-                a[i, 0] = math.sqrt(max(v, 1e-12))
-            else:
-                a[i, i - j] = v / a[j, 0]
-    for i in range(n):
-        v = b[i]
-        for k in range(max(0, i - width), i):
-            v -= a[i, i - k] * b[k]
-        b[i] = v / a[i, 0]
+        a[i, 0] = 1.0 / max(a[i, 0], 1e-12)
+        for u in range(1, BAND + 1):
+            share = a[i, u] * a[i, 0]
+            b[i + u] -= share * b[i]
+            for v in range(u, BAND + 1):
+                a[i + u, v - u] -= share * a[i, v]
+    b[n:] = 0.0
     for i in range(n - 1, -1, -1):
         v = b[i]
-        for k in range(i + 1, min(n, i + width + 1)):
-            v -= a[k, k - i] * b[k]
-        b[i] = v / a[i, 0]
+        for u in range(1, BAND + 1):
+            v -= a[i, u] * b[i + u]
+        b[i] = v * a[i, 0]
 
 
-@nb.njit(cache=True, nogil=True)
-def _uneven(body: Floats, unit: Floats, slow: float, even: float) -> float:
-    """Cost of first and second differences along the nodes."""
+@nb.njit(cache=True)
+def _uneven(body: Floats, unit: Floats, slow: float, even: float, grad: Floats) -> float:
+    """Cost of first and second differences along the nodes; `grad` becomes half its gradient."""
     cost = 0.0
-    for a in range(3):
-        for k in range(1, len(body)):
-            e = (body[k, a] - body[k - 1, a]) * unit[a]
-            cost += slow * e * e
-        for k in range(1, len(body) - 1):
-            e = (body[k - 1, a] - 2.0 * body[k, a] + body[k + 1, a]) * unit[a]
-            cost += even * e * e
-    return cost
-
-
-@nb.njit(cache=True, nogil=True)
-def _smooth_terms(
-    body: Floats, unit: Floats, slow: float, even: float, h: Floats, grad: Floats
-) -> None:
-    """Add the derivatives of `_uneven` to the banded Hessian `h` and the gradient."""
-    second = np.array([1.0, -2.0, 1.0])
+    grad[:] = 0.0
     for a in range(3):
         q = unit[a]
         for k in range(1, len(body)):
             e = (body[k, a] - body[k - 1, a]) * q
+            cost += slow * e * e
             grad[3 * k + a] += slow * q * e
             grad[3 * (k - 1) + a] -= slow * q * e
-            h[3 * k + a, 0] += slow * q * q
-            h[3 * (k - 1) + a, 0] += slow * q * q
-            h[3 * k + a, 3] -= slow * q * q
         for k in range(1, len(body) - 1):
             e = (body[k - 1, a] - 2.0 * body[k, a] + body[k + 1, a]) * q
+            cost += even * e * e
+            grad[3 * (k - 1) + a] += even * q * e
+            grad[3 * k + a] -= 2.0 * even * q * e
+            grad[3 * (k + 1) + a] += even * q * e
+    return cost
+
+
+@nb.njit(cache=True)
+def _stiffness(n: int, unit: Floats, slow: float, even: float) -> Floats:
+    """Half the second derivatives of `_uneven` for `n` nodes, as `_solve_band` takes them."""
+    h = np.zeros((3 * n + BAND, BAND + 1))
+    second = np.array([1.0, -2.0, 1.0])
+    for a in range(3):
+        first, bend = slow * unit[a] ** 2, even * unit[a] ** 2
+        for k in range(1, n):
+            h[3 * (k - 1) + a, 0] += first
+            h[3 * k + a, 0] += first
+            h[3 * (k - 1) + a, 3] -= first
+        for k in range(1, n - 1):
             for u in range(3):
-                grad[3 * (k - 1 + u) + a] += even * q * e * second[u]
-                for v in range(u + 1):
-                    h[3 * (k - 1 + u) + a, 3 * (u - v)] += even * q * q * second[u] * second[v]
+                for v in range(u, 3):
+                    h[3 * (k - 1 + u) + a, 3 * (v - u)] += bend * second[u] * second[v]
+    return h
 
 
 @nb.njit(cache=True, nogil=True)
@@ -156,6 +214,9 @@ def polish(
 ) -> float:
     """Levenberg-Marquardt on trunk poses `body` (n, 3), changed in place; returns the cost left.
 
+    A node that has hardly moved since it was looked at is not looked at again: its residuals are
+    extrapolated. In most rounds few nodes move.
+
     Args:
         g, p, front, rear: Terrain and robot.
         body: Trunk x, z, pitch per node.
@@ -170,17 +231,24 @@ def polish(
     n = len(body)
     look = max(wish[W_TRUNK], wish[W_LINKS])  # nothing farther away pulls
     unit = np.array([1.0, 1.0, turn])
-    records, record, points = np.empty((n, RECORD)), np.empty(RECORD), np.empty((2, 3, 2))
-    r, rp, jac = np.empty((n, TERMS)), np.empty(TERMS), np.empty((TERMS, 3))
-    h, grad = np.zeros((3 * n, 7)), np.zeros(3 * n)
-    kept_h, kept_grad, best = h.copy(), grad.copy(), body.copy()
+    stiffness = _stiffness(n, unit, slow, even)
+    # Of each node: its record, its residuals, and what it was like when it was last looked at.
+    records, r, points = np.empty((n, RECORD)), np.empty((n, TERMS)), np.empty((2, 3, 2))
+    fresh, seen, base = np.empty(n, np.bool_), np.full((n, 3), np.inf), np.empty((n, TERMS))
+    jac, own = np.zeros((n, 3, TERMS)), np.zeros((n, 3, 3))
+    h, step, uneven = stiffness.copy(), np.zeros(3 * n + BAND), np.zeros(3 * n)
+    best, kept_h, grad = body.copy(), stiffness.copy(), np.zeros(3 * n)
     damping, least = 1e-3, np.inf
-    x = np.empty(3)
     for _ in range(rounds):
-        cost = _uneven(body, unit, slow, even)
+        cost = _uneven(body, unit, slow, even, uneven)
         for k in range(n):
-            evaluate(g, p, front, rear, body[k], wheels[k], look, points, records[k])
-            _residuals(records[k], body[k], wheels[k], spans[k], wish, r[k])
+            moved = max(abs(body[k, 0] - seen[k, 0]), abs(body[k, 1] - seen[k, 1]))
+            fresh[k] = max(moved, abs(body[k, 2] - seen[k, 2])) > _LINEAR
+            if fresh[k]:
+                evaluate(g, p, front, rear, body[k], wheels[k], look, points, records[k])
+                _residuals(records[k], body[k], wheels[k], spans[k], wish, r[k])
+            else:
+                _extrapolate(base[k], jac[k], body[k], seen[k], r[k])
             for m in range(TERMS):
                 cost += r[k, m] * r[k, m]
             if cost >= least * (1.0 - 1e-12):
@@ -193,48 +261,44 @@ def polish(
             damping = max(damping * 0.4, 1e-6)
             if settled:
                 break
-            kept_h[:] = 0.0
-            kept_grad[:] = 0.0
+            _differentiate(
+                g,
+                p,
+                front,
+                rear,
+                fresh & ~fixed,
+                body,
+                wheels,
+                spans,
+                wish,
+                look,
+                records,
+                r,
+                jac,
+                own,
+            )
+            kept_h[:] = stiffness
+            grad[:] = uneven
             for k in range(n):
+                if fresh[k]:
+                    seen[k], base[k] = body[k], r[k]
                 if fixed[k]:
-                    continue
-                for v in range(3):
-                    x[:] = body[k]
-                    x[v] += 1e-5
-                    record[:] = records[k]
-                    posture(p, front, rear, x, wheels[k], points, record)
-                    # What is far enough from everything stays so; most of the time goes here.
-                    if r[k, 6] > 0.0:
-                        record[TRUNK] = trunk_gap(g, p, x, look)
-                    if r[k, 7] > 0.0:
-                        record[LINKS] = links_gap(g, p, points, look)
-                    if r[k, 8] > 0.0:
-                        record[LEGS] = legs_gap(p, points)
-                    _residuals(record, x, wheels[k], spans[k], wish, rp)
-                    for m in range(TERMS):
-                        jac[m, v] = (rp[m] - r[k, m]) * 1e5
+                    kept_h[3 * k : 3 * k + 3, 0] += _FIXED
                 for a in range(3):
+                    for b in range(3 - a):
+                        kept_h[3 * k + a, b] += own[k, a, b]
                     for m in range(TERMS):
-                        kept_grad[3 * k + a] += jac[m, a] * r[k, m]
-                    for b in range(a + 1):
-                        for m in range(TERMS):
-                            kept_h[3 * k + a, a - b] += jac[m, a] * jac[m, b]
-            _smooth_terms(body, unit, slow, even, kept_h, kept_grad)
+                        grad[3 * k + a] += jac[k, a, m] * r[k, m]
         else:
             damping *= 6.0
         if damping > 1e4:
             break
         h[:] = kept_h
-        grad[:] = kept_grad
+        step[: 3 * n] = grad
+        h[: 3 * n, 0] += damping * (1.0 + h[: 3 * n, 0])
+        _solve_band(h, step)
         for k in range(n):
             for a in range(3):
-                i = 3 * k + a
-                h[i, 0] += damping * (1.0 + h[i, 0])
-                if fixed[k]:
-                    h[i, 0] += 1e12
-        _solve_band(h, grad, 6)
-        for k in range(n):
-            for a in range(3):
-                body[k, a] = best[k, a] - min(0.05, max(-0.05, grad[3 * k + a]))
+                body[k, a] = best[k, a] - min(0.05, max(-0.05, step[3 * k + a]))
     body[:] = best
     return least
