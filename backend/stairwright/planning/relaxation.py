@@ -12,7 +12,8 @@ from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
 from .path.course import NoStand
-from .path.solve import BOLD, Course, pose_course
+from .path.lattice import BOLD
+from .path.solve import Course, pose_course
 
 Kind = Literal["reach", "clearance", "statics", "torque", "joint_limit"]
 

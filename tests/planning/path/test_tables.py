@@ -39,7 +39,7 @@ def test_level_samples_far_from_everything_are_alike():
 
 
 def test_dilation_of_a_part_equals_that_of_the_whole():
-    lat = make_lattice(load_robot("a1_wheeled"), 1.9, 2.0)
+    lat = make_lattice(load_robot("a1_wheeled"), 2.0)
     size, edge = (lat.nt + 4) * (lat.nz + 4) * lat.row, reach(lat)
     rng = np.random.default_rng(2)
     source = np.zeros(size, np.uint8)

@@ -1,4 +1,4 @@
-"""The lattice's sizes, and what a search on it finds."""
+"""The lattice's sizes, what its poses keep, and what a search on it finds."""
 
 from __future__ import annotations
 
@@ -10,12 +10,22 @@ from numpy.typing import NDArray
 
 from stairwright.robot.description import Robot
 
-from .legs import make_legs
-from .tables import Lattice
+from .legs import LEGS_GAP, make_legs
+from .tables import Bounds, Lattice
 
 Floats = NDArray[np.float64]
 
 LAG = 0.02  # m; how late a wheel may arrive at a corner
+PITCHES = 1.9  # rad; largest pitch searched: the trunk may lean back past vertical
+
+# What lattice poses keep: a little more than the final bounds (strict); as much less as rounding to
+# the lattice may take from a pose that is really possible (bold: the polish must repair it); or so
+# much less that a search without success settles the matter (hope; the polish repairs many of its
+# finds, and sooner than a finer lattice would spare it the work); or what lies between (keen).
+STRICT = Bounds(trunk=0.006, links=0.006, legs=LEGS_GAP, reach=0.003, thigh=0.0, com=0.005)
+BOLD = Bounds(trunk=-0.003, links=-0.003, legs=-0.003, reach=0.0, thigh=-0.02, com=-0.01)
+KEEN = Bounds(trunk=-0.006, links=-0.006, legs=-0.006, reach=-0.003, thigh=-0.04, com=-0.015)
+HOPE = Bounds(trunk=-0.009, links=-0.009, legs=-0.009, reach=-0.006, thigh=-0.06, com=-0.02)
 
 
 @dataclass(frozen=True)
@@ -37,8 +47,8 @@ class Finding:
     back: bool = False
 
 
-def make_lattice(robot: Robot, pitches: float, fine: float = 1.0) -> Lattice:
-    """A lattice for legs of this size; `fine` < 1 refines it, `pitches` is the largest pitch."""
+def make_lattice(robot: Robot, fine: float = 1.0) -> Lattice:
+    """A lattice for legs of this size; `fine` < 1 refines it."""
     legs = make_legs(robot.planar)
     reach = max(leg.reach_max for leg in legs)
     step = reach / 12.1 * fine
@@ -47,7 +57,7 @@ def make_lattice(robot: Robot, pitches: float, fine: float = 1.0) -> Lattice:
     return Lattice(
         step=step,
         turn=turn,
-        pitches=2 * int(pitches / turn) + 1,
+        pitches=2 * int(PITCHES / turn) + 1,
         nt=2 * round(8 / fine) + 1,
         nz=round(17 / fine),
         nx=2 * round(13 / fine),

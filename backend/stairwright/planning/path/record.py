@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numba as nb
 import numpy as np
@@ -19,8 +21,10 @@ from .ground import Ground
 from .legs import COM_X, LEGS, LEGS_GAP, LINKS, RECORD, SLACK, TRUNK, Leg, evaluate
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 LEAST_COM = 0.001  # m; no robot's centre of mass is known better
+_SPARE = 5e-4  # m
 
 
 @dataclass(frozen=True)
@@ -48,13 +52,9 @@ class Record:
     leg_limit: float
     wheel_limit: float
 
-    def until(self, count: int) -> Record:
-        """The record of the first `count` nodes."""
-        cut = {
-            name: getattr(self, name)[:count]
-            for name in ("poses", "com", "need", "forces", "torque", "wheel_torque")
-        }
-        return replace(self, **cut)
+    def part(self, begin: int, end: int) -> Record:
+        """The record of the nodes [begin, end)."""
+        return replace(self, **{name: getattr(self, name)[begin:end] for name in _OF_NODES})
 
     @property
     def clearance(self) -> Floats:
@@ -93,9 +93,20 @@ class Record:
         return float(self.room.min())
 
     @property
-    def good(self) -> bool:
-        """Whether every bound is kept with a little to spare."""
-        return self.worst > 5e-4
+    def bad(self) -> Ints:
+        """Nodes where a bound is violated, or kept with next to nothing to spare."""
+        return np.flatnonzero(self.room < _SPARE)
+
+
+_OF_NODES = ("poses", "com", "need", "forces", "torque", "wheel_torque")
+
+
+def joined(records: Sequence[Record]) -> Record:
+    """One record after the other."""
+    nodes: dict[str, Any] = {
+        name: np.concatenate([getattr(one, name) for one in records]) for name in _OF_NODES
+    }
+    return replace(records[0], **nodes)
 
 
 @nb.njit(cache=True)

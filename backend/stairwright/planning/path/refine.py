@@ -1,9 +1,9 @@
-"""From lattice poses to the final nodes: resampling, smoothing, polish, dense nodes, records."""
+"""From lattice poses to nodes of a path: resampling, smoothing, polish, dense nodes, records."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,100 +16,105 @@ from . import polish as po
 from .contacts import path_intervals
 from .course import Stand, scale, stand_height
 from .densify import contact_changes, densify
-from .ground import Ground
 from .lattice import LAG
-from .legs import Leg
-from .record import Record, evaluate_path
+from .question import Question
+from .record import Record, evaluate_path, joined
 
 Floats = NDArray[np.float64]
 
 _CLEAR = 0.016  # m; clearance that the polish aims at
-# Of one attempt after the other: smoothing, metres of path per node, and how much the trunk moving
-# counts as path against the wheels' travel.
-_TRIES = ((1.0, 0.009, 0.3), (0.5, 0.006, 0.6), (0.15, 0.006, 0.6))
-_LOST = -0.004  # m; a second attempt that breaks a bound by more is not mended by a third
+_LEAST = 40  # nodes that are polished
 
 
 @dataclass(frozen=True)
 class Refined:
-    """Final nodes: arc lengths (n, 2), trunk poses (n, 3), and what they are worth."""
+    """Nodes: arc lengths (n, 2), trunk poses (n, 3), and what they are worth."""
 
     s: Floats
     body: Floats
     record: Record
 
-    def until(self, count: int) -> Refined:
-        """The first `count` nodes."""
-        return Refined(self.s[:count], self.body[:count], self.record.until(count))
+    def part(self, begin: int, end: int) -> Refined:
+        """The nodes [begin, end)."""
+        return Refined(self.s[begin:end], self.body[begin:end], self.record.part(begin, end))
+
+    def stand(self, k: int) -> Stand:
+        """Node `k` as the end of a piece."""
+        return Stand((float(self.s[k, 0]), float(self.s[k, 1])), self.body[k])
+
+
+def concatenated(parts: list[Refined]) -> Refined:
+    """One path after the other."""
+    s, body = np.concatenate([one.s for one in parts]), np.concatenate([one.body for one in parts])
+    return Refined(s, body, joined([one.record for one in parts]))
+
+
+class Grain(NamedTuple):
+    """How nodes are laid for the polish.
+
+    Attributes:
+        soft: How much they are smoothed before, and bent as little as possible by it.
+        spacing: Of nodes, for legs of 0.4 m [m].
+        swing: How much a motion of the trunk counts against the same travel of the wheels.
+    """
+
+    soft: float
+    spacing: float
+    swing: float
+
+
+COARSE = Grain(1.0, 0.009, 0.3)
 
 
 def refine(
-    path: WheelPath,
-    ground: Ground,
-    robot: Robot,
-    legs: tuple[Leg, Leg],
-    stands: tuple[Stand, Stand],
+    q: Question,
+    ends: tuple[Stand, Stand],
     s: Floats,
     body: Floats,
-    friction: float,
-    reserve: float,
-    weights: PathWeights,
-) -> Iterator[Refined]:
-    """Turn lattice poses into dense, smooth ones: one attempt after the other, the smoothest first.
+    grain: Grain = COARSE,
+    held: int = 1,
+) -> Refined:
+    """Turn a way into dense, smooth nodes.
 
     Args:
-        path, ground, robot, legs: The terrain and the robot.
-        stands: Where the path begins and ends.
+        q: The question.
+        ends: Where the way begins and ends.
         s: (n, 2) arc lengths of front and rear wheel [m].
         body: (n, 3) trunk poses.
-        friction: Coulomb friction.
-        reserve: Lower friction that is kept where the terrain allows it.
-        weights: What to trade off.
+        grain: How nodes are laid.
+        held: Nodes at either end that stay where they are.
     """
-    body = body.copy()
+    path, robot, weights = q.path, q.robot, q.weights
+    s, body = s.copy(), body.copy()
     for k in range(2):
-        body[-k] = stands[k].body
+        s[-k], body[-k] = ends[k].wheels, ends[k].body
     p, size = robot.planar, scale(robot)
-    for tries, (soft, spacing, swing) in enumerate(_TRIES):
-        u = _spacing(s, body, swing)
-        n = max(40, int(u[-1] / (spacing * size)))
-        even = np.linspace(0.0, u[-1], n)
-        hop = even[1]
-        nodes_s = np.stack([np.interp(even, u, s[:, k]) for k in range(2)], axis=1)
-        nodes_body = np.stack([np.interp(even, u, body[:, k]) for k in range(3)], axis=1)
-        nodes_s = _smooth(nodes_s, soft * 0.01 * size / hop)
-        nodes_body = _smooth(nodes_body, soft * 0.05 * size / hop)
-        if (np.diff(s, axis=0) >= 0).all():
-            nodes_s = np.maximum.accumulate(nodes_s, axis=0)
-        for k in range(2):
-            nodes_s[-k], nodes_body[-k] = stands[k].wheels, stands[k].body
-        nodes_body = np.ascontiguousarray(nodes_body)
-        changes = contact_changes(path.pieces, path.corners, nodes_s)
-        spans = _intervals(path, nodes_s, changes, friction, reserve)
-        wheels = np.concatenate([path.centres(nodes_s[:, k]) for k in range(2)], axis=1)
-        fixed = np.zeros(n, np.bool_)
-        fixed[0] = fixed[-1] = True
-        share = hop / 0.015
-        po.polish(
-            ground, p, *legs, nodes_body, wheels, spans, _wishes(robot, weights, share),
-            20.0 * weights.smoothness / share, 600.0 * soft * weights.smoothness / share**3,
-            0.25 * size, fixed, 40,
-        )  # fmt: skip
-        dense_s, dense_body = densify(path.pieces, p, legs, nodes_s, nodes_body, changes)
-        record = evaluate_path(path, ground, robot, legs, dense_s, dense_body, friction)
-        yield Refined(dense_s, dense_body, record)
-        if tries > 0 and record.worst < _LOST:
-            break
-
-
-def best_of(attempts: Iterable[Refined]) -> Refined:
-    """The first that keeps all bounds, else the one that breaks them least."""
-    found: list[Refined] = []
-    for attempt in attempts:
-        if attempt.record.good:
-            return attempt
-        found.append(attempt)
-    return max(found, key=lambda one: one.record.worst)
+    u = _spacing(s, body, grain.swing)
+    n = max(_LEAST, int(u[-1] / (grain.spacing * size)))
+    even = np.linspace(0.0, u[-1], n)
+    hop = even[1]
+    laid_s = np.stack([np.interp(even, u, s[:, k]) for k in range(2)], axis=1)
+    laid_body = np.stack([np.interp(even, u, body[:, k]) for k in range(3)], axis=1)
+    nodes_s = _smooth(laid_s, grain.soft * 0.01 * size / hop)
+    nodes_body = _smooth(laid_body, grain.soft * 0.05 * size / hop)
+    if (np.diff(s, axis=0) >= 0).all():
+        nodes_s = np.maximum.accumulate(np.clip(nodes_s, laid_s[held - 1], laid_s[-held]), axis=0)
+    fixed = np.zeros(n, np.bool_)
+    fixed[:held] = fixed[-held:] = True
+    nodes_s[fixed], nodes_body[fixed] = laid_s[fixed], laid_body[fixed]
+    nodes_body = np.ascontiguousarray(nodes_body)
+    changes = contact_changes(path.pieces, path.corners, nodes_s)
+    spans = _intervals(path, nodes_s, changes, q.friction, q.reserve)
+    wheels = np.concatenate([path.centres(nodes_s[:, k]) for k in range(2)], axis=1)
+    share = hop / 0.015
+    po.polish(
+        q.ground, p, *q.legs, nodes_body, wheels, spans, _wishes(robot, weights, share),
+        20.0 * weights.smoothness / share, 600.0 * grain.soft * weights.smoothness / share**3,
+        0.25 * size, fixed, 40,
+    )  # fmt: skip
+    dense_s, dense_body = densify(path.pieces, p, q.legs, nodes_s, nodes_body, changes)
+    record = evaluate_path(path, q.ground, robot, q.legs, dense_s, dense_body, q.friction)
+    return Refined(dense_s, dense_body, record)
 
 
 def _intervals(

@@ -8,17 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.planning.weights import PathWeights
-from stairwright.robot.description import Robot
-from stairwright.terrain.wheel_path import WheelPath
-
 from .cells import FORWARD, MOVES, Cells, World, build_cells, lag_spans
 from .cheapest import cheapest, trace
 from .course import Stand, sample_course, scale, stand_height
 from .flood import flood
-from .ground import Ground
 from .lattice import LAG, Finding
-from .legs import LEGS_GAP, Leg, make_legs
+from .legs import LEGS_GAP, Leg
+from .question import Question
 from .tables import (
     Bounds,
     Floats32,
@@ -45,21 +41,14 @@ class Search:
     """A lattice between two stands. Tables are built once; friction and margins may change."""
 
     def __init__(
-        self,
-        path: WheelPath,
-        ground: Ground,
-        robot: Robot,
-        begin: Stand,
-        end: Stand,
-        lattice: Lattice,
-        weights: PathWeights,
-        bounds: Bounds,
+        self, q: Question, begin: Stand, end: Stand, lattice: Lattice, bounds: Bounds
     ) -> None:
+        path, ground, robot, weights = q.path, q.ground, q.robot, q.weights
         self.path, self.robot, self.lattice, self.bounds = path, robot, lattice, bounds
         self.begin, self.end, self.weights = begin, end, weights
         p = robot.planar
         self.planar = p
-        self.legs = make_legs(p)
+        self.legs = q.legs
         size = scale(robot)
         self.s = sample_course(path, begin, end, lattice.step, size)
         self.centres = np.ascontiguousarray(path.centres(self.s))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Iterator
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 
@@ -15,29 +14,19 @@ from stairwright.planning.plan import Certificate, Plan, Pose
 from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
-from stairwright.terrain.wheel_path import WheelPath, wheel_path
+from stairwright.terrain.wheel_path import wheel_path
 
 from .assemble import make_plan, make_poses
 from .course import Stand, find_stands
-from .ground import Ground, make_ground
-from .lattice import Finding
-from .legs import LEGS_GAP, Leg, make_legs
-from .refine import Refined, best_of, refine
+from .ground import make_ground
+from .lattice import BOLD, HOPE, KEEN, STRICT, Finding
+from .mend import STAGES, mend
+from .question import Question
+from .refine import Refined, refine
 from .tables import Bounds
 from .windows import Searches, find_path
 
-Floats = NDArray[np.float64]
-
-RESERVE = 0.1  # friction that a plan does without where the terrain allows it
-
-# What lattice poses keep: a little more than the final bounds (strict); as much less as rounding to
-# the lattice may take from a pose that is really possible (bold: the polish must repair it); or so
-# much less that a search without success settles the matter (hope; the polish repairs many of its
-# finds, and sooner than a finer lattice would spare it the work); or what lies between (keen).
-STRICT = Bounds(trunk=0.006, links=0.006, legs=LEGS_GAP, reach=0.003, thigh=0.0, com=0.005)
-BOLD = Bounds(trunk=-0.003, links=-0.003, legs=-0.003, reach=0.0, thigh=-0.02, com=-0.01)
-KEEN = Bounds(trunk=-0.006, links=-0.006, legs=-0.006, reach=-0.003, thigh=-0.04, com=-0.015)
-HOPE = Bounds(trunk=-0.009, links=-0.009, legs=-0.009, reach=-0.006, thigh=-0.06, com=-0.02)
+Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -57,8 +46,7 @@ class Rung:
 LADDER = (  # rungs of one step are tried together; the first path is taken
     (Rung(2.0, STRICT),),
     (Rung(1.7, BOLD), Rung(1.7, HOPE, roll_back=True, probe=True)),
-    (Rung(1.7, BOLD, roll_back=True), Rung(1.7, HOPE)),
-    (Rung(1.4, KEEN), Rung(1.25, HOPE)),
+    (Rung(1.7, HOPE), Rung(1.7, BOLD, roll_back=True), Rung(1.4, KEEN)),
 )
 QUICK = (Rung(1.7, BOLD), Rung(1.7, HOPE))  # enough to confirm that a changed problem has a plan
 _COARSE = 2  # steps of the ladder that are compared where a path is thin
@@ -67,7 +55,7 @@ _THIN = 0.01  # m; CoM margin
 
 @dataclass(frozen=True)
 class Solved:
-    """A certified path."""
+    """A path and its certificate, which has passed unless the path is still to be mended."""
 
     poses: list[Pose]
     keys: list[int]
@@ -78,6 +66,17 @@ class Solved:
     def margin(self) -> float:
         """Thinnest CoM margin [m]."""
         return min(pose.margins.com for pose in self.poses)
+
+    @property
+    def bad(self) -> Ints:
+        """Poses at which a check of the certificate is violated most."""
+        progress = np.array([pose.progress for pose in self.poses])
+        places = {
+            int(np.abs(progress - check.progress).argmin())
+            for check in self.certificate.checks
+            if not check.passed and check.progress is not None
+        }
+        return np.array(sorted(places), np.int64)
 
 
 @dataclass(frozen=True)
@@ -108,27 +107,10 @@ def pose_course(terrain: Terrain, robot: Robot, friction: float, weights: PathWe
 
 
 @dataclass
-class Course:
-    """One planning question."""
+class Course(Question):
+    """A question and the ways to its answer."""
 
-    terrain: Terrain
-    robot: Robot
-    path: WheelPath
-    ground: Ground
-    stands: tuple[Stand, Stand]
-    friction: float
-    weights: PathWeights
     searches: Searches = field(default_factory=dict)
-
-    @property
-    def reserve(self) -> float:
-        """The lower friction at which poses shall still hold where that is possible."""
-        return self.friction - min(RESERVE, 0.25 * self.friction)
-
-    @property
-    def legs(self) -> tuple[Leg, Leg]:
-        """Front and rear leg."""
-        return make_legs(self.robot.planar)
 
     def find(
         self,
@@ -139,10 +121,7 @@ class Course:
         partial: bool = False,
     ) -> Finding:
         """Search once; see `Search.find`."""
-        return find_path(
-            self.path, self.ground, self.robot, self.stands, self.weights, bounds, fine,
-            self.friction, self.reserve, cheap, roll_back, partial, self.searches,
-        )  # fmt: skip
+        return find_path(self, bounds, fine, cheap, roll_back, partial, self.searches)
 
     def solve(self, pool: Executor) -> Solved | Blocked:
         """Climb the ladder until a path passes the certificate and is not needlessly thin.
@@ -190,43 +169,37 @@ class Course:
         if finding.s is None or finding.body is None or len(finding.s) < 2:
             return [], [], 0.0
         last = Stand((float(finding.s[-1, 0]), float(finding.s[-1, 1])), finding.body[-1])
-        found = best_of(self._refine(finding, (self.stands[0], last)))
+        found = refine(self, (self.stands[0], last), finding.s, finding.body)
+        found = mend(self, found, found.record.bad, STAGES[0])
         bad = np.flatnonzero(found.record.room < 0.0)
         if len(bad):
-            found = found.until(int(bad[0]))
+            found = found.part(0, int(bad[0]))
         if len(found.s) < 2:
             return [], [], 0.0
         return make_poses(self.path, self.robot, found, self.weights)
 
     def finish(self, finding: Finding) -> Solved | Blocked:
-        """Polish and certify; where that fails, the pair of arc lengths at the worst place."""
-        found: list[Refined] = []
-        for attempt in self._refine(finding, self.stands):
-            solved = self._certified(attempt) if attempt.record.good else None
-            if solved is not None:
-                return solved
-            found.append(attempt)
-        best = max(found, key=lambda one: one.record.worst)
-        if best.record.worst >= 0.0 and not best.record.good:
-            solved = self._certified(best)
-            if solved is not None:
-                return solved
-        worst = best.s[int(best.record.room.argmin())]
-        return Blocked((float(worst[0]), float(worst[1])), True, best.record.only_torque)
-
-    def _refine(self, finding: Finding, stands: tuple[Stand, Stand]) -> Iterator[Refined]:
+        """Polish, mend and certify; where that fails, the arc lengths at the worst place."""
         assert finding.s is not None
         assert finding.body is not None
-        return refine(
-            self.path, self.ground, self.robot, self.legs, stands, finding.s, finding.body,
-            self.friction, self.reserve, self.weights,
-        )  # fmt: skip
+        found = refine(self, self.stands, finding.s, finding.body)
+        for stage in (*STAGES, None):
+            bad = found.record.bad
+            if found.record.worst >= 0.0:
+                solved = self._certified(found)
+                if solved.certificate.passed:
+                    return solved
+                bad = solved.bad
+            if stage is not None:
+                found = mend(self, found, bad, stage)
+        worst = found.s[int(found.record.room.argmin())]
+        return Blocked((float(worst[0]), float(worst[1])), True, found.record.only_torque)
 
-    def _certified(self, found: Refined) -> Solved | None:
+    def _certified(self, found: Refined) -> Solved:
+        """The path as a document with its certificate, passed or not."""
         poses, keys, total = make_poses(self.path, self.robot, found, self.weights)
         plan: Plan = make_plan(
             self.terrain, self.robot, self.friction, self.weights, clock.perf_counter(), poses,
             keys, total,
         )  # fmt: skip
-        certificate = certify(plan)
-        return Solved(poses, keys, total, certificate) if certificate.passed else None
+        return Solved(poses, keys, total, certify(plan))

@@ -10,17 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from stairwright.planning.weights import PathWeights
-from stairwright.robot.description import Robot
-from stairwright.terrain.wheel_path import WheelPath
-
 from .course import Stand, scale
-from .ground import Ground
 from .lattice import Finding, make_lattice
+from .question import Question
 from .search import Search
 from .tables import Bounds
 
-PITCHES = 1.9  # rad; largest pitch searched: the trunk may lean back past vertical
 _WINDOW = 5.0  # m, for legs of 0.4 m
 _AHEAD = 1.8  # m of a window that are searched again by the next
 
@@ -31,15 +26,9 @@ _KEPT = 8
 
 
 def find_path(
-    path: WheelPath,
-    ground: Ground,
-    robot: Robot,
-    stands: tuple[Stand, Stand],
-    weights: PathWeights,
+    q: Question,
     bounds: Bounds,
     fine: float,
-    friction: float,
-    reserve: float,
     cheap: bool = True,
     roll_back: bool = False,
     partial: bool = False,
@@ -50,22 +39,22 @@ def find_path(
     With `partial` it is the way as far as it goes where there is none to the end.
     """
     kept: Searches = {} if searches is None else searches
-    lattice = make_lattice(robot, PITCHES, fine)
-    begin, end = stands
-    size = scale(robot)
+    lattice = make_lattice(q.robot, fine)
+    begin, end = q.stands
+    size = scale(q.robot)
     rows_s, rows_body, quality, back = [], [], 255, False
     while True:
         stop = begin.wheels[0] + _WINDOW * size
         last = stop > end.wheels[0] - 0.5 * size
         until = end if last else Stand((stop, stop - 0.2 * size), end.body)
-        key = (id(robot), fine, bounds, begin.wheels, until.wheels, tuple(begin.body.tolist()))
+        key = (id(q.robot), fine, bounds, begin.wheels, until.wheels, tuple(begin.body.tolist()))
         search = kept.get(key)
         if search is None:
-            search = Search(path, ground, robot, begin, until, lattice, weights, bounds)
+            search = Search(q, begin, until, lattice, bounds)
             if len(kept) < _KEPT and fine > 1.0:
                 kept[key] = search
         found = search.find(
-            friction, reserve, bounds.com, cheap or not last, roll_back, not last, partial
+            q.friction, q.reserve, bounds.com, cheap or not last, roll_back, not last, partial
         )
         quality, back = min(quality, found.quality), back or found.back
         if found.quality == 0 and (not partial or found.s is None):

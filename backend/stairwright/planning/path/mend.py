@@ -1,0 +1,107 @@
+"""Local repair: where a path breaks a bound, a piece of it is polished anew, or searched anew.
+
+Most paths that the polish cannot make good are so in one or two places of a few centimetres. There
+a finer lattice costs little, and finds what a coarse one has rounded away: also other places for
+the wheels, which no polish moves.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .course import scale
+from .lattice import BOLD, make_lattice
+from .question import Question
+from .refine import Grain, Refined, concatenated, refine
+from .search import Search
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class Stage(NamedTuple):
+    """One kind of repair.
+
+    Attributes:
+        width: Of what is laid anew on either side of a bad place, for legs of 0.4 m [m].
+        fine: The search's lattice; None: no search, the piece is only polished anew.
+    """
+
+    width: float
+    fine: float | None
+
+
+STAGES = (Stage(0.1, None), Stage(0.15, 1.25), Stage(0.25, 1.0))
+_BLEND = 0.08  # m on either side of that, which are polished with it
+_HELD = 3  # nodes at the ends of a piece stay, so that it meets the path without a kink
+_GRAINS = (Grain(0.5, 0.006, 0.6), Grain(0.15, 0.006, 0.6))
+
+
+def mend(q: Question, found: Refined, bad: Ints, stage: Stage) -> Refined:
+    """The path with better pieces round its `bad` nodes, as far as there are any."""
+    rolled = 0.5 * np.abs(np.diff(found.s, axis=0)).sum(axis=1)
+    u = np.concatenate([[0.0], np.cumsum(rolled)])
+    size = scale(q.robot)
+    width, blend = stage.width * size, _BLEND * size
+    parts, last = [], 0
+    for low, high in _places(u[bad], width + blend):
+        inner = _nodes(u, low - width, high + width)
+        begin, end = _nodes(u, low - width - blend, high + width + blend)
+        way = _way(q, found, begin, end, *inner, stage.fine)
+        if way is None:
+            continue
+        piece = _polished(q, found.part(begin, end + 1), way)
+        if piece is not None:
+            parts += [found.part(last, begin), piece]
+            last = end + 1
+    return concatenated([*parts, found.part(last, len(found.s))])
+
+
+def _places(u: Floats, apart: float) -> list[tuple[float, float]]:
+    """Bad places by their first and last path parameter; near ones are one."""
+    out: list[tuple[float, float]] = []
+    for at in u.tolist():
+        if out and at - out[-1][1] <= 2.0 * apart:
+            out[-1] = (out[-1][0], at)
+        else:
+            out.append((at, at))
+    return out
+
+
+def _nodes(u: Floats, low: float, high: float) -> tuple[int, int]:
+    """First and last node in [low, high], at most one outside."""
+    return max(0, int(np.searchsorted(u, low)) - 1), min(int(np.searchsorted(u, high)), len(u) - 1)
+
+
+def _way(
+    q: Question, found: Refined, begin: int, end: int, a: int, b: int, fine: float | None
+) -> tuple[Floats, Floats] | None:
+    """Arc lengths and trunk poses from node `begin` to node `end`, new ones between `a` and `b`."""
+    s, body = found.s, found.body
+    if fine is None:
+        return s[begin : end + 1], body[begin : end + 1]
+    if (s[b] < s[a]).any():
+        return None
+    search = Search(q, found.stand(a), found.stand(b), make_lattice(q.robot, fine), BOLD)
+    new = search.find(q.friction, q.reserve, BOLD.com)
+    if new.s is None or new.body is None:
+        return None
+    return (
+        np.concatenate([s[begin:a], new.s, s[b + 1 : end + 1]]),
+        np.concatenate([body[begin:a], new.body, body[b + 1 : end + 1]]),
+    )
+
+
+def _polished(q: Question, old: Refined, way: tuple[Floats, Floats]) -> Refined | None:
+    """The way as nodes, if they are better than the `old` ones."""
+    ends = (old.stand(0), old.stand(-1))
+    pieces = []
+    for grain in _GRAINS:
+        pieces.append(refine(q, ends, *way, grain, _HELD))
+        if not len(pieces[-1].record.bad):
+            return pieces[-1]
+    best = max(pieces, key=lambda one: one.record.worst)
+    return best if best.record.worst > old.record.worst else None
