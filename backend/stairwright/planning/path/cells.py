@@ -19,7 +19,7 @@ from stairwright.statics.contact import CAP
 from .contacts import GENTLE, TOUCH, lagged_interval, pair_interval
 from .ground import Ground
 from .legs import Leg
-from .tables import INF, Floats32, Lattice, LegTable, moments
+from .tables import Floats32, Lattice, LegTable
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -220,52 +220,25 @@ def columns(
     return fz, rz, tz, sf, sr, cells.x0[c] - w.trunk_x0, a, b
 
 
-@nb.njit(cache=True, error_model="numpy", fastmath=True)
-def quality(w: World, cells: Cells, c: int, rows: Flags, out: Bytes) -> None:
-    """Quality of the poses of some `rows` (nt, nz) of cell `c` into the flat volume `out`.
+@nb.njit(cache=True, error_model="numpy", fastmath=True, nogil=True)
+def quality(spans: Floats, com: float, x: Floats32, out: Bytes) -> None:
+    """Quality (n,) of poses with their CoM at `x` (n,) [m]: more is safer, 0 is impossible.
 
-    More is safer, 0 is impossible. Collisions between the legs are not looked at.
+    Args:
+        spans: (6,) of the cell.
+        com: Least CoM margin [m].
+        x: Of the CoM.
+        out: Filled.
     """
-    lat = w.lat
-    i, j = cells.front[c], cells.rear[c]
-    spans = cells.spans[c]
     lo, hi = np.float32(spans[0]), np.float32(spans[1])
     rlo, rhi = np.float32(spans[2]), np.float32(spans[3])
     if rlo > rhi:
         rlo, rhi = np.float32(1e6), np.float32(-1e6)
-    mass = np.float32(1.0 / w.robot.mass)
-    share = np.float32(w.robot.trunk_mass / w.robot.mass)
-    least = np.float32(w.com)
-    scale = np.float32(1.0 / FULL_MARGIN)
-    step, advance = np.float32(lat.step), share * np.float32(lat.step)
-    one = np.float32(1.0)
-    x_first = np.float32(cells.x0[c] * lat.step)
-    carried = mass * (w.front_table.carried[i] + w.rear_table.carried[j])
-    for t in range(lat.nt):
-        tt = cells.t0[c] + t
-        for z in range(lat.nz):
-            if not rows[t, z]:
-                continue
-            begin = row_start(lat, t, z)
-            out[begin : begin + lat.nx] = 0
-            fz, rz, tz, sf, sr, st, a, b = columns(w, cells, c, t, z)
-            if b <= a:
-                continue
-            fc = w.front_table.cost[i, tt, fz, a + sf : b + sf]
-            fm = moments(w.front_table, i, tt, fz, a + sf, b + sf)
-            rc = w.rear_table.cost[j, tt, rz, a + sr : b + sr]
-            rm = moments(w.rear_table, j, tt, rz, a + sr, b + sr)
-            tc = w.trunk[tt, tz, a + st : b + st]
-            row = out[begin + a : begin + b]
-            first = share * (x_first + np.float32(a) * step) + carried
-            for x in range(b - a):
-                e = fc[x] + rc[x] + tc[x]
-                com = first + np.float32(x) * advance + mass * (fm[x] + rm[x])
-                m = min(com - lo, hi - com)
-                mr = min(com - rlo, rhi - com)
-                base = np.float32(99.0) * min(one, (m - least) * scale) + one
-                more = np.float32(154.0) * min(one, (mr - least) * scale) + np.float32(RESERVED)
-                level = more if mr >= least else base
-                level = level if m >= least else np.float32(0.0)
-                level = level if e < INF else np.float32(0.0)
-                row[x] = np.uint8(level)
+    least, scale, one = np.float32(com), np.float32(1.0 / FULL_MARGIN), np.float32(1.0)
+    for k in range(len(x)):
+        m, mr = min(x[k] - lo, hi - x[k]), min(x[k] - rlo, rhi - x[k])
+        base = np.float32(99.0) * min(one, (m - least) * scale) + one
+        more = np.float32(154.0) * min(one, (mr - least) * scale) + np.float32(RESERVED)
+        level = more if mr >= least else base
+        level = level if m >= least else np.float32(0.0)
+        out[k] = np.uint8(level)

@@ -15,10 +15,10 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from .cells import Cells, World, quality, row_start, volume_size
+from .cells import Cells, World, columns, quality, row_start, volume_size
 from .collide import legs_clear
 from .kernels import dilate, gather, reach
-from .tables import Floats32, Lattice
+from .tables import INF, Floats32, Lattice, moments
 from .volumes import Volumes, offset
 
 Ints = NDArray[np.int32]
@@ -81,27 +81,25 @@ def flood(w: World, cells: Cells, v: Volumes, source: int, seed: Ints, moves: in
 
 
 class Fresh(NamedTuple):
-    """Poses of a cell to which a way leads for the first time: room for all that it has.
+    """Poses of a cell to which a way leads that is wider than before: room for all that it has.
 
     Attributes:
         at: Position in the cell's volume.
-        width: Of the way.
+        com: x of the CoM [m].
         x, z: Of the trunk from the front wheel [m].
         cos, sin: Of its pitch.
+        width: Of the way.
         clear: Whether the legs keep clear of each other.
-        rows: (nt, nz) rows of the cell to which wider ways lead; all false between two cells.
-        quality: (volume,) of poses in these rows.
     """
 
     at: Ints
-    width: Bytes
+    com: Floats32
     x: Floats32
     z: Floats32
     cos: Floats32
     sin: Floats32
+    width: Bytes
     clear: Flags
-    rows: Flags
-    quality: Bytes
 
 
 @nb.njit(cache=True, nogil=True)
@@ -109,11 +107,52 @@ def make_fresh(lat: Lattice) -> Fresh:
     """Room for the poses of a cell."""
     n = lat.nt * lat.nz * lat.nx
     return Fresh(
-        np.empty(n, np.int32), np.empty(n, np.uint8), np.empty(n, np.float32),
+        np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32),
         np.empty(n, np.float32), np.empty(n, np.float32), np.empty(n, np.float32),
-        np.empty(n, np.bool_), np.zeros((lat.nt, lat.nz), np.bool_),
-        np.empty(volume_size(lat), np.uint8),
+        np.empty(n, np.uint8), np.empty(n, np.bool_),
     )  # fmt: skip
+
+
+@nb.njit(cache=True, nogil=True)
+def _wider(
+    w: World, cells: Cells, c: int, lo: int, hi: int, result: Bytes, width: Bytes, fresh: Fresh
+) -> int:
+    """Fill `fresh` with possible poses in [lo, hi) where `result` is above `width`; how many."""
+    lat = w.lat
+    i, j = cells.front[c], cells.rear[c]
+    left, low = cells.x0[c] * lat.step - w.centres[i, 0], cells.z0[c] * lat.step - w.centres[i, 1]
+    mass, share = np.float32(1.0 / w.robot.mass), np.float32(w.robot.trunk_mass / w.robot.mass)
+    carried = mass * (w.front_table.carried[i] + w.rear_table.carried[j])
+    step, x_first = np.float32(lat.step), np.float32(cells.x0[c] * lat.step)
+    page = lat.row * (lat.nz + 4)
+    count = 0
+    for t in range(max(0, lo // page - 2), min(lat.nt, hi // page - 1)):
+        tt = cells.t0[c] + t
+        pitch = (tt - lat.pitches // 2) * lat.turn
+        cos, sin = math.cos(pitch), math.sin(pitch)
+        for z in range(lat.nz):
+            fz, rz, tz, sf, sr, st, a, b = columns(w, cells, c, t, z)
+            k = row_start(lat, t, z)
+            a, b = max(a, lo - k), min(b, hi - k)
+            some = False
+            for x in range(k + a, k + b):
+                some |= result[x] > width[x]
+            if not some:
+                continue
+            front, rear = w.front_table.cost[i, tt, fz], w.rear_table.cost[j, tt, rz]
+            trunk = w.trunk[tt, tz]
+            fm = moments(w.front_table, i, tt, fz, a + sf, b + sf)
+            rm = moments(w.rear_table, j, tt, rz, a + sr, b + sr)
+            for x in range(a, b):
+                possible = front[x + sf] + rear[x + sr] + trunk[x + st] < INF
+                if result[k + x] > width[k + x] and possible:
+                    legs = carried + mass * (fm[x - a] + rm[x - a])
+                    fresh.at[count] = k + x
+                    fresh.com[count] = share * (x_first + np.float32(x) * step) + legs
+                    fresh.x[count], fresh.z[count] = left + x * lat.step, low + z * lat.step
+                    fresh.cos[count], fresh.sin[count] = cos, sin
+                    count += 1
+    return count
 
 
 @nb.njit(cache=True, nogil=True)
@@ -121,53 +160,25 @@ def _grow(
     w: World, cells: Cells, v: Volumes, c: int, lo: int, hi: int, result: Bytes, fresh: Fresh
 ) -> bool:
     """Widen the ways to poses of cell `c` to what `result` holds in [lo, hi); True if any grew."""
-    lat = w.lat
-    slot = v.slot[c]
-    width, rows, quality_of = v.width[slot], fresh.rows, fresh.quality
-    page = lat.row * (lat.nz + 4)
-    begin, end = max(0, lo // page - 2), min(lat.nt, hi // page - 1)
-    some = False
-    for t in range(begin, end):
-        for z in range(lat.nz):
-            k = row_start(lat, t, z)
-            a, b = max(k, lo), min(k + lat.nx, hi)
-            if a >= b:
-                continue
-            r, u, wider = result[a:b], width[a:b], 0
-            for x in range(b - a):
-                wider += r[x] > u[x]
-            if wider:
-                rows[t, z] = some = True
-    if not some:
-        return False
-    quality(w, cells, c, rows, quality_of)
     i, j = cells.front[c], cells.rear[c]
-    left, low = cells.x0[c] * lat.step - w.centres[i, 0], cells.z0[c] * lat.step - w.centres[i, 1]
+    width = v.width[v.slot[c]]
+    n = _wider(w, cells, c, lo, hi, result, width, fresh)
+    quality(cells.spans[c], w.com, fresh.com[:n], fresh.width[:n])
     changed, count = False, 0
-    for t in range(begin, end):
-        pitch = (cells.t0[c] + t - lat.pitches // 2) * lat.turn
-        cos, sin = math.cos(pitch), math.sin(pitch)
-        for z in range(lat.nz):
-            if not rows[t, z]:
-                continue
-            rows[t, z] = False
-            k = row_start(lat, t, z)
-            a, b = max(k, lo), min(k + lat.nx, hi)
-            q, r, u = quality_of[a:b], result[a:b], width[a:b]
-            for x in range(b - a):
-                least = min(q[x], r[x])
-                if least <= u[x]:
-                    continue
-                if u[x] > 0:
-                    u[x] = least
-                    v.best[c] = max(v.best[c], least)
-                    changed = True
-                    continue
-                fresh.at[count], fresh.width[count] = a + x, least
-                fresh.x[count] = left + (a - k + x) * lat.step
-                fresh.z[count] = low + z * lat.step
-                fresh.cos[count], fresh.sin[count] = cos, sin
-                count += 1
+    for k in range(n):
+        at = fresh.at[k]
+        least = min(fresh.width[k], result[at])
+        if least <= width[at]:
+            continue
+        if width[at] > 0:
+            width[at] = least
+            v.best[c] = max(v.best[c], least)
+            changed = True
+            continue
+        fresh.at[count], fresh.width[count] = at, least
+        fresh.x[count], fresh.z[count] = fresh.x[k], fresh.z[k]
+        fresh.cos[count], fresh.sin[count] = fresh.cos[k], fresh.sin[k]
+        count += 1
     if count == 0:
         return changed
     apart = (w.centres[j, 0] - w.centres[i, 0], w.centres[j, 1] - w.centres[i, 1])

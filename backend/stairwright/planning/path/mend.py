@@ -50,6 +50,7 @@ def mend(q: Question, found: Refined, bad: Ints, stage: Stage) -> Refined:
     for low, high in _places(u[bad], width + blend):
         inner = _nodes(u, low - width, high + width)
         begin, end = _nodes(u, low - width - blend, high + width + blend)
+        begin, inner = max(begin, last), (max(inner[0], last), inner[1])
         way = _way(q, found, begin, end, *inner, stage.fine)
         if way is None:
             continue
