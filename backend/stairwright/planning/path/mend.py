@@ -28,13 +28,17 @@ class Stage(NamedTuple):
     Attributes:
         width: Of what is laid anew on either side of a bad place, for legs of 0.4 m [m].
         fine: The search's lattice; None: no search, the piece is only polished anew.
+        depth: By how much bounds may be broken where it is tried: it mends no more [m].
+        places: Most bad places; more are hardly ever all mended, and each takes its time.
     """
 
     width: float
     fine: float | None
+    depth: float = np.inf
+    places: int = 1000
 
 
-STAGES = (Stage(0.1, None), Stage(0.15, 1.25), Stage(0.25, 1.0))
+STAGES = (Stage(0.1, None, depth=0.008), Stage(0.15, 1.25), Stage(0.25, 1.0, places=1))
 _BLEND = 0.08  # m on either side of that, which are polished with it
 _HELD = 3  # nodes at the ends of a piece stay, so that it meets the path without a kink
 _GRAINS = (Grain(0.5, 0.006, 0.6), Grain(0.15, 0.006, 0.6))
@@ -47,9 +51,12 @@ def mend(q: Question, found: Refined, bad: Ints, stage: Stage) -> Refined:
     size = scale(q.robot)
     width, blend = stage.width * size, _BLEND * size
     parts, last = [], 0
-    for low, high in _places(u[bad], width + blend):
+    places = _places(u[bad], width + blend)
+    for low, high in places if len(places) <= stage.places else []:
         inner = _nodes(u, low - width, high + width)
         begin, end = _nodes(u, low - width - blend, high + width + blend)
+        if found.record.room[begin : end + 1].min() < -stage.depth:
+            continue
         begin, inner = max(begin, last), (max(inner[0], last), inner[1])
         way = _way(q, found, begin, end, *inner, stage.fine)
         if way is None:

@@ -46,7 +46,8 @@ class Rung:
 LADDER = (  # rungs of one step are tried together; the first path is taken
     (Rung(2.0, STRICT),),
     (Rung(1.7, BOLD), Rung(1.7, HOPE, roll_back=True, probe=True)),
-    (Rung(1.7, HOPE), Rung(1.7, BOLD, roll_back=True), Rung(1.4, KEEN)),
+    (Rung(1.7, HOPE), Rung(1.7, BOLD, roll_back=True)),
+    (Rung(1.4, KEEN),),
 )
 QUICK = (Rung(1.7, BOLD), Rung(1.7, HOPE))  # enough to confirm that a changed problem has a plan
 _COARSE = 2  # steps of the ladder that are compared where a path is thin
