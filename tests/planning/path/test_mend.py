@@ -1,0 +1,95 @@
+"""Local repair of paths: what it mends that the polish alone does not, and what it leaves alone."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from stairwright.library import load_robot
+from stairwright.planning.path import mend as repair
+from stairwright.planning.path.lattice import BOLD
+from stairwright.planning.path.mend import STAGES, mend
+from stairwright.planning.path.record import evaluate_path
+from stairwright.planning.path.refine import Refined, refine
+from stairwright.planning.path.solve import Course, Rung, Solved, pose_course
+from stairwright.planning.weights import PathWeights
+from stairwright.terrain.stairs import stair
+
+NONE = np.empty(0, np.int64)
+
+
+def polished(course: Course) -> Refined:
+    """What the polish alone makes of the widest way."""
+    way = course.find(1.7, BOLD)
+    assert way.s is not None
+    assert way.body is not None
+    return refine(course, course.stands, way.s, way.body)
+
+
+def flight(direction, robot: str, friction: float) -> Course:
+    terrain = stair(0.18, 0.28, 3, direction=direction)
+    return pose_course(terrain, load_robot(robot), friction, PathWeights())
+
+
+@pytest.mark.parametrize(
+    ("direction", "robot", "friction"),
+    [("up", "a1_wheeled", 0.6), ("down", "a1_wheeled", 0.6), ("down", "a1_wheeled_x", 0.3)],
+)
+def test_a_path_that_the_polish_leaves_bad_is_mended(direction, robot, friction):
+    course = flight(direction, robot, friction)
+    assert polished(course).record.worst < -0.005
+    answer = course.attempt(Rung(1.7, BOLD))
+    assert isinstance(answer, Solved)
+    assert answer.certificate.passed
+
+
+def test_only_pieces_round_bad_places_change():
+    """Their ends stay, wheels never roll back, and the record is that of the whole path."""
+    course = flight("up", "a1_wheeled", 0.6)
+    found = polished(course)
+    bad = found.record.bad
+    mended = mend(course, found, bad, STAGES[1])
+    assert len(mended.record.bad) < len(bad)
+    same = (mended.s[:, None] == found.s).all(axis=2) & (mended.body[:, None] == found.body).all(
+        axis=2
+    )
+    kept = same.any(axis=0)
+    travel = found.s.mean(axis=1)
+    near = np.abs(travel[:, None] - travel[bad]).min(axis=1)
+    assert kept[near > 0.3].all()
+    assert not kept[bad].any()
+    assert kept[[0, -1]].all()
+    assert (np.diff(mended.s, axis=0) >= 0.0).all()
+    whole = evaluate_path(
+        course.path, course.ground, course.robot, course.legs, mended.s, mended.body, 0.6
+    )
+    assert np.array_equal(whole.poses, mended.record.poses)
+    assert np.array_equal(whole.com, mended.record.com)
+
+
+def test_pieces_of_neighbours_do_not_overlap(monkeypatch):
+    """Bad places a little farther apart than two pieces reach, and nearer."""
+    course = flight("up", "a1_wheeled", 0.6)
+    found = polished(course)
+    ways = []
+    monkeypatch.setattr(
+        repair, "_way", lambda q, found, begin, end, *_: ways.append((begin, end)) or (0, 0)
+    )
+    monkeypatch.setattr(repair, "_polished", lambda q, old, way: old)
+    travel = found.s.mean(axis=1) - found.s[0].mean()
+    for apart in np.arange(0.3, 0.4, 0.002):
+        ways.clear()
+        bad = np.searchsorted(travel, [0.5, 0.5 + apart])
+        mended = mend(course, found, bad, STAGES[0])
+        assert np.array_equal(mended.s, found.s)
+        assert len(ways) == (1 if np.diff(travel[bad])[0] <= 0.36 else 2)
+        assert all(a[1] < b[0] for a, b in itertools.pairwise(ways))
+
+
+def test_more_places_than_a_stage_is_for_are_left_alone():
+    course = flight("up", "a1_wheeled", 0.6)
+    found = polished(course)
+    both = np.array([30, len(found.s) - 30])
+    alone = mend(course, found, both, STAGES[1]._replace(places=1))
+    assert np.array_equal(alone.body, found.body)
+    assert np.array_equal(mend(course, found, NONE, STAGES[1]).body, found.body)
