@@ -26,7 +26,7 @@ from .relaxation import (
     candidates_of,
     leg_torque,
 )
-from .threads import search_threads
+from .threads import race, search_threads
 
 Way = tuple[list[Pose], list[int], float]  # poses, key poses, duration [s]
 
@@ -121,10 +121,9 @@ def _least(
     if known <= high:
         return _narrow(opens, 1.0, known, close, pool)
     middle = math.sqrt(high)
-    half, whole = pool.map(opens, (middle, high))
-    if half:
-        return _narrow(opens, 1.0, middle, close, pool)
-    return _narrow(opens, middle, high, close, pool) if whole else None
+    with race(pool, opens, (middle, high)) as answers:
+        ends = (1.0, middle) if next(answers) else (middle, high) if next(answers) else None
+    return ends and _narrow(opens, *ends, close, pool)
 
 
 def _narrow(
@@ -140,13 +139,13 @@ def _narrow(
     """
     while high / low > close:
         a, b = (low ** (1 - k / 3) * high ** (k / 3) for k in (1, 2))
-        first, second = pool.map(enough, (a, b))
-        if first:
-            high = a
-        elif second:
-            low, high = a, b
-        else:
-            low = b
+        with race(pool, enough, (a, b)) as answers:
+            if next(answers):
+                high = a
+            elif next(answers):
+                low, high = a, b
+            else:
+                low = b
     return low, high
 
 
@@ -169,16 +168,18 @@ def _confirmed(
     low: dict[int, float] = {}
     for begin in range(0, len(tries), 2):
         group = tries[begin : begin + 2]
-        answers = pool.map(lambda one: ranked[one[1]][0].solves(course, one[0]), group)
-        for (ratio, k), enough in zip(group, answers, strict=True):
-            candidate = ranked[k][0]
-            if not enough:
+        with race(pool, lambda one: ranked[one[1]][0].solves(course, one[0]), group) as answers:
+            for (ratio, k), enough in zip(group, answers, strict=True):
+                if enough:
+                    break
                 low[k] = ratio
-            elif k in low:
-                solves = partial(candidate.solves, course)
-                return candidate, _narrow(solves, low[k], ratio, _SURE, pool)[1]
             else:
-                return candidate, ratio
+                continue
+        candidate = ranked[k][0]
+        if k in low:
+            solves = partial(candidate.solves, course)
+            ratio = _narrow(solves, low[k], ratio, _SURE, pool)[1]
+        return candidate, ratio
     return None
 
 

@@ -3,10 +3,22 @@
 from __future__ import annotations
 
 import os
+import threading
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import contextmanager
 from functools import lru_cache
+from typing import TypeVar
+
+T = TypeVar("T")
+R = TypeVar("R")
 
 _THREADS = 2
+_work = threading.local()  # what the thread is doing: `over` is set once nobody waits for it
+
+
+class Abandoned(Exception):
+    """Nobody waits for this work any more."""
 
 
 def search_threads() -> Executor:
@@ -15,6 +27,38 @@ def search_threads() -> Executor:
     What runs on them must not wait for them.
     """
     return _pool(os.getpid())
+
+
+@contextmanager
+def race(pool: Executor, ask: Callable[[T], R], items: Iterable[T]) -> Iterator[Iterator[R]]:
+    """Answers in the order of `items`, worked on at once; those not taken in the end are abandoned.
+
+    Work that has begun goes on until it next calls `still_wanted`.
+    """
+    over = threading.Event()
+
+    def work(item: T) -> R:
+        _work.over = over
+        try:
+            return ask(item)
+        finally:
+            _work.over = None
+
+    try:
+        yield pool.map(work, items)
+    finally:
+        over.set()
+
+
+def still_wanted() -> None:
+    """To be called between the steps of long work.
+
+    Raises:
+        Abandoned: If nobody waits for what this thread does.
+    """
+    over = getattr(_work, "over", None)
+    if over is not None and over.is_set():
+        raise Abandoned
 
 
 @lru_cache(maxsize=1)

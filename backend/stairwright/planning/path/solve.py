@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from stairwright.planning.certificate import certify
 from stairwright.planning.plan import Certificate, Plan, Pose
+from stairwright.planning.threads import race, still_wanted
 from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -134,13 +135,14 @@ class Course(Question):
         blocked: list[Blocked] = []
         for height, rungs in enumerate(LADDER, 1):
             tried = [rung for rung in rungs if best is None or not rung.probe]
-            for answer in (pool.map if len(tried) > 1 else map)(self.attempt, tried):
-                if isinstance(answer, Blocked):
-                    blocked.append(answer)
-                elif best is None or answer.margin > best.margin:
-                    best = answer
-                if best is not None and height > _COARSE:
-                    break  # the other rung may take on
+            with race(pool, self.attempt, tried) as answers:
+                for answer in answers:
+                    if isinstance(answer, Blocked):
+                        blocked.append(answer)
+                    elif best is None or answer.margin > best.margin:
+                        best = answer
+                    if best is not None and height > _COARSE:
+                        break
             if best is not None and (height >= _COARSE or best.margin > _THIN):
                 return best
             if any(rung.probe for rung in tried) and not any(one.opened for one in blocked):
@@ -159,6 +161,7 @@ class Course(Question):
 
     def attempt(self, rung: Rung) -> Solved | Blocked:
         """What comes of one rung."""
+        still_wanted()
         finding = self.find(rung.fine, rung.bounds, not rung.probe, rung.roll_back)
         if rung.probe:
             return Blocked(None, finding.quality > 0)
@@ -185,6 +188,7 @@ class Course(Question):
         assert finding.body is not None
         found = refine(self, self.stands, finding.s, finding.body)
         for stage in (*STAGES, None):
+            still_wanted()
             bad = found.record.bad
             if found.record.worst >= 0.0:
                 solved = self._certified(found)
