@@ -31,7 +31,7 @@ HEAVY = {
     "points": [[-1.0, 0.0]]
     + [[0.3 * (k // 2), 0.15 * ((k + 1) // 2)] for k in range(400)]
     + [[62.0, 30.0]]
-}  # minutes of planning: 200 steps
+}  # seconds of planning: 200 steps
 
 
 def rests(pid: int) -> bool:
