@@ -5,6 +5,7 @@ import pytest
 
 from stairwright.library import load_robot
 from stairwright.planning.path import polish
+from stairwright.planning.path.evenness import BAND, solve_band, stiffness, unevenness
 from stairwright.planning.path.ground import make_ground
 from stairwright.planning.path.legs import RECORD, evaluate, make_legs
 
@@ -23,21 +24,21 @@ def test_band_solver_agrees_with_numpy():
     factor = np.tril(rng.normal(size=(n, n))) * (np.subtract.outer(range(n), range(n)) <= 6)
     full = factor @ factor.T + 0.1 * np.eye(n)
     b = rng.normal(size=n)
-    band = np.zeros((n + polish.BAND, polish.BAND + 1))
+    band = np.zeros((n + BAND, BAND + 1))
     for i in range(n):
         band[i, : min(7, n - i)] = full[i, i : i + 7]
-    x = np.concatenate([b, np.zeros(polish.BAND)])
-    polish._solve_band(band, x)
+    x = np.concatenate([b, np.zeros(BAND)])
+    solve_band(band, x)
     assert x[:n] == pytest.approx(np.linalg.solve(full, b), rel=1e-8)
 
 
 def test_stiffness_and_gradient_belong_to_the_cost_of_unevenness():
     n, body = 12, np.random.default_rng(2).normal(size=(12, 3))
     grad = np.empty(3 * n)
-    cost = polish._uneven(body, UNIT, 3.0, 70.0, grad)
+    cost = unevenness(body, UNIT, 3.0, 70.0, grad)
     one, two = np.diff(body, axis=0) * UNIT, np.diff(body, 2, axis=0) * UNIT
     assert cost == pytest.approx(3.0 * (one**2).sum() + 70.0 * (two**2).sum())
-    band = polish._stiffness(n, UNIT, 3.0, 70.0)
+    band = stiffness(n, UNIT, 3.0, 70.0)
     full = np.zeros((3 * n + 6, 3 * n + 6))
     for i in range(3 * n):
         full[i, i : i + 7] = full[i : i + 7, i] = band[i]

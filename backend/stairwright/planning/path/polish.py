@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from stairwright.robot.description import Planar
 
+from .evenness import BAND, solve_band, stiffness, unevenness
 from .ground import Ground
 from .legs import (
     COM_X,
@@ -31,7 +32,6 @@ from .legs import (
 Floats = NDArray[np.float64]
 
 TERMS, HINGES = 13, 11  # residuals of a node; the first of them are never negative
-BAND = 6  # second differences tie an unknown to those of two nodes further
 # Indices of `wish`: target values, then weights of the residuals.
 (
     W_MARGIN, W_RESERVE, W_LAG, W_TRUNK, W_LINKS, W_LEGS, W_SLACK, W_REACH,
@@ -135,67 +135,6 @@ def _extrapolate(base: Floats, jac: Floats, body: Floats, seen: Floats, r: Float
         r[m] = max(0.0, r[m])
 
 
-@nb.njit(cache=True)
-def _solve_band(a: Floats, b: Floats) -> None:
-    """Solve H x = b in place for a banded H, a[i, k] = H[i, i + k]; `b` becomes x.
-
-    Both have `BAND` more rows than there are unknowns.
-    """
-    n = len(b) - BAND
-    for i in range(n):
-        a[i, 0] = 1.0 / max(a[i, 0], 1e-12)
-        for u in range(1, BAND + 1):
-            share = a[i, u] * a[i, 0]
-            b[i + u] -= share * b[i]
-            for v in range(u, BAND + 1):
-                a[i + u, v - u] -= share * a[i, v]
-    b[n:] = 0.0
-    for i in range(n - 1, -1, -1):
-        v = b[i]
-        for u in range(1, BAND + 1):
-            v -= a[i, u] * b[i + u]
-        b[i] = v * a[i, 0]
-
-
-@nb.njit(cache=True)
-def _uneven(body: Floats, unit: Floats, slow: float, even: float, grad: Floats) -> float:
-    """Cost of first and second differences along the nodes; `grad` becomes half its gradient."""
-    cost = 0.0
-    grad[:] = 0.0
-    for a in range(3):
-        q = unit[a]
-        for k in range(1, len(body)):
-            e = (body[k, a] - body[k - 1, a]) * q
-            cost += slow * e * e
-            grad[3 * k + a] += slow * q * e
-            grad[3 * (k - 1) + a] -= slow * q * e
-        for k in range(1, len(body) - 1):
-            e = (body[k - 1, a] - 2.0 * body[k, a] + body[k + 1, a]) * q
-            cost += even * e * e
-            grad[3 * (k - 1) + a] += even * q * e
-            grad[3 * k + a] -= 2.0 * even * q * e
-            grad[3 * (k + 1) + a] += even * q * e
-    return cost
-
-
-@nb.njit(cache=True)
-def _stiffness(n: int, unit: Floats, slow: float, even: float) -> Floats:
-    """Half the second derivatives of `_uneven` for `n` nodes, as `_solve_band` takes them."""
-    h = np.zeros((3 * n + BAND, BAND + 1))
-    second = np.array([1.0, -2.0, 1.0])
-    for a in range(3):
-        first, bend = slow * unit[a] ** 2, even * unit[a] ** 2
-        for k in range(1, n):
-            h[3 * (k - 1) + a, 0] += first
-            h[3 * k + a, 0] += first
-            h[3 * (k - 1) + a, 3] -= first
-        for k in range(1, n - 1):
-            for u in range(3):
-                for v in range(u, 3):
-                    h[3 * (k - 1 + u) + a, 3 * (v - u)] += bend * second[u] * second[v]
-    return h
-
-
 @nb.njit(cache=True, nogil=True)
 def polish(
     g: Ground,
@@ -231,16 +170,16 @@ def polish(
     n = len(body)
     look = max(wish[W_TRUNK], wish[W_LINKS])  # nothing farther away pulls
     unit = np.array([1.0, 1.0, turn])
-    stiffness = _stiffness(n, unit, slow, even)
+    even_h = stiffness(n, unit, slow, even)
     # Of each node: its record, its residuals, and what it was like when it was last looked at.
     records, r, points = np.empty((n, RECORD)), np.empty((n, TERMS)), np.empty((2, 3, 2))
     fresh, seen, base = np.empty(n, np.bool_), np.full((n, 3), np.inf), np.empty((n, TERMS))
     jac, own = np.zeros((n, 3, TERMS)), np.zeros((n, 3, 3))
-    h, step, uneven = stiffness.copy(), np.zeros(3 * n + BAND), np.zeros(3 * n)
-    best, kept_h, grad = body.copy(), stiffness.copy(), np.zeros(3 * n)
+    h, step, uneven = even_h.copy(), np.zeros(3 * n + BAND), np.zeros(3 * n)
+    best, kept_h, grad = body.copy(), even_h.copy(), np.zeros(3 * n)
     damping, least = 1e-3, np.inf
     for _ in range(rounds):
-        cost = _uneven(body, unit, slow, even, uneven)
+        cost = unevenness(body, unit, slow, even, uneven)
         for k in range(n):
             moved = max(abs(body[k, 0] - seen[k, 0]), abs(body[k, 1] - seen[k, 1]))
             fresh[k] = max(moved, abs(body[k, 2] - seen[k, 2])) > _LINEAR
@@ -277,7 +216,7 @@ def polish(
                 jac,
                 own,
             )
-            kept_h[:] = stiffness
+            kept_h[:] = even_h
             grad[:] = uneven
             for k in range(n):
                 if fresh[k]:
@@ -296,7 +235,7 @@ def polish(
         h[:] = kept_h
         step[: 3 * n] = grad
         h[: 3 * n, 0] += damping * (1.0 + h[: 3 * n, 0])
-        _solve_band(h, step)
+        solve_band(h, step)
         for k in range(n):
             for a in range(3):
                 body[k, a] = best[k, a] - min(0.05, max(-0.05, step[3 * k + a]))
