@@ -73,6 +73,12 @@ def stretches(path: WheelPath) -> tuple[float, float]:
     return run(count), run(count[::-1])
 
 
+def rolled(s: Floats) -> Floats:
+    """Mean way (n - 1,) that the wheels roll from one node (n, 2) to the next, either way [m]."""
+    way: Floats = 0.5 * np.abs(np.diff(s, axis=0)).sum(axis=1)
+    return way
+
+
 def stand_height(robot: Robot) -> float:
     """Height of the trunk's centre above the wheel centres in the nominal pose [m].
 

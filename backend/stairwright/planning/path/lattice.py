@@ -16,7 +16,7 @@ from .tables import Bounds, Lattice
 Floats = NDArray[np.float64]
 
 LAG = 0.02  # m; how late a wheel may arrive at a corner
-PITCHES = 1.9  # rad; largest pitch searched: the trunk may lean back past vertical
+_PITCHES = 1.9  # rad; largest pitch searched: the trunk may lean back past vertical
 
 # What lattice poses keep: a little more than the final bounds (strict); as much less as rounding to
 # the lattice may take from a pose that is really possible (bold: the polish must repair it); or so
@@ -57,7 +57,7 @@ def make_lattice(robot: Robot, fine: float = 1.0) -> Lattice:
     return Lattice(
         step=step,
         turn=turn,
-        pitches=2 * int(PITCHES / turn) + 1,
+        pitches=2 * int(_PITCHES / turn) + 1,
         nt=2 * round(8 / fine) + 1,
         nz=round(17 / fine),
         nx=2 * round(13 / fine),

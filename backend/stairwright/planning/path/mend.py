@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .course import scale
+from .course import rolled, scale
 from .lattice import BOLD, make_lattice
 from .question import Question
 from .refine import Grain, Refined, concatenated, refine
@@ -45,9 +45,8 @@ _GRAINS = (Grain(0.5, 0.006, 0.6), Grain(0.15, 0.006, 0.6))
 
 
 def mend(q: Question, found: Refined, bad: Ints, stage: Stage) -> Refined:
-    """The path with better pieces round its `bad` nodes, as far as there are any."""
-    rolled = 0.5 * np.abs(np.diff(found.s, axis=0)).sum(axis=1)
-    u = np.concatenate([[0.0], np.cumsum(rolled)])
+    """The path with better pieces round its `bad` nodes; the same one if there are none."""
+    u = np.concatenate([[0.0], np.cumsum(rolled(found.s))])
     size = scale(q.robot)
     width, blend = stage.width * size, _BLEND * size
     parts, last = [], 0
@@ -65,7 +64,7 @@ def mend(q: Question, found: Refined, bad: Ints, stage: Stage) -> Refined:
         if piece is not None:
             parts += [found.part(last, begin), piece]
             last = end + 1
-    return concatenated([*parts, found.part(last, len(found.s))])
+    return concatenated([*parts, found.part(last, len(found.s))]) if parts else found
 
 
 def _places(u: Floats, apart: float) -> list[tuple[float, float]]:

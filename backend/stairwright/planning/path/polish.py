@@ -201,21 +201,9 @@ def polish(
             if settled:
                 break
             _differentiate(
-                g,
-                p,
-                front,
-                rear,
-                fresh & ~fixed,
-                body,
-                wheels,
-                spans,
-                wish,
-                look,
-                records,
-                r,
-                jac,
-                own,
-            )
+                g, p, front, rear, fresh & ~fixed, body, wheels, spans, wish, look, records, r,
+                jac, own,
+            )  # fmt: skip
             kept_h[:] = even_h
             grad[:] = uneven
             for k in range(n):

@@ -14,7 +14,7 @@ from stairwright.terrain.wheel_path import WheelPath
 
 from . import polish as po
 from .contacts import path_intervals
-from .course import Stand, scale, stand_height
+from .course import Stand, rolled, scale, stand_height
 from .densify import contact_changes, densify
 from .lattice import LAG
 from .question import Question
@@ -140,9 +140,8 @@ def _intervals(
 
 def _spacing(s: Floats, body: Floats, swing: float) -> Floats:
     """Path parameter (n,) of lattice poses: wheel travel and `swing` times the trunk's."""
-    rolled = 0.5 * np.abs(np.diff(s, axis=0)).sum(axis=1)
     moved = np.hypot(np.diff(body[:, 0]), np.diff(body[:, 1])) + 0.25 * np.abs(np.diff(body[:, 2]))
-    return np.concatenate([[0.0], np.cumsum(np.hypot(rolled, swing * moved) + 1e-9)])
+    return np.concatenate([[0.0], np.cumsum(np.hypot(rolled(s), swing * moved) + 1e-9)])
 
 
 def _smooth(a: Floats, sigma: float) -> Floats:

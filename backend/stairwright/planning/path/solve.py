@@ -187,14 +187,16 @@ class Course(Question):
         assert finding.s is not None
         assert finding.body is not None
         found = refine(self, self.stands, finding.s, finding.body)
+        judged: Refined | None = None
         for stage in (*STAGES, None):
             still_wanted()
-            bad = found.record.bad
-            if found.record.worst >= 0.0:
-                solved = self._certified(found)
-                if solved.certificate.passed:
-                    return solved
-                bad = solved.bad
+            if found is not judged:
+                judged, bad = found, found.record.bad
+                if found.record.worst >= 0.0:
+                    solved = self._certified(found)
+                    if solved.certificate.passed:
+                        return solved
+                    bad = solved.bad
             if stage is not None:
                 found = mend(self, found, bad, stage)
         worst = found.s[int(found.record.room.argmin())]

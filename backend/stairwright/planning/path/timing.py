@@ -10,6 +10,8 @@ from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.statics.contact import GRAVITY
 
+from .course import rolled
+
 Floats = NDArray[np.float64]
 
 JOINT_RATE = 1.5  # rad/s; faster legs swing more than a controller can follow
@@ -31,9 +33,8 @@ def path_parameter(s: Floats, body: Floats) -> Floats:
     Where the trunk moves above standing wheels it grows by a thousandth of the trunk's motion, so
     that it rises strictly.
     """
-    rolled = 0.5 * np.abs(np.diff(s, axis=0)).sum(axis=1)
     moved = np.abs(np.diff(body, axis=0)).sum(axis=1)
-    return np.concatenate([[0.0], np.cumsum(rolled + 1e-3 * moved + 1e-7)])
+    return np.concatenate([[0.0], np.cumsum(rolled(s) + 1e-3 * moved + 1e-7)])
 
 
 def pose_times(
