@@ -43,6 +43,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         await services.start()
+        _complete(app)
         yield
         await services.stop()
 
@@ -76,3 +77,10 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.include_router(scene.router)
     page.mount(app, settings.page)
     return app
+
+
+def _complete(app: FastAPI) -> None:
+    """Have FastAPI finish its routes, which it would leave to the first request: 20 ms."""
+    nowhere = {"type": "http", "method": "GET", "path": "/-", "root_path": "", "headers": []}
+    for route in app.routes:
+        route.matches(dict(nowhere))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import gc
-import inspect
 import logging
 from functools import partial
 
@@ -47,9 +46,6 @@ def _read_what_questions_need() -> None:
         load_robot(name)
     planning_engine()
     rollout_engine()
-    # FastAPI reads the source of each endpoint at its first request; what it reads that with takes
-    # 20 ms to be made.
-    inspect.getsourcelines(_read_what_questions_need)
 
 
 class Services:
