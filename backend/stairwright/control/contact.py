@@ -14,10 +14,10 @@ from __future__ import annotations
 
 import math
 
-import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.terrain.wheel_path import curve_at, project
 
 Floats = NDArray[np.float64]
@@ -30,7 +30,7 @@ WIDEST = math.radians(80.0)  # half of the widest cone
 _BESIDE = 1e-6  # m
 
 
-@nb.njit(cache=True)
+@leaf
 def locate(pieces: Floats, radius: float, x: float, z: float, near: float) -> float:
     """Arc length of the wheel centre (x, z), near where it was; anywhere if `near` is NaN."""
     if math.isnan(near):
@@ -38,7 +38,7 @@ def locate(pieces: Floats, radius: float, x: float, z: float, near: float) -> fl
     return project(pieces, radius, x, z, max(0.0, near - WINDOW), near + WINDOW)
 
 
-@nb.njit(cache=True)
+@leaf
 def face_normal(
     pieces: Floats, radius: float, corners: Floats, measured: float, planned: float
 ) -> tuple[float, float]:
@@ -53,7 +53,7 @@ def face_normal(
     return nx, nz
 
 
-@nb.njit(cache=True)
+@leaf
 def support(
     pieces: Floats,
     radius: float,
@@ -84,7 +84,7 @@ def support(
     out[4], out[5], out[6], out[7] = nx, nz, nx, nz
 
 
-@nb.njit(cache=True)
+@leaf
 def wheel_traction(held: Floats, fx: float, fz: float) -> float:
     """Tangential force [N] that a wheel must drive when the ground's force on it is (fx, fz).
 

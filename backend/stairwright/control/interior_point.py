@@ -8,6 +8,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
+
 Floats = NDArray[np.float64]
 
 _ITERATIONS = 40
@@ -25,7 +27,7 @@ def slacks(x: Floats, mu: Floats, limit: float, out: Floats) -> None:
         out[4 * w + 3] = limit - n
 
 
-@nb.njit(cache=True)
+@leaf
 def pulled(z: Floats, mu: Floats, w: int) -> tuple[float, float]:
     """Entries of C' z that belong to wheel `w`: tangential and normal."""
     a, b, c, d = z[4 * w], z[4 * w + 1], z[4 * w + 2], z[4 * w + 3]
@@ -110,7 +112,7 @@ def interior_point(H: Floats, g: Floats, mu: Floats, limit: float, x: Floats) ->
     return _ITERATIONS
 
 
-@nb.njit(cache=True)
+@leaf
 def _factor(H: Floats, s: Floats, z: Floats, mu: Floats, K: Floats) -> None:
     """Cholesky factor (lower) of H + C' diag(z / s) C; C couples only a wheel's two forces."""
     for i in range(8):
@@ -125,7 +127,7 @@ def _factor(H: Floats, s: Floats, z: Floats, mu: Floats, K: Floats) -> None:
     cholesky(K, 8)
 
 
-@nb.njit(cache=True)
+@leaf
 def cholesky(K: Floats, n: int) -> None:
     """Replace the lower triangle of `K` by its factor."""
     for i in range(n):
@@ -139,7 +141,7 @@ def cholesky(K: Floats, n: int) -> None:
                 K[i, j] = v / K[j, j]
 
 
-@nb.njit(cache=True)
+@leaf
 def solve_factored(K: Floats, b: Floats, n: int) -> None:
     """Solve K K' x = b in place."""
     for i in range(n):

@@ -15,6 +15,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.errors import StairwrightError
 
 from .interior_point import cholesky, interior_point, solve_factored
@@ -93,7 +94,7 @@ def solve_native(H: Floats, g: Floats, mu: Floats, limit: float, x: Floats) -> i
     return iterations
 
 
-@nb.njit(cache=True)
+@leaf
 def _faces_of(x: Floats, mu: Floats, limit: float, near: float, faces: NDArray[np.int64]) -> None:
     """The faces on which the wheels' forces lie."""
     for w in range(4):
@@ -170,7 +171,7 @@ def _on_faces(
     return True
 
 
-@nb.njit(cache=True)
+@leaf
 def _next_faces(
     H: Floats, g: Floats, mu: Floats, limit: float, faces: NDArray[np.int64], x: Floats
 ) -> bool:

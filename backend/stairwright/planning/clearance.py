@@ -12,6 +12,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import distance_to_profile, ground_height
@@ -75,7 +76,7 @@ def _point_segment(x: float, z: float, ax: float, az: float, bx: float, bz: floa
     return math.hypot(x - ax - t * dx, z - az - t * dz)
 
 
-@nb.njit(cache=True)
+@leaf
 def _segments_apart(a: Floats, b: Floats, c: Floats, d: Floats) -> float:
     ux, uz, vx, vz = b[0] - a[0], b[1] - a[1], d[0] - c[0], d[1] - c[1]
     det = ux * vz - uz * vx
@@ -96,7 +97,7 @@ def _segments_apart(a: Floats, b: Floats, c: Floats, d: Floats) -> float:
     )
 
 
-@nb.njit(cache=True)
+@leaf
 def least_clearance(p: Floats, segments: Floats, radii: Floats) -> tuple[float, float, float]:
     """Least distance of `bodies` from the profile `p`, and where (x, z)."""
     best, at_x, at_z = _FAR, np.nan, np.nan

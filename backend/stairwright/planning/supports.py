@@ -8,6 +8,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.robot.description import Planar, Robot
 from stairwright.statics.contact import GRAVITY, least_friction
 from stairwright.statics.margin import leg_torques
@@ -54,7 +55,7 @@ def gentlest_forces(
     return math.isfinite(best)
 
 
-@nb.njit(cache=True)
+@leaf
 def torque_margin(
     robot: Planar, skeleton: Floats, points: Floats, normals: Floats, owner: Ints, count: int,
     forces: Floats,

@@ -6,6 +6,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
+
 Floats = NDArray[np.float64]
 
 
@@ -21,7 +23,7 @@ def available(torque: float, speed: float, peak: float, no_load: float) -> float
     return min(max(torque, -limit), limit)
 
 
-@nb.njit(cache=True)
+@leaf
 def limit_torques(
     record: NDArray[np.void], joint_rates: Floats, torques: Floats, out: Floats
 ) -> None:

@@ -14,10 +14,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.control.resting import resting_forces
 from stairwright.control.rigid_body import GRAVITY
 from stairwright.control.setpoint import (
@@ -182,7 +182,7 @@ def cruise(line: Track, way: float) -> Floats:
     return speeds
 
 
-@nb.njit(cache=True)
+@leaf
 def advance(
     start: float,
     step: float,

@@ -6,6 +6,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
+
 from .disturbance import perceive
 from .record import keep_sample
 from .stepping import call_step
@@ -17,7 +19,7 @@ Integers = NDArray[np.int64]
 BEYOND = 1e6  # m, m/s, rad or rad/s, summed up: no robot gets there
 
 
-@nb.njit(cache=True)
+@leaf
 def diverged(qpos: Floats, qvel: Floats) -> bool:
     """Whether the state is not one to compute anything from: not finite, or beyond all reason."""
     total = 0.0

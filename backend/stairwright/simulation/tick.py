@@ -8,6 +8,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.control.compiled import contact_control
 from stairwright.control.setpoint import JOINTS, PITCH
 
@@ -33,7 +34,7 @@ _Q, _PITCH = JOINTS.start, PITCH
 SCORES = 9
 
 
-@nb.njit(cache=True)
+@leaf
 def keep_score(
     qpos: Floats, qvel: Floats, torques: Floats, target: Floats, dt: float, score: Floats
 ) -> None:

@@ -17,6 +17,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
+
 Floats = NDArray[np.float64]
 
 GRAVITY = 9.81  # m/s^2
@@ -85,7 +87,7 @@ def com_interval(
     return min(low, high), max(low, high)
 
 
-@nb.njit(cache=True)
+@leaf
 def _squeeze_range(
     base: Floats, inner: Floats, friction: float, bound: float
 ) -> tuple[float, float]:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.robot.description import Planar
 
 from .contact import GRAVITY, com_interval
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 NOTHING_HOLDS = -1.0  # m; the margin where no CoM is in equilibrium, and the least that is stated
 
 
-@nb.njit(cache=True)
+@leaf
 def com_margin(points: Floats, normals: Floats, count: int, friction: float, com_x: float) -> float:
     """How far the CoM may shift in x, the smaller way, with equilibrium [m]; negative outside.
 
@@ -30,7 +30,7 @@ def com_margin(points: Floats, normals: Floats, count: int, friction: float, com
     return max(NOTHING_HOLDS, min(com_x - low, high - com_x))
 
 
-@nb.njit(cache=True)
+@leaf
 def friction_needed(points: Floats, normals: Floats, count: int, com_x: float) -> float:
     """Least friction with which any number of contacts hold a CoM at `com_x`; inf if none does."""
     lo, hi = 0.0, 1.0
@@ -47,7 +47,7 @@ def friction_needed(points: Floats, normals: Floats, count: int, com_x: float) -
     return hi
 
 
-@nb.njit(cache=True)
+@leaf
 def leg_torques(
     robot: Planar, hip: Floats, knee: Floats, wheel: Floats, contact: Floats, fx: float, fz: float
 ) -> tuple[float, float]:

@@ -18,6 +18,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.errors import InputError
 
 from .profile import Terrain
@@ -123,7 +124,7 @@ def _concave_corners(pieces: Floats, r: float) -> Floats:
     return np.array(found, dtype=float)
 
 
-@nb.njit(cache=True)
+@leaf
 def piece_at(piece: Floats, r: float, d: float) -> tuple[float, float, float, float]:
     """Centre and normal (x, z, nx, nz) at distance `d` along one piece."""
     if piece[0] == 0.0:
@@ -133,7 +134,7 @@ def piece_at(piece: Floats, r: float, d: float) -> tuple[float, float, float, fl
     return piece[3] + r * c, piece[4] + r * s, c, s
 
 
-@nb.njit(cache=True)
+@leaf
 def parameter(piece: Floats, r: float, x: float, z: float) -> float:
     """Distance along `piece` of the point of its line or circle nearest to (x, z)."""
     if piece[0] == 0.0:
@@ -143,7 +144,7 @@ def parameter(piece: Floats, r: float, x: float, z: float) -> float:
     return float(r * turn)
 
 
-@nb.njit(cache=True)
+@leaf
 def curve_at(pieces: Floats, r: float, s: float) -> tuple[float, float, float, float]:
     """Centre and normal (x, z, nx, nz) at arc length `s`; the end pieces are continued."""
     k = int(np.searchsorted(pieces[:, 1], s, side="right")) - 1
@@ -160,7 +161,7 @@ def sample(pieces: Floats, r: float, s: Floats) -> Floats:
     return out
 
 
-@nb.njit(cache=True)
+@leaf
 def project(pieces: Floats, r: float, x: float, z: float, lo: float, hi: float) -> float:
     """Arc length in [lo, hi] whose centre is nearest to (x, z)."""
     best, found = 1e18, lo
@@ -178,7 +179,7 @@ def project(pieces: Floats, r: float, x: float, z: float, lo: float, hi: float) 
     return found
 
 
-@nb.njit(cache=True)
+@leaf
 def distance_to_profile(p: Floats, x: float, z: float, reach: float) -> float:
     """Distance from (x, z) to the polyline `p`, or `reach` where nothing is nearer."""
     best = reach
@@ -193,7 +194,7 @@ def distance_to_profile(p: Floats, x: float, z: float, reach: float) -> float:
     return best
 
 
-@nb.njit(cache=True)
+@leaf
 def ground_height(p: Floats, x: float) -> float:
     """Upper height of the polyline at `x`; -inf beyond its ends."""
     best = -np.inf
@@ -210,7 +211,7 @@ def ground_height(p: Floats, x: float) -> float:
     return best
 
 
-@nb.njit(cache=True)
+@leaf
 def _bounds(piece: Floats, r: float) -> tuple[float, float]:
     if piece[0] == 1.0:
         return piece[3] - r, piece[3] + r
@@ -218,7 +219,7 @@ def _bounds(piece: Floats, r: float) -> tuple[float, float]:
     return min(piece[3], end), max(piece[3], end)
 
 
-@nb.njit(cache=True)
+@leaf
 def _crossings(a: Floats, b: Floats, r: float, out: Floats) -> int:
     """Intersections of the full line or circle of `a` with those of `b`; returns their number."""
     if a[0] == 0.0 and b[0] == 0.0:

@@ -13,6 +13,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf, vector_leaf
 from stairwright.robot.description import Planar
 from stairwright.statics.contact import CAP
 
@@ -199,7 +200,7 @@ def row_start(lat: Lattice, t: int, z: int) -> int:
     return ((t + 2) * (lat.nz + 4) + z + 2) * lat.row + 2
 
 
-@nb.njit(cache=True)
+@leaf
 def columns(
     w: World, cells: Cells, c: int, t: int, z: int
 ) -> tuple[int, int, int, int, int, int, int, int]:
@@ -220,7 +221,7 @@ def columns(
     return fz, rz, tz, sf, sr, cells.x0[c] - w.trunk_x0, a, b
 
 
-@nb.njit(cache=True, error_model="numpy", fastmath=True, nogil=True)
+@vector_leaf
 def quality(spans: Floats, com: float, x: Floats32, out: Bytes) -> None:
     """Quality (n,) of poses with their CoM at `x` (n,) [m]: more is safer, 0 is impossible.
 

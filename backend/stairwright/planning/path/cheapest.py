@@ -6,6 +6,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf, vector_leaf
+
 from .cells import FORWARD, MOVES, Cells, World, columns, row_start, volume_size
 from .kernels import convolve, gather_cost, reach
 from .tables import INF, Floats32, moments
@@ -16,7 +18,7 @@ Ints = NDArray[np.int32]
 Bytes = NDArray[np.uint8]
 
 
-@nb.njit(cache=True, nogil=True)
+@leaf
 def step_cost(w: World, cells: Cells, c: int, m: int) -> float:
     """Cost of rolling into cell `c` by move `m`: distance, dearer when one wheel rolls alone."""
     i, j = cells.front[c] - MOVES[m, 0], cells.rear[c] - MOVES[m, 1]
@@ -24,7 +26,7 @@ def step_cost(w: World, cells: Cells, c: int, m: int) -> float:
     return float(length) * (1.0 if m == 0 else (1.25 if m < FORWARD else 2.5)) / (2.0 * w.lat.step)
 
 
-@nb.njit(cache=True, error_model="numpy", fastmath=True, nogil=True)
+@vector_leaf
 def pose_costs(
     w: World, cells: Cells, c: int, pulls: Floats, width: Bytes, least: np.uint8, lo: int, hi: int,
     out: Floats32,

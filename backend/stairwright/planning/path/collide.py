@@ -11,6 +11,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import vector_leaf
 from stairwright.robot.description import Planar
 
 from .legs import Leg
@@ -43,7 +44,7 @@ def _links(ax, az, bx, bz, cx, cz, dx, dz, i1, i2):  # type: ignore[no-untyped-d
     return np.float32(0.0) if max(s1 * s2, s3 * s4) < np.float32(0.0) else near
 
 
-@nb.njit(cache=True, error_model="numpy", fastmath=True, nogil=True)
+@vector_leaf
 def legs_clear(
     p: Planar,
     front: Leg,

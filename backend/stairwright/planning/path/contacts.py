@@ -6,6 +6,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.statics.contact import CAP, com_interval
 from stairwright.terrain.wheel_path import curve_at
 
@@ -15,7 +16,7 @@ GENTLE = 0.75  # weights; ray strength that poses with reserve do with: no wheel
 TOUCH = 0.0018  # m; a wheel this near to a concave corner (by arc length) touches both faces
 
 
-@nb.njit(cache=True)
+@leaf
 def wheel_contacts(
     pieces: Floats, corners: Floats, r: float, s: float, points: Floats, normals: Floats, at: int
 ) -> int:
@@ -72,7 +73,7 @@ def lagged_interval(
     return low, high
 
 
-@nb.njit(cache=True)
+@leaf
 def _late(
     pieces: Floats, corners: Floats, r: float, s: float, case: int, lag: float,
     points: Floats, normals: Floats, at: int,

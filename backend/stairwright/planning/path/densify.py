@@ -8,6 +8,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.robot.description import Planar
 from stairwright.terrain.wheel_path import curve_at
 
@@ -20,7 +21,7 @@ _MISS = 0.0006  # m; largest distance of an interpolated wheel from its curve
 _PASSES = 10
 
 
-@nb.njit(cache=True)
+@leaf
 def _joints(p: Planar, leg: Leg, body: Floats, wx: float, wz: float) -> tuple[float, float]:
     c, s = math.cos(body[2]), math.sin(body[2])
     dx = wx - body[0] - c * leg.hip_x - s * leg.hip_z

@@ -6,12 +6,14 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
+
 Floats = NDArray[np.float64]
 
 BAND = 6  # second differences tie an unknown to those of two nodes further
 
 
-@nb.njit(cache=True)
+@leaf
 def solve_band(a: Floats, b: Floats) -> None:
     """Solve H x = b in place for a banded H, a[i, k] = H[i, i + k]; `b` becomes x.
 
@@ -33,7 +35,7 @@ def solve_band(a: Floats, b: Floats) -> None:
         b[i] = v * a[i, 0]
 
 
-@nb.njit(cache=True)
+@leaf
 def unevenness(body: Floats, unit: Floats, slow: float, even: float, grad: Floats) -> float:
     """Cost of first and second differences along the nodes; `grad` becomes half its gradient."""
     cost = 0.0

@@ -15,6 +15,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
+
 from .cells import Cells, World, columns, quality, row_start, volume_size
 from .collide import legs_clear
 from .kernels import dilate, gather, reach
@@ -113,7 +115,7 @@ def make_fresh(lat: Lattice) -> Fresh:
     )  # fmt: skip
 
 
-@nb.njit(cache=True, nogil=True)
+@leaf
 def _wider(
     w: World, cells: Cells, c: int, lo: int, hi: int, result: Bytes, width: Bytes, fresh: Fresh
 ) -> int:
@@ -155,7 +157,7 @@ def _wider(
     return count
 
 
-@nb.njit(cache=True, nogil=True)
+@leaf
 def _grow(
     w: World, cells: Cells, v: Volumes, c: int, lo: int, hi: int, result: Bytes, fresh: Fresh
 ) -> bool:

@@ -9,6 +9,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
+
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
@@ -33,7 +35,7 @@ def make_ground(vertices: Floats) -> Ground:
     return Ground(x, np.ascontiguousarray(vertices[:, 1]), np.maximum(first, 0).astype(np.int32))
 
 
-@nb.njit(cache=True)
+@leaf
 def first_segment(g: Ground, x: float) -> int:
     """Index of a segment at or before the first that touches abscissas from `x` on."""
     k = int((x - g.x[0]) / _BUCKET)
@@ -71,7 +73,7 @@ def segment_gap(
     return math.sqrt(near)
 
 
-@nb.njit(cache=True)
+@leaf
 def height(g: Ground, x: float) -> float:
     """Upper height of the ground at `x`; -inf beyond the profile's ends."""
     best = -np.inf
@@ -87,7 +89,7 @@ def height(g: Ground, x: float) -> float:
     return best
 
 
-@nb.njit(cache=True)
+@leaf
 def point_gap(g: Ground, x: float, z: float, reach: float) -> float:
     """Distance of a point from the profile, at most `reach`."""
     best = reach * reach
@@ -98,7 +100,7 @@ def point_gap(g: Ground, x: float, z: float, reach: float) -> float:
     return math.sqrt(best)
 
 
-@nb.njit(cache=True)
+@leaf
 def link_clearance(
     g: Ground, ax: float, az: float, bx: float, bz: float, radius: float, reach: float
 ) -> float:
@@ -131,7 +133,7 @@ def link_clearance(
     return -radius - (depth if depth > 2e-4 else _PIERCED)
 
 
-@nb.njit(cache=True)
+@leaf
 def box_clearance(
     g: Ground, cx: float, cz: float, c: float, s: float, hl: float, hh: float, reach: float
 ) -> float:

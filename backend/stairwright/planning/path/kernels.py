@@ -9,6 +9,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf, vector_leaf
+
 from .tables import Floats32, Lattice
 
 Bytes = NDArray[np.uint8]
@@ -22,7 +24,7 @@ def shift(lat: Lattice, t: int, z: int, x: int) -> int:
     return (t * (lat.nz + 4) + z) * lat.row + x
 
 
-@nb.njit(cache=True, nogil=True)
+@leaf
 def gather(volume: Bytes, lo: int, hi: int, by: int, out: Bytes) -> None:
     """out = max(out, volume shifted by `by`) for what lies in [lo, hi) of `volume`."""
     a, b = max(0, lo - by), min(len(out), hi - by)
@@ -33,7 +35,7 @@ def gather(volume: Bytes, lo: int, hi: int, by: int, out: Bytes) -> None:
         dst[k] = src[k] if src[k] > dst[k] else dst[k]
 
 
-@nb.njit(cache=True, nogil=True)
+@leaf
 def gather_cost(volume: Floats32, lo: int, hi: int, by: int, cost: float, out: Floats32) -> None:
     """out = min(out, volume shifted by `by` + cost) for what lies in [lo, hi) of `volume`."""
     a, b = max(0, lo - by), min(len(out), hi - by)
@@ -52,7 +54,7 @@ def reach(lat: Lattice) -> int:
     return 2 * (lat.row * (lat.nz + 4) + lat.row + 1)
 
 
-@nb.njit(cache=True, nogil=True)
+@leaf
 def _largest(a: Bytes, b: Bytes, lo: int, hi: int, o: int) -> None:
     """b = largest of a within two strides `o`, in [lo, hi)."""
     lo, hi = max(lo, 2 * o), min(hi, len(a) - 2 * o)
@@ -67,7 +69,7 @@ def _largest(a: Bytes, b: Bytes, lo: int, hi: int, o: int) -> None:
         d[k] = w if w > s2[k] else s2[k]
 
 
-@nb.njit(cache=True, nogil=True)
+@leaf
 def dilate(a: Bytes, b: Bytes, lo: int, hi: int, lat: Lattice) -> None:
     """Largest value within two lattice steps along each axis, in [lo, hi).
 
@@ -79,7 +81,7 @@ def dilate(a: Bytes, b: Bytes, lo: int, hi: int, lat: Lattice) -> None:
     _largest(a, b, lo, hi, lat.row * (lat.nz + 4))
 
 
-@nb.njit(cache=True, fastmath=True, nogil=True)
+@vector_leaf
 def _cheapest(a: Floats32, b: Floats32, lo: int, hi: int, o: int, one: float) -> None:
     """b = least of a within two strides `o` plus what the way costs, in [lo, hi)."""
     lo, hi = max(lo, 2 * o), min(hi, len(a) - 2 * o)
@@ -94,7 +96,7 @@ def _cheapest(a: Floats32, b: Floats32, lo: int, hi: int, o: int, one: float) ->
         d[k] = min(s2[k], min(u, v))
 
 
-@nb.njit(cache=True, nogil=True)
+@leaf
 def convolve(a: Floats32, b: Floats32, lo: int, hi: int, lat: Lattice, one: float) -> None:
     """Min-plus convolution with the cost of body motion, in [lo, hi), as in `dilate`."""
     _cheapest(a, b, lo, hi, 1, one)

@@ -9,6 +9,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.robot.description import Planar
 
 from .ground import Ground, box_clearance, link_clearance, point_segment, segment_gap
@@ -115,7 +116,7 @@ def calf_joint(dx: float, dz: float, thigh: float, calf: float, side: float) -> 
     return side * math.acos(min(1.0, max(-1.0, c)))
 
 
-@nb.njit(cache=True)
+@leaf
 def legs_gap(p: Planar, points: Floats) -> float:
     """Distance of two legs in one plane [m]: thighs, calves, wheels; negative if they touch.
 
@@ -144,7 +145,7 @@ Q0, COM_X, COM_Z, TRUNK, LINKS, LEGS, SLACK, REACH = 0, 4, 5, 6, 7, 8, 9, 10
 RECORD = 11
 
 
-@nb.njit(cache=True)
+@leaf
 def posture(
     p: Planar, front: Leg, rear: Leg, body: Floats, wheels: Floats, points: Floats, out: Floats
 ) -> None:
@@ -171,7 +172,7 @@ def posture(
     out[COM_X], out[COM_Z] = mx / p.mass, mz / p.mass
 
 
-@nb.njit(cache=True)
+@leaf
 def joints(p: Planar, front: Leg, rear: Leg, pitch: float, points: Floats, out: Floats) -> None:
     """Fill joint angles and their least slack, from the `points` of `posture`."""
     out[SLACK] = np.inf
@@ -186,14 +187,14 @@ def joints(p: Planar, front: Leg, rear: Leg, pitch: float, points: Floats, out: 
         out[SLACK] = min(out[SLACK], slack)
 
 
-@nb.njit(cache=True)
+@leaf
 def trunk_gap(g: Ground, p: Planar, body: Floats, look: float) -> float:
     """Clearance of the trunk [m]."""
     c, s = math.cos(body[2]), math.sin(body[2])
     return float(box_clearance(g, body[0], body[1], c, s, p.half_length, p.half_height, look))
 
 
-@nb.njit(cache=True)
+@leaf
 def links_gap(g: Ground, p: Planar, points: Floats, look: float) -> float:
     """Least clearance of thighs and calves, from the `points` of `posture` [m]."""
     least = look
@@ -205,7 +206,7 @@ def links_gap(g: Ground, p: Planar, points: Floats, look: float) -> float:
     return least
 
 
-@nb.njit(cache=True)
+@leaf
 def evaluate(
     g: Ground,
     p: Planar,

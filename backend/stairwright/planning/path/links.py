@@ -12,6 +12,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import vector_leaf
 from stairwright.robot.description import Planar
 
 from .ground import Ground, link_clearance
@@ -103,7 +104,7 @@ def ground_clearance(
             out[i] = min(upper, link_clearance(g, kx, kz, x, z, p.calf_radius, look))
 
 
-@nb.njit(cache=True, error_model="numpy", fastmath=True, nogil=True)
+@vector_leaf
 def nearer(near: Near, link: Floats32, reach: float, best: Floats32) -> None:
     """Lower `best` to the squared gap between the ground and a link that moves with the wheel.
 

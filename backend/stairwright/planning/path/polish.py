@@ -8,6 +8,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.robot.description import Planar
 
 from .evenness import BAND, solve_band, stiffness, unevenness
@@ -53,7 +54,7 @@ def _hinge(value: float, wish: float, least: float, weight: float) -> float:
     return weight * max(0.0, wish - value) + HARD * max(0.0, least - value)
 
 
-@nb.njit(cache=True)
+@leaf
 def _residuals(
     record: Floats, body: Floats, wheels: Floats, spans: Floats, w: Floats, out: Floats
 ) -> None:
@@ -125,7 +126,7 @@ def _differentiate(
                 own[k, a, b - a] = total
 
 
-@nb.njit(cache=True)
+@leaf
 def _extrapolate(base: Floats, jac: Floats, body: Floats, seen: Floats, r: Floats) -> None:
     """Residuals `r` of a node near to where it was looked at (`seen`: there, `base`)."""
     x, z, pitch = body[0] - seen[0], body[1] - seen[1], body[2] - seen[2]

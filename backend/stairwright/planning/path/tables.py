@@ -232,7 +232,7 @@ def on_lattice(
     return LegTable(out, moment, carried, x0, z0, us, vs, first, last)
 
 
-@nb.njit(cache=True)
+@nb.njit(cache=True, inline="always")
 def moments(table: LegTable, i: int, t: int, row: int, a: int, b: int) -> Floats32:
     """Columns [a, b) of the moments of sample `i` at pitch `t`, less what it `carried`."""
     u, v = table.u[i, t], table.v[i, t]

@@ -5,9 +5,10 @@ from __future__ import annotations
 import threading
 from typing import Any, NamedTuple
 
-import numba as nb
 import numpy as np
 from numpy.typing import NDArray
+
+from stairwright.compiled import leaf
 
 from .cells import Cells, volume_size
 from .kernels import shift
@@ -19,7 +20,7 @@ Bytes = NDArray[np.uint8]
 _KEPT = 64_000_000  # bytes of an array that is kept for the next search of this thread
 
 
-@nb.njit(cache=True, nogil=True)
+@leaf
 def offset(cells: Cells, lat: Lattice, c: int, p: int) -> int:
     """Flat shift from a pose's place in cell `c` to its place in cell `p`."""
     return shift(

@@ -12,6 +12,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
+
 from .cells import Course
 from .rows import (
     ACROSS,
@@ -33,7 +35,7 @@ from .state import HIP, KNEE, POINTS, WHEEL, Body, State, com
 Floats = NDArray[np.float64]
 
 
-@nb.njit(cache=True)
+@leaf
 def collect(body: Body, course: Course, task: Task, st: State, rows: Rows) -> tuple[int, float]:
     """Fill `rows` with what is near its bound; returns their number and the least slack of all."""
     count, least = 0, np.inf
@@ -69,7 +71,7 @@ def collect(body: Body, course: Course, task: Task, st: State, rows: Rows) -> tu
     return _legs(body, task, st, rows, count, least)
 
 
-@nb.njit(cache=True)
+@leaf
 def _ground(
     body: Body, course: Course, task: Task, st: State, rows: Rows, count: int, least: float
 ) -> tuple[int, float]:
@@ -107,7 +109,7 @@ def _ground(
     return count, least
 
 
-@nb.njit(cache=True)
+@leaf
 def _point(
     course: Course, task: Task, points: Floats, i: int, far: float,
     rows: Rows, count: int, least: float,
@@ -216,7 +218,7 @@ def _link(
     return count, least
 
 
-@nb.njit(cache=True)
+@leaf
 def _legs(
     body: Body, task: Task, st: State, rows: Rows, count: int, least: float
 ) -> tuple[int, float]:

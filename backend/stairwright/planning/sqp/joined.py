@@ -8,6 +8,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
+
 from .cells import Course
 from .gaps import collect
 from .nearest import BETWEEN, nearest
@@ -116,7 +118,7 @@ def _moved(
     return False
 
 
-@nb.njit(cache=True)
+@leaf
 def _even(begin: Floats, end: Floats, share: float, y: Floats) -> None:
     """Unknowns (5,) at a share of the way, trunk and wheels in proportion."""
     for j in range(5):

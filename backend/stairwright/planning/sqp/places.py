@@ -8,6 +8,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.statics.contact import com_interval
 from stairwright.terrain.wheel_path import curve_at, ground_height
 
@@ -24,7 +25,7 @@ _AHEAD, _STRIDE = 3.0, 0.005  # m that steep ground is looked for ahead, and how
 _BELOW = 15  # samples of the ground below the trunk
 
 
-@nb.njit(cache=True)
+@leaf
 def contacts(
     course: Course, front: float, rear: float, points: Floats, normals: Floats, owner: Ints
 ) -> int:
@@ -85,14 +86,14 @@ def rooms(course: Course, wheels: Floats, friction: float) -> Floats:
     return out
 
 
-@nb.njit(cache=True)
+@leaf
 def slope(course: Course, s: float) -> float:
     """Angle of the ground's normal at `s` from the vertical [rad], never negative."""
     _, _, nx, nz = curve_at(course.pieces, course.radius, s)
     return abs(math.atan2(nx, nz))
 
 
-@nb.njit(cache=True)
+@leaf
 def settled(course: Course, s: float, friction: float, size: float) -> bool:
     """Whether a wheel at `s` rests: on ground that holds it, and well past any that does not.
 
@@ -106,7 +107,7 @@ def settled(course: Course, s: float, friction: float, size: float) -> bool:
     return True
 
 
-@nb.njit(cache=True)
+@leaf
 def steep_ahead(course: Course, s: float, friction: float, size: float) -> float:
     """Arc length of the next ground that does not hold a resting wheel alone, or inf."""
     most = GRIP * math.atan(friction)
@@ -116,7 +117,7 @@ def steep_ahead(course: Course, s: float, friction: float, size: float) -> float
     return np.inf
 
 
-@nb.njit(cache=True)
+@leaf
 def ground_below(course: Course, low: float, high: float) -> float:
     """Mean height of the ground between two abscissas [m]; constant beyond its ends."""
     p, total = course.vertices, 0.0

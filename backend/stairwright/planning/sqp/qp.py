@@ -8,6 +8,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
+
 Floats = NDArray[np.float64]
 
 SOLVED, INFEASIBLE, STALLED = 0, 1, 2
@@ -126,7 +128,7 @@ def _inverse_factor(H: Floats) -> Floats:
     return J
 
 
-@nb.njit(cache=True)
+@leaf
 def _directions(
     J: Floats, R: Floats, row: Floats, count: int, d: Floats, z: Floats, r: Floats
 ) -> None:
@@ -147,7 +149,7 @@ def _directions(
         r[j] = total / R[j, j]
 
 
-@nb.njit(cache=True)
+@leaf
 def _add(J: Floats, R: Floats, d: Floats, count: int) -> None:
     """Take a constraint into the factorisation; `d` is J' times its row."""
     n = len(d)
@@ -164,7 +166,7 @@ def _add(J: Floats, R: Floats, d: Floats, count: int) -> None:
         R[i, count] = d[i]
 
 
-@nb.njit(cache=True)
+@leaf
 def _drop(J: Floats, R: Floats, count: int, which: int) -> None:
     """Take constraint number `which` of the active ones out of the factorisation."""
     n = len(J)

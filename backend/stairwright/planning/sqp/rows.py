@@ -13,6 +13,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
+
 from .state import ANGLES, HIP, State
 
 Floats = NDArray[np.float64]
@@ -71,7 +73,7 @@ def new_rows() -> Rows:
     return Rows(np.empty((MOST, 4), np.int64), np.empty((MOST, 4)), np.empty(MOST))
 
 
-@nb.njit(cache=True)
+@leaf
 def add_row(
     rows: Rows, count: int, kind: int, i: int, j: int, turn: int,
     nx: float, nz: float, sign: float, offset: float, value: float,
@@ -87,7 +89,7 @@ def add_row(
     return count + 1
 
 
-@nb.njit(cache=True)
+@leaf
 def gradient(st: State, rows: Rows, k: int, out: Floats) -> None:
     """Gradient (U,) of row `k` by u."""
     kind, i, j = rows.what[k, 0], rows.what[k, 1], rows.what[k, 2]
@@ -121,7 +123,7 @@ def gradient(st: State, rows: Rows, k: int, out: Floats) -> None:
         _pull(st, j, -dx / gap, -dz / gap, out)
 
 
-@nb.njit(cache=True)
+@leaf
 def _pull(st: State, i: int, nx: float, nz: float, out: Floats) -> None:
     """Add the gradient of n . (point i)."""
     out[0] += nx
@@ -131,7 +133,7 @@ def _pull(st: State, i: int, nx: float, nz: float, out: Floats) -> None:
             out[2 + a] += nx * st.arms[i, a, 1] - nz * st.arms[i, a, 0]
 
 
-@nb.njit(cache=True)
+@leaf
 def _between(st: State, rows: Rows, k: int) -> tuple[float, float]:
     """From point j of a row to its point i."""
     i, j = rows.what[k, 1], rows.what[k, 2]
@@ -183,7 +185,7 @@ def add_curvature(st: State, rows: Rows, k: int, factor: float, H: Floats) -> No
                 H[a, b] += factor * across[a] * across[b] / gap
 
 
-@nb.njit(cache=True)
+@leaf
 def _bend(st: State, i: int, nx: float, nz: float, H: Floats) -> None:
     """Add the second derivative of n . (point i)."""
     if i != CENTRE:

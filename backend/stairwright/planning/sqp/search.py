@@ -9,6 +9,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.terrain.wheel_path import curve_at
 
 from .cells import Course
@@ -73,12 +74,13 @@ class Wish(NamedTuple):
     posture: Floats
 
 
-@nb.njit(cache=True)
+@leaf
 def reference(body: Body, course: Course, x: float, out: Floats) -> None:
     """Fill (7,) the trunk and joints that eq 17 pulls to: nominal height over the ground below."""
     ground = ground_below(course, x + body.rear.hip_x, x + body.front.hip_x)
     out[0], out[1], out[2] = x, ground + body.planar.nominal_height, 0.0
-    out[3:] = body.standing
+    for k in range(4):
+        out[3 + k] = body.standing[k]
 
 
 @nb.njit(cache=True)

@@ -13,6 +13,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.terrain.wheel_path import curve_at
 
 from .cells import Course
@@ -116,7 +117,7 @@ def solve_pose(
     return value, max(0.0, -least), rounds
 
 
-@nb.njit(cache=True)
+@leaf
 def cost(task: Task, st: State) -> float:
     """Eq 17."""
     total = 0.0
@@ -126,7 +127,7 @@ def cost(task: Task, st: State) -> float:
     return total
 
 
-@nb.njit(cache=True)
+@leaf
 def _within_reach(body: Body, course: Course, y: Floats, st: State) -> bool:
     """Move the trunk of a first guess to where both legs reach their wheels; False if nowhere."""
     for _ in range(20):
@@ -188,7 +189,7 @@ def _model(
         H[j] = row
 
 
-@nb.njit(cache=True)
+@leaf
 def _closure(st: State, leg: int, gu: Floats, Hu: Floats) -> None:
     """Curvature of "the wheel is on the curve" with the multiplier that its leg's angles imply."""
     wheel, upper = WHEEL + leg, 1 + 2 * leg
@@ -203,7 +204,7 @@ def _closure(st: State, leg: int, gu: Floats, Hu: Floats) -> None:
     Hu[7 + leg, 7 + leg] -= bent * (mz * tx - mx * tz)
 
 
-@nb.njit(cache=True)
+@leaf
 def _reduce(st: State, gu: Floats, out: Floats) -> None:
     """Gradient by y (5,) from the gradient by u (U,)."""
     for k in range(5):
@@ -295,7 +296,7 @@ def _hold(rows: Rows, multipliers: Floats, held: Rows, force: Floats) -> int:
     return count
 
 
-@nb.njit(cache=True)
+@leaf
 def _wheel(course: Course, s: float) -> tuple[float, float]:
     from_curve = curve_at(course.pieces, course.radius, s)
     return from_curve[0], from_curve[1]

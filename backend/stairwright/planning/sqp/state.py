@@ -15,6 +15,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.planning.path.legs import Leg, calf_joint, knee_point, make_legs, thigh_joint
 from stairwright.robot.description import Planar, Robot
 from stairwright.terrain.wheel_path import curve_at
@@ -120,7 +121,7 @@ def _shares(p: Planar) -> Floats:
     return np.array([p.trunk_mass / p.mass, hip, knee, wheel])
 
 
-@nb.njit(cache=True)
+@leaf
 def com(st: State, axis: int) -> float:
     """Centre of mass of the whole robot along x (0) or z (1) [m]."""
     total = st.shares[0] * st.y[axis]
@@ -130,11 +131,12 @@ def com(st: State, axis: int) -> float:
     return float(total)
 
 
-@nb.njit(cache=True)
+@leaf
 def place(body: Body, course: Course, y: Floats, st: State) -> bool:
     """Fill `st` for the unknowns `y`; False where a leg cannot reach its wheel."""
     p = body.planar
-    st.y[:] = y
+    for k in range(5):
+        st.y[k] = y[k]
     c, s = math.cos(y[2]), math.sin(y[2])
     st.angles[0] = y[2]
     st.normals[0, 0], st.normals[0, 1] = c, -s
@@ -169,7 +171,7 @@ def place(body: Body, course: Course, y: Floats, st: State) -> bool:
         st.points[knee, 0], st.points[knee, 1] = hx + kx, hz + kz
         st.points[wheel, 0], st.points[wheel, 1] = wx, wz
         for point in (knee, wheel):
-            st.arms[point, 0] = st.arms[hip, 0]
+            st.arms[point, 0, 0], st.arms[point, 0, 1] = st.arms[hip, 0, 0], st.arms[hip, 0, 1]
             st.arms[point, 1 + 2 * leg, 0], st.arms[point, 1 + 2 * leg, 1] = kx, kz
         st.arms[wheel, 2 + 2 * leg, 0] = dx - kx
         st.arms[wheel, 2 + 2 * leg, 1] = dz - kz
@@ -178,19 +180,19 @@ def place(body: Body, course: Course, y: Floats, st: State) -> bool:
         st.normals[3 + 2 * leg, 0] = (dz - kz) / p.calf
         st.normals[3 + 2 * leg, 1] = -(dx - kx) / p.calf
         _turns(st, leg)
-    if st.reached.sum() < 2.0:
+    if st.reached[0] + st.reached[1] < 2.0:
         return False
     _collision_points(body, st, c, s)
     return True
 
 
-@nb.njit(cache=True)
+@leaf
 def _on_trunk(st: State, k: int, rx: float, rz: float) -> None:
     st.points[k, 0], st.points[k, 1] = st.y[0] + rx, st.y[1] + rz
     st.arms[k, 0, 0], st.arms[k, 0, 1] = rx, rz
 
 
-@nb.njit(cache=True)
+@leaf
 def _turns(st: State, leg: int) -> None:
     """Link angles of a leg as the unknowns change: the wheel stays on the curve."""
     wheel, upper = WHEEL + leg, 1 + 2 * leg
@@ -212,7 +214,7 @@ def _turns(st: State, leg: int) -> None:
         st.turns[2 * leg + 1, j] = (ax * rz - az * rx) / det
 
 
-@nb.njit(cache=True)
+@leaf
 def _collision_points(body: Body, st: State, c: float, s: float) -> None:
     """Fill the collision points, if the state has room for them."""
     k = POINTS
@@ -236,7 +238,7 @@ def _collision_points(body: Body, st: State, c: float, s: float) -> None:
                 k += 1
 
 
-@nb.njit(cache=True)
+@leaf
 def stand_on(body: Body, q: Floats, rounding: float, st: State) -> None:
     """Set the joints of a placed state: those that reach, else `q`; rounding errors at limits go.
 

@@ -1,0 +1,33 @@
+"""How the innermost compiled functions are compiled: they borrow arrays instead of sharing them.
+
+Numba counts references to every array of every struct that a function is given, at each call. For
+small functions that takes longer than what they do: 0.2 us for a struct of ten arrays. A leaf goes
+without. The compiler refuses one that makes an array itself; one that is *given* an array by a
+function that it calls would never free it, so leaves call only what returns numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import numba as nb
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+_BORROWING: dict[str, Any] = {"cache": True, "_nrt": False}
+
+
+def leaf(function: F) -> F:
+    """Compile a function that neither makes an array nor returns one."""
+    compiled: F = nb.njit(**_BORROWING)(function)
+    return compiled
+
+
+def vector_leaf(function: F) -> F:
+    """The same for loops that the processor's vector units shall take.
+
+    Sums may be taken in any order, and a division by zero is not noticed.
+    """
+    compiled: F = nb.njit(**_BORROWING, error_model="numpy", fastmath=True)(function)
+    return compiled

@@ -1,0 +1,67 @@
+"""Leaves: compiled functions that borrow arrays."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from numba.core.errors import NumbaError
+from numpy.typing import NDArray
+
+from stairwright.compiled import leaf
+
+# Plans, a verdict and a rollout, then again: of what that makes hardly an array is left (a search
+# that nobody waits for any more may still hold some).
+_TWICE = """
+import gc
+
+from numba.core.runtime import rtsys
+
+import stairwright as sw
+
+def alive():
+    gc.collect()
+    stats = rtsys.get_allocation_stats()
+    return stats.mi_alloc - stats.mi_free, stats.mi_alloc
+
+def work():
+    sw.rollout(sw.plan("single-stair-030"))
+    sw.plan("single-stair-030", method="critical")
+    sw.plan({"points": [[-1.2, 0], [0, 0], [0, 1.3], [1.2, 1.3]]})
+
+work()
+before, made = alive()
+work()
+after, more = alive()
+assert more - made > 100_000, (made, more)
+assert after - before < 500, (before, after)
+"""
+
+
+def test_a_leaf_borrows_what_it_is_given() -> None:
+    @leaf
+    def double(a: NDArray[np.float64]) -> None:
+        for i in range(len(a)):
+            a[i] *= 2.0
+
+    a = np.array([1.0, 2.0])
+    double(a)
+    assert a.tolist() == [2.0, 4.0]
+
+
+def test_a_leaf_that_makes_an_array_is_refused() -> None:
+    @leaf
+    def make(n: int) -> float:
+        return float(np.zeros(n).sum())
+
+    with pytest.raises(NumbaError, match="zeros|NRT"):
+        make(3)
+
+
+def test_no_compiled_function_keeps_an_array_for_good() -> None:
+    subprocess.run(
+        [sys.executable, "-c", _TWICE], env=os.environ | {"NUMBA_NRT_STATS": "1"}, check=True
+    )
