@@ -32,7 +32,7 @@ def stairwright(task: Task) -> tuple[Floats, Floats]:
     for k in range(2):
         lower, upper = numbers.bounds(k)
         asked = rows.Task(
-            numbers.wanted(k),
+            numbers.wanted[k],
             search.rules.weights,
             lower,
             upper,

@@ -65,11 +65,11 @@ class Numbers:
         # Wheel centres (pose, front or rear, x or z).
         self.centres = self.path.centres(np.array(task.places).ravel()).reshape(2, 2, 2)
 
-    def wanted(self, k: int) -> Floats:
-        """Trunk and joints (7,) that eq 17 pulls pose `k` to."""
-        out, (front, rear) = np.empty(7), self.centres[k]
-        reference(self.search.body, self.search.course, (front[0] + rear[0]) / 2, out)
-        return out
+        # Trunk and joints (pose, 7) that eq 17 pulls to.
+        self.wanted = np.empty((2, 7))
+        for k, (front, rear) in enumerate(self.centres):
+            middle = (front[0] + rear[0]) / 2
+            reference(self.search.body, self.search.course, middle, self.wanted[k])
 
     def bounds(self, k: int) -> tuple[Floats, Floats]:
         """Of the nine variables of pose `k`."""
@@ -86,7 +86,7 @@ class Numbers:
 
     def guesses(self, k: int) -> list[Floats]:
         """First guesses (9,) of pose `k`, the same for every solver."""
-        wanted, places = self.wanted(k), np.array(self.task.places[k])
+        wanted, places = self.wanted[k], np.array(self.task.places[k])
         a, b = self.centres[k]
         if self.task.warm is not None:
             x = self.task.warm[k].copy()
@@ -109,7 +109,7 @@ class Nlp:
         window, cells = plain.window(*numbers.task.places[k])
         self.functions = _functions(_layout(robot), cells)
         self.parameters = np.concatenate(
-            [numbers.wanted(k), numbers.search.rules.weights, dimensions(robot), window]
+            [numbers.wanted[k], numbers.search.rules.weights, dimensions(robot), window]
         )
         self.lower, self.upper = numbers.bounds(k)
         kinds = np.array(self.functions.rows)

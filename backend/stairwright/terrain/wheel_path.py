@@ -88,30 +88,35 @@ def wheel_path(terrain: Terrain, radius: float) -> WheelPath:
     Raises:
         InputError: If the profile is too short to hold a wheel.
     """
-    vertices = terrain.vertices
-    pieces = _trim(_raw_pieces(vertices, radius), np.ascontiguousarray(vertices), radius)
+    vertices = np.ascontiguousarray(terrain.vertices)
+    pieces = _trim(_raw_pieces(vertices, radius), vertices, radius)
     if len(pieces) == 0:
         raise InputError("the profile is too short for the wheel", ("points",))
     return WheelPath(radius, pieces, _concave_corners(pieces, radius), vertices)
 
 
+@nb.njit(cache=True)
 def _raw_pieces(p: Floats, r: float) -> Floats:
-    """Offset segments and the arcs between them, untrimmed; s0 holds the raw order only."""
-    rows: list[list[float]] = []
-    before: tuple[float, float] | None = None  # direction of the segment before
-    for (ax, az), (bx, bz) in itertools.pairwise(p.tolist()):
-        length = math.hypot(bx - ax, bz - az)
-        tx, tz = (bx - ax) / length, (bz - az) / length
-        if before is not None:
-            ux, uz = before
-            turn = math.atan2(ux * tz - uz * tx, ux * tx + uz * tz)
-            if abs(abs(turn) - math.pi) < 1e-9:
-                turn = -math.pi  # the tip of a zero-width spike (slits are closed beforehand)
-            if turn < -1e-12:
-                rows.append([ARC, 0, -turn * r, ax, az, math.atan2(ux, -uz), 0])
-        rows.append([LINE, 0, length, ax - r * tz, az + r * tx, tx, tz])
-        before = tx, tz
-    return np.array(rows)
+    """Offset segments and the arcs between them, untrimmed; their arc lengths are still 0."""
+    out = np.zeros((2 * len(p), 7))
+    count, ux, uz = 0, 0.0, 0.0  # direction of the segment before
+    for i in range(len(p) - 1):
+        ax, az = p[i, 0], p[i, 1]
+        length = math.hypot(p[i + 1, 0] - ax, p[i + 1, 1] - az)
+        tx, tz = (p[i + 1, 0] - ax) / length, (p[i + 1, 1] - az) / length
+        turn = math.atan2(ux * tz - uz * tx, ux * tx + uz * tz) if i > 0 else 0.0
+        if abs(abs(turn) - math.pi) < 1e-9:
+            turn = -math.pi  # the tip of a zero-width spike (slits are closed beforehand)
+        if turn < -1e-12:
+            out[count, 0], out[count, 2] = ARC, -turn * r
+            out[count, 3], out[count, 4], out[count, 5] = ax, az, math.atan2(ux, -uz)
+            count += 1
+        out[count, 0], out[count, 2] = LINE, length
+        out[count, 3], out[count, 4] = ax - r * tz, az + r * tx
+        out[count, 5], out[count, 6] = tx, tz
+        count += 1
+        ux, uz = tx, tz
+    return out[:count].copy()
 
 
 def _concave_corners(pieces: Floats, r: float) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numba as nb
@@ -37,6 +38,7 @@ class Leg(NamedTuple):
     calf_max: float
 
 
+@lru_cache(maxsize=64)
 def make_legs(p: Planar) -> tuple[Leg, Leg]:
     """Front and rear leg of a robot."""
 
