@@ -25,6 +25,7 @@ GRAVITY = 9.81  # m/s^2
 CAP = 1.0  # largest ray strength, in weights: joints hold no larger force of wedged wheels
 SQUEEZE = 3.0  # largest inner force looked at, in weights
 MAX_CONTACTS = 6
+RAYS = (3, 2 * MAX_CONTACTS)  # direction (x, z) and moment of each
 _EPS = 1e-9
 
 
@@ -44,9 +45,16 @@ def com_interval(
     Returns:
         (low, high); low > high (+inf, -inf) where nothing can hold the robot.
     """
+    return com_interval_within(points, normals, count, friction, cap, np.empty(RAYS))
+
+
+@leaf
+def com_interval_within(
+    points: Floats, normals: Floats, count: int, friction: float, cap: float, rays: Floats
+) -> tuple[float, float]:
+    """As `com_interval`, for who asks often: `rays` of shape `RAYS` is scratch."""
     n = 2 * count
-    dx, dz = np.empty(2 * MAX_CONTACTS), np.empty(2 * MAX_CONTACTS)
-    moment = np.empty(2 * MAX_CONTACTS)
+    dx, dz, moment = rays[0], rays[1], rays[2]
     for i in range(count):
         for k in range(2):
             side = friction if k == 0 else -friction

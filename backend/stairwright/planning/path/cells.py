@@ -17,7 +17,7 @@ from stairwright.compiled import leaf, vector_leaf
 from stairwright.robot.description import Planar
 from stairwright.statics.contact import CAP
 
-from .contacts import GENTLE, TOUCH, lagged_interval, pair_interval
+from .contacts import GENTLE, TOUCH, lagged_interval, make_scratch, pair_interval
 from .ground import Ground
 from .legs import Leg
 from .tables import Floats32, Lattice, LegTable
@@ -98,17 +98,19 @@ def build_cells(
                 k += 1
     spans = np.empty((k, 6))
     t0, z0, x0 = np.empty(k, np.int32), np.empty(k, np.int32), np.empty(k, np.int32)
-    slope = np.empty(k)
+    slope, scratch = np.empty(k), make_scratch()
     m = 0
     for c in range(k):
         i, j = front[c], rear[c]
-        lo, hi = pair_interval(pieces, corners, r, s[i], s[j], friction, CAP)
+        lo, hi = pair_interval(pieces, corners, r, s[i], s[j], friction, CAP, scratch)
         if hi - lo < 2 * com:
             index[i, j] = -1
             continue
         front[m], rear[m], index[i, j] = i, j, m
         spans[m, 0], spans[m, 1] = lo, hi
-        spans[m, 2], spans[m, 3] = pair_interval(pieces, corners, r, s[i], s[j], reserve, GENTLE)
+        spans[m, 2], spans[m, 3] = pair_interval(
+            pieces, corners, r, s[i], s[j], reserve, GENTLE, scratch
+        )
         slope[m] = math.atan2(centres[i, 1] - centres[j, 1], centres[i, 0] - centres[j, 0])
         middle = int(round(-0.8 * slope[m] / lat.turn)) + lat.pitches // 2
         t0[m] = min(lat.pitches - lat.nt, max(0, middle - lat.nt // 2))
@@ -134,9 +136,10 @@ def lag_spans(
     lag: float,
 ) -> None:
     """Fill the CoM intervals with lag of the `wanted` (n,) cells: they take the longest of all."""
+    scratch = make_scratch()
     for c in np.flatnonzero(wanted):
         i, j, spans = cells.front[c], cells.rear[c], cells.spans[c]
-        lo, hi = lagged_interval(pieces, corners, r, s[i], s[j], friction, lag)
+        lo, hi = lagged_interval(pieces, corners, r, s[i], s[j], friction, lag, scratch)
         if lo > hi:
             lo = hi = 0.5 * (spans[0] + spans[1])
         spans[4], spans[5] = lo, hi

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.compiled import leaf
-from stairwright.statics.contact import CAP, com_interval
+from stairwright.statics.contact import CAP, RAYS, com_interval_within
 from stairwright.terrain.wheel_path import curve_at
 
 Floats = NDArray[np.float64]
@@ -40,33 +42,49 @@ def wheel_contacts(
     return 2
 
 
+class Scratch(NamedTuple):
+    """What finding an interval takes: contact points, their normals, rays of the friction cones."""
+
+    points: Floats
+    normals: Floats
+    rays: Floats
+
+
 @nb.njit(cache=True)
+def make_scratch() -> Scratch:
+    """Made once for many intervals."""
+    return Scratch(np.empty((4, 2)), np.empty((4, 2)), np.empty(RAYS))
+
+
+@leaf
 def pair_interval(
-    pieces: Floats, corners: Floats, r: float, sf: float, sr: float, friction: float, cap: float
-) -> tuple[float, float]:
+    pieces: Floats, corners: Floats, r: float, sf: float, sr: float, friction: float, cap: float,
+    scratch: Scratch,
+) -> tuple[float, float]:  # fmt: skip
     """CoM interval (low, high) with the front wheels at `sf` and the rear wheels at `sr` [m]."""
-    points, normals = np.empty((4, 2)), np.empty((4, 2))
+    points, normals, rays = scratch
     n = wheel_contacts(pieces, corners, r, sf, points, normals, 0)
     n += wheel_contacts(pieces, corners, r, sr, points, normals, n)
-    return com_interval(points, normals, n, friction, cap)
+    return com_interval_within(points, normals, n, friction, cap, rays)
 
 
-@nb.njit(cache=True)
+@leaf
 def lagged_interval(
-    pieces: Floats, corners: Floats, r: float, sf: float, sr: float, friction: float, lag: float
-) -> tuple[float, float]:
+    pieces: Floats, corners: Floats, r: float, sf: float, sr: float, friction: float, lag: float,
+    scratch: Scratch,
+) -> tuple[float, float]:  # fmt: skip
     """CoM interval that also holds if either wheel is still `lag` behind its plan.
 
     A wheel that arrives late at a corner pushes on the face behind it alone; plans that tolerate
     this are what a controller can follow. Low > high where no CoM suits all cases.
     """
     low, high = -np.inf, np.inf
-    points, normals = np.empty((4, 2)), np.empty((4, 2))
+    points, normals, rays = scratch
     for a in range(3):
         n = _late(pieces, corners, r, sf, a, lag, points, normals, 0)
         for b in range(3):
             count = _late(pieces, corners, r, sr, b, lag, points, normals, n)
-            lo, hi = com_interval(points, normals, count, friction, GENTLE)
+            lo, hi = com_interval_within(points, normals, count, friction, GENTLE, rays)
             low, high = max(low, lo), min(high, hi)
             if low > high:
                 return low, high
@@ -107,18 +125,19 @@ def path_intervals(
 
     Where one of the stricter two is empty the interval before it stands in.
     """
+    scratch = make_scratch()
     for k in range(len(s)):
-        lo, hi = pair_interval(pieces, corners, r, s[k, 0], s[k, 1], friction, CAP)
+        lo, hi = pair_interval(pieces, corners, r, s[k, 0], s[k, 1], friction, CAP, scratch)
         if lo > hi:
             xf, _, _, _ = curve_at(pieces, r, s[k, 0])
             xr, _, _, _ = curve_at(pieces, r, s[k, 1])
             lo, hi = 0.5 * (xf + xr) + 0.05, 0.5 * (xf + xr) - 0.05
         out[k, 0], out[k, 1] = lo, hi
-        lo, hi = pair_interval(pieces, corners, r, s[k, 0], s[k, 1], reserve, GENTLE)
+        lo, hi = pair_interval(pieces, corners, r, s[k, 0], s[k, 1], reserve, GENTLE, scratch)
         if lo > hi:
             lo, hi = out[k, 0], out[k, 1]
         out[k, 2], out[k, 3] = lo, hi
-        lo, hi = lagged_interval(pieces, corners, r, s[k, 0], s[k, 1], friction, lag)
+        lo, hi = lagged_interval(pieces, corners, r, s[k, 0], s[k, 1], friction, lag, scratch)
         if lo > hi:
             lo, hi = out[k, 2], out[k, 3]
         out[k, 4], out[k, 5] = lo, hi

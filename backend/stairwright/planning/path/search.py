@@ -24,8 +24,8 @@ from .tables import (
     alike,
     hip_grid,
     on_lattice,
-    trunk_grid,
 )
+from .trunk import trunk_grid
 from .volumes import Volumes, make_volumes
 
 Floats = NDArray[np.float64]
@@ -82,28 +82,9 @@ class Search:
             front.hip_x - rear.hip_x, front.hip_z - rear.hip_z
         )
         self.near = 2 * p.wheel_radius + LEGS_GAP + _APART
-        self.trunk, self.trunk_x0, self.trunk_z0 = self._trunk_table()
-
-    def _trunk_table(self) -> tuple[NDArray[np.float32], int, int]:
-        lat, c = self.lattice, self.centres
-        x0 = math.floor(c[:, 0].min() / lat.step) - lat.nx // 2 - 2
-        x1 = math.ceil(c[:, 0].max() / lat.step) + lat.nx // 2 + 2
-        z0 = math.floor(c[:, 1].min() / lat.step) + lat.low - 2
-        z1 = math.ceil(c[:, 1].max() / lat.step) + lat.low + lat.nz + 2
-        used = np.zeros((z1 - z0 + 1, x1 - x0 + 1), np.bool_)
-        half = lat.nx // 2 + 2
-        # Every window lies round the mean of two wheels at most `far` apart.
-        step = max(1, len(c) // 400)
-        for i in range(0, len(c), step):
-            close = np.flatnonzero(np.abs(c[:, 0] - c[i, 0]) <= self.far)
-            mean = 0.5 * (c[close] + c[i])
-            a = int(mean[:, 0].min() / lat.step) - half - x0
-            b = int(mean[:, 0].max() / lat.step) + half - x0
-            d = int(mean[:, 1].min() / lat.step) + lat.low - 2 - z0
-            e = int(mean[:, 1].max() / lat.step) + lat.low + lat.nz + 2 - z0
-            used[max(0, d) : e + 1, max(0, a) : b + 1] = True
-        grid = trunk_grid(self.ground, self.planar, lat, self.pulls, self.bounds, used, x0, z0)
-        return grid, x0, z0
+        self.trunk, self.trunk_x0, self.trunk_z0 = trunk_grid(
+            ground, p, lattice, self.pulls, bounds, self.centres, self.far
+        )
 
     def find(
         self,

@@ -1,8 +1,8 @@
-"""Tables of the lattice search: what a leg or the trunk costs at each place, or that it cannot be.
+"""Tables of the lattice search: what a leg costs at each place of the trunk, or that it cannot be.
 
 A leg's cost depends on where the hip lies relative to the wheel and on the terrain there, so it is
 computed once per wheel sample on a hip grid, then read onto the body lattice for every pitch: a
-pose of the search costs one read per leg and one for the trunk.
+pose of the search costs one read per leg and one for the trunk (`trunk`).
 """
 
 from __future__ import annotations
@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 
 from stairwright.robot.description import Planar
 
-from .ground import Ground, box_clearance, link_clearance
+from .ground import Ground
 from .legs import Leg, knee_point
 from .links import ground_clearance, ground_near
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Ints = NDArray[np.int32]
+Longs = NDArray[np.int64]
 Bytes = NDArray[np.uint8]
 
 INF = np.float32(1e9)
@@ -97,21 +98,35 @@ def alike(vertices: Floats, centres: Floats, reach: float) -> tuple[Ints, Ints]:
     kinds: dict[bytes, int] = {}
     kept: list[int] = []
     out = np.empty(len(centres), np.int32)
-    for i, (a, b) in enumerate(zip(first.tolist(), last.tolist(), strict=True)):
-        near = vertices[max(0, a - 1) : b + 1] - centres[i]
-        # A segment that enters from outside counts by where it crosses the border.
-        if a > 0:
-            d = near[1] - near[0]
-            near[0] += d * ((-reach - near[0, 0]) / d[0])
-        if b < len(vertices):
-            d = near[-1] - near[-2]
-            near[-1] += d * ((reach - near[-1, 0]) / d[0])
-        key = np.round(near * 1e7).astype(np.int64).tobytes()
-        if key not in kinds:
-            kinds[key] = len(kept)
+    for i, outline in enumerate(_outlines(vertices, centres, reach, first, last)):
+        kind = kinds.setdefault(outline.tobytes(), len(kept))
+        if kind == len(kept):
             kept.append(i)
-        out[i] = kinds[key]
+        out[i] = kind
     return np.array(kept, np.int32), out
+
+
+@nb.njit(cache=True)
+def _outlines(vertices: Floats, centres: Floats, reach: float, first: Longs, last: Longs) -> Longs:
+    """Rows (n, k) of the ground within `reach` of each wheel's centre, from there [1e-7 m].
+
+    `first` and `last` (n,) are the first vertex within reach of each and the one after the last.
+    """
+    out = np.zeros((len(centres), 2 * (last - first).max() + 5), np.int64)
+    for i in range(len(centres)):
+        a, b = max(0, first[i] - 1), min(last[i] + 1, len(vertices))
+        out[i, 0] = b - a
+        for k in range(a, b):
+            dx, dz = vertices[k, 0] - centres[i, 0], vertices[k, 1] - centres[i, 1]
+            # A segment that enters from outside counts by where it crosses the border.
+            inner = k + 1 if k < first[i] else k - 1
+            if k < first[i] or k >= last[i]:
+                ex, ez = vertices[inner, 0] - vertices[k, 0], vertices[inner, 1] - vertices[k, 1]
+                side = -reach if k < first[i] else reach
+                dx, dz = side, dz + ez * (side - dx) / ex
+            out[i, 1 + 2 * (k - a)] = round(dx * 1e7)
+            out[i, 2 + 2 * (k - a)] = round(dz * 1e7)
+    return out
 
 
 @nb.njit(cache=True, nogil=True)
@@ -237,47 +252,4 @@ def moments(table: LegTable, i: int, t: int, row: int, a: int, b: int) -> Floats
     """Columns [a, b) of the moments of sample `i` at pitch `t`, less what it `carried`."""
     u, v = table.u[i, t], table.v[i, t]
     out: Floats32 = table.moment[v % 2, u % 2, v // 2 + row, u // 2 + a : u // 2 + b]
-    return out
-
-
-@nb.njit(cache=True, nogil=True)
-def trunk_grid(
-    g: Ground,
-    p: Planar,
-    lat: Lattice,
-    pulls: Pulls,
-    b: Bounds,
-    used: NDArray[np.bool_],
-    x0: int,
-    z0: int,
-) -> Floats32:
-    """Cost (pitches, rows, columns) of the trunk at lattice points (z0 + j, x0 + i), where `used`.
-
-    `used` (rows, columns) marks points that some cell's window covers; the others stay INF.
-    """
-    nz, nx = used.shape
-    out = np.full((lat.pitches, nz, nx + lat.row), INF, np.float32)
-    soft = 0.15 * (p.thigh + p.calf) / 2.0
-    radius = math.hypot(p.half_length, p.half_height)
-    for j in range(nz):
-        z = (z0 + j) * lat.step
-        for i in range(nx):
-            if not used[j, i]:
-                continue
-            x = (x0 + i) * lat.step
-            # One look at the centre settles most points for all pitches.
-            far = link_clearance(g, x, z, x, z, 0.0, radius + soft)
-            if far < min(p.half_height, p.half_length) + b.trunk:
-                continue
-            for t in range(lat.pitches):
-                c = soft
-                if far < radius + soft:
-                    pitch = (t - lat.pitches // 2) * lat.turn
-                    c = box_clearance(
-                        g, x, z, math.cos(pitch), math.sin(pitch), p.half_length, p.half_height,
-                        soft,
-                    )  # fmt: skip
-                if c >= b.trunk:
-                    e = max(0.0, soft - c) / soft
-                    out[t, j, i] = pulls.clearance * 0.5 * e * e
     return out

@@ -1,0 +1,86 @@
+"""The trunk on the body lattice: what it costs at each place, or that the ground is in the way."""
+
+from __future__ import annotations
+
+import math
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.robot.description import Planar
+
+from .ground import Ground, box_clearance, link_clearance
+from .tables import INF, Bounds, Lattice, Pulls
+
+Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
+Flags = NDArray[np.bool_]
+
+_MOST = 400  # wheel samples that are looked at; those of long courses are close to each other
+
+
+@nb.njit(cache=True, nogil=True)
+def trunk_grid(
+    g: Ground, p: Planar, lat: Lattice, pulls: Pulls, b: Bounds, centres: Floats, far: float
+) -> tuple[Floats32, int, int]:
+    """Cost (pitches, rows, columns) of the trunk, INF where it cannot be or no window comes.
+
+    Args:
+        g, p, lat, pulls, b: Ground, robot, lattice, weights, bounds.
+        centres: (n, 2) wheel centres [m].
+        far: Largest distance in x of two wheels [m].
+
+    Returns:
+        The costs, and the lattice's column and row where they begin.
+    """
+    used, x0, z0 = _windows(lat, centres, far)
+    nz, nx = used.shape
+    out = np.full((lat.pitches, nz, nx + lat.row), INF, np.float32)
+    soft = 0.15 * (p.thigh + p.calf) / 2.0
+    radius = math.hypot(p.half_length, p.half_height)
+    pitches = (np.arange(lat.pitches) - lat.pitches // 2) * lat.turn
+    cos, sin = np.cos(pitches), np.sin(pitches)
+    for j in range(nz):
+        z = (z0 + j) * lat.step
+        for i in range(nx):
+            if not used[j, i]:
+                continue
+            x = (x0 + i) * lat.step
+            # One look at the centre settles most points for all pitches.
+            far_off = link_clearance(g, x, z, x, z, 0.0, radius + soft)
+            if far_off < min(p.half_height, p.half_length) + b.trunk:
+                continue
+            for t in range(lat.pitches):
+                c = soft
+                if far_off < radius + soft:
+                    c = box_clearance(g, x, z, cos[t], sin[t], p.half_length, p.half_height, soft)
+                if c >= b.trunk:
+                    e = max(0.0, soft - c) / soft
+                    out[t, j, i] = pulls.clearance * 0.5 * e * e
+    return out, x0, z0
+
+
+@nb.njit(cache=True, nogil=True)
+def _windows(lat: Lattice, centres: Floats, far: float) -> tuple[Flags, int, int]:
+    """Places (rows, columns) that the window of some pair of wheels covers, and where they begin.
+
+    Every window lies round the mean of two wheels at most `far` apart.
+    """
+    x, z, half = centres[:, 0], centres[:, 1], lat.nx // 2 + 2
+    x0, x1 = math.floor(x.min() / lat.step) - half, math.ceil(x.max() / lat.step) + half
+    z0 = math.floor(z.min() / lat.step) + lat.low - 2
+    z1 = math.ceil(z.max() / lat.step) + lat.low + lat.nz + 2
+    used = np.zeros((z1 - z0 + 1, x1 - x0 + 1), np.bool_)
+    for i in range(0, len(x), max(1, len(x) // _MOST)):
+        left, right, low, high = x[i], x[i], z[i], z[i]
+        for j in range(len(x)):
+            if abs(x[j] - x[i]) <= far:
+                left, right = min(left, x[j]), max(right, x[j])
+                low, high = min(low, z[j]), max(high, z[j])
+        a = max(0, int(0.5 * (left + x[i]) / lat.step) - half - x0)
+        b = int(0.5 * (right + x[i]) / lat.step) + half - x0
+        d = max(0, int(0.5 * (low + z[i]) / lat.step) + lat.low - 2 - z0)
+        e = int(0.5 * (high + z[i]) / lat.step) + lat.low + lat.nz + 2 - z0
+        used[d : e + 1, a : b + 1] = True
+    return used, x0, z0
