@@ -204,24 +204,21 @@ def row_start(lat: Lattice, t: int, z: int) -> int:
 
 
 @leaf
-def columns(
-    w: World, cells: Cells, c: int, t: int, z: int
+def table_rows(
+    w: World, cells: Cells, c: int, t: int
 ) -> tuple[int, int, int, int, int, int, int, int]:
-    """Where row (t, z) of cell `c` finds its values: rows of front, rear and trunk table, shifts of
-    their columns against the window's, and the range of columns that both legs allow (else empty).
+    """Where pitch `t` of cell `c` finds its values.
+
+    Returns:
+        Rows of front, rear and trunk table that its row 0 reads, shifts of their columns against
+        the window's, and the first of its rows that all three have and the one after the last.
     """
-    i, j = cells.front[c], cells.rear[c]
-    tt, zz = cells.t0[c] + t, cells.z0[c] + z
-    fz, rz = zz - w.front_table.z0[i, tt], zz - w.rear_table.z0[j, tt]
-    tz = zz - w.trunk_z0
-    rows = w.front_table.cost.shape[2]
-    if fz < 0 or fz >= rows or rz < 0 or rz >= rows or tz < 0 or tz >= w.trunk.shape[1]:
-        return 0, 0, 0, 0, 0, 0, 0, 0
-    sf = cells.x0[c] - w.front_table.x0[i, tt]
-    sr = cells.x0[c] - w.rear_table.x0[j, tt]
-    a = max(0, w.front_table.first[i, tt, fz] - sf, w.rear_table.first[j, tt, rz] - sr)
-    b = min(w.lat.nx, w.front_table.last[i, tt, fz] - sf, w.rear_table.last[j, tt, rz] - sr)
-    return fz, rz, tz, sf, sr, cells.x0[c] - w.trunk_x0, a, b
+    i, j, tt = cells.front[c], cells.rear[c], cells.t0[c] + t
+    fz, rz = cells.z0[c] - w.front_table.z0[i, tt], cells.z0[c] - w.rear_table.z0[j, tt]
+    tz, rows = cells.z0[c] - w.trunk_z0, w.front_table.cost.shape[2]
+    low, high = max(0, -fz, -rz, -tz), min(w.lat.nz, rows - fz, rows - rz, w.trunk.shape[1] - tz)
+    sf, sr = cells.x0[c] - w.front_table.x0[i, tt], cells.x0[c] - w.rear_table.x0[j, tt]
+    return fz, rz, tz, sf, sr, cells.x0[c] - w.trunk_x0, low, high
 
 
 @vector_leaf

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from stairwright.compiled import leaf, vector_leaf
 
-from .cells import FORWARD, MOVES, Cells, World, columns, row_start, volume_size
+from .cells import FORWARD, MOVES, Cells, World, row_start, table_rows, volume_size
 from .kernels import convolve, gather_cost, reach
 from .tables import INF, Floats32, moments
 from .volumes import Volumes, offset
@@ -61,10 +61,13 @@ def pose_costs(
     worst, zero, half = np.float32(-0.06), np.float32(0.0), np.float32(0.5)
     advance, one = share * np.float32(lat.step), np.float32(1.0)
     carried = mass * (w.front_table.carried[i] + w.rear_table.carried[j])
+    first_f, last_f = w.front_table.first, w.front_table.last
+    first_r, last_r = w.rear_table.first, w.rear_table.last
     page = lat.row * (lat.nz + 4)
     for t in range(max(0, lo // page - 2), min(lat.nt, hi // page - 1)):
         tt = cells.t0[c] + t
         lean = (tt - lat.pitches // 2) * lat.turn + 0.8 * cells.slope[c]
+        fz, rz, tz, sf, sr, st, _, _ = table_rows(w, cells, c, t)
         for z in range(lat.nz):
             k = row_start(lat, t, z)
             if k + lat.nx <= lo or k >= hi:
@@ -75,17 +78,18 @@ def pose_costs(
             if some < least:
                 out[k : k + lat.nx] = INF
                 continue
-            fz, rz, tz, sf, sr, st, a, b = columns(w, cells, c, t, z)
+            a = max(first_f[i, tt, fz + z] - sf, first_r[j, tt, rz + z] - sr, 0)
+            b = min(last_f[i, tt, fz + z] - sf, last_r[j, tt, rz + z] - sr, lat.nx)
             out[k : k + a] = INF
             out[k + b : k + lat.nx] = INF
             rise = ((cells.z0[c] + z) * lat.step - mean) / pulls[2] - 1.0
             base = np.float32(0.075 * pulls[1] * lean * lean + 0.3 * rise * rise)
             first = share * np.float32((cells.x0[c] + a) * lat.step) + carried
-            fc = w.front_table.cost[i, tt, fz, a + sf : b + sf]
-            fm = moments(w.front_table, i, tt, fz, a + sf, b + sf)
-            rc = w.rear_table.cost[j, tt, rz, a + sr : b + sr]
-            rm = moments(w.rear_table, j, tt, rz, a + sr, b + sr)
-            tc = w.trunk[tt, tz, a + st : b + st]
+            fc = w.front_table.cost[i, tt, fz + z, a + sf : b + sf]
+            fm = moments(w.front_table, i, tt, fz + z, a + sf, b + sf)
+            rc = w.rear_table.cost[j, tt, rz + z, a + sr : b + sr]
+            rm = moments(w.rear_table, j, tt, rz + z, a + sr, b + sr)
+            tc = w.trunk[tt, tz + z, a + st : b + st]
             row, wide = out[k + a : k + b], width[k + a : k + b]
             for x in range(b - a):
                 e = fc[x] + rc[x] + tc[x]

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from stairwright.compiled import leaf
 
-from .cells import Cells, World, columns, quality, row_start, volume_size
+from .cells import Cells, World, quality, row_start, table_rows, volume_size
 from .collide import legs_clear
 from .kernels import dilate, gather, reach
 from .tables import INF, Floats32, Lattice, moments
@@ -122,36 +122,39 @@ def _wider(
     """Fill `fresh` with possible poses in [lo, hi) where `result` is above `width`; how many."""
     lat = w.lat
     i, j = cells.front[c], cells.rear[c]
-    left, low = cells.x0[c] * lat.step - w.centres[i, 0], cells.z0[c] * lat.step - w.centres[i, 1]
+    left, down = cells.x0[c] * lat.step - w.centres[i, 0], cells.z0[c] * lat.step - w.centres[i, 1]
     mass, share = np.float32(1.0 / w.robot.mass), np.float32(w.robot.trunk_mass / w.robot.mass)
     carried = mass * (w.front_table.carried[i] + w.rear_table.carried[j])
     step, x_first = np.float32(lat.step), np.float32(cells.x0[c] * lat.step)
+    first_f, last_f = w.front_table.first, w.front_table.last
+    first_r, last_r = w.rear_table.first, w.rear_table.last
     page = lat.row * (lat.nz + 4)
     count = 0
     for t in range(max(0, lo // page - 2), min(lat.nt, hi // page - 1)):
         tt = cells.t0[c] + t
         pitch = (tt - lat.pitches // 2) * lat.turn
         cos, sin = math.cos(pitch), math.sin(pitch)
-        for z in range(lat.nz):
-            fz, rz, tz, sf, sr, st, a, b = columns(w, cells, c, t, z)
+        fz, rz, tz, sf, sr, st, low, high = table_rows(w, cells, c, t)
+        for z in range(low, high):
             k = row_start(lat, t, z)
-            a, b = max(a, lo - k), min(b, hi - k)
+            a = max(lo - k, first_f[i, tt, fz + z] - sf, first_r[j, tt, rz + z] - sr, 0)
+            b = min(hi - k, last_f[i, tt, fz + z] - sf, last_r[j, tt, rz + z] - sr, lat.nx)
             some = False
             for x in range(k + a, k + b):
                 some |= result[x] > width[x]
             if not some:
                 continue
-            front, rear = w.front_table.cost[i, tt, fz], w.rear_table.cost[j, tt, rz]
-            trunk = w.trunk[tt, tz]
-            fm = moments(w.front_table, i, tt, fz, a + sf, b + sf)
-            rm = moments(w.rear_table, j, tt, rz, a + sr, b + sr)
+            front, rear = w.front_table.cost[i, tt, fz + z], w.rear_table.cost[j, tt, rz + z]
+            trunk = w.trunk[tt, tz + z]
+            fm = moments(w.front_table, i, tt, fz + z, a + sf, b + sf)
+            rm = moments(w.rear_table, j, tt, rz + z, a + sr, b + sr)
             for x in range(a, b):
                 possible = front[x + sf] + rear[x + sr] + trunk[x + st] < INF
                 if result[k + x] > width[k + x] and possible:
                     legs = carried + mass * (fm[x - a] + rm[x - a])
                     fresh.at[count] = k + x
                     fresh.com[count] = share * (x_first + np.float32(x) * step) + legs
-                    fresh.x[count], fresh.z[count] = left + x * lat.step, low + z * lat.step
+                    fresh.x[count], fresh.z[count] = left + x * lat.step, down + z * lat.step
                     fresh.cos[count], fresh.sin[count] = cos, sin
                     count += 1
     return count
