@@ -21,6 +21,7 @@ from .contacts import GENTLE, TOUCH, lagged_interval, make_scratch, pair_interva
 from .ground import Ground
 from .legs import Leg
 from .tables import Floats32, Lattice, LegTable
+from .trunk import TrunkTable
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -184,9 +185,7 @@ class World(NamedTuple):
     lat: Lattice
     front_table: LegTable
     rear_table: LegTable
-    trunk: Floats32  # (pitches, rows, columns)
-    trunk_x0: int
-    trunk_z0: int
+    trunk: TrunkTable
     legs_gap: float
     com: float
 
@@ -215,10 +214,13 @@ def table_rows(
     """
     i, j, tt = cells.front[c], cells.rear[c], cells.t0[c] + t
     fz, rz = cells.z0[c] - w.front_table.z0[i, tt], cells.z0[c] - w.rear_table.z0[j, tt]
-    tz, rows = cells.z0[c] - w.trunk_z0, w.front_table.cost.shape[2]
-    low, high = max(0, -fz, -rz, -tz), min(w.lat.nz, rows - fz, rows - rz, w.trunk.shape[1] - tz)
+    tz, rows = cells.z0[c] - w.trunk.z0, w.front_table.cost.shape[2]
+    low, high = (
+        max(0, -fz, -rz, -tz),
+        min(w.lat.nz, rows - fz, rows - rz, w.trunk.cost.shape[1] - tz),
+    )
     sf, sr = cells.x0[c] - w.front_table.x0[i, tt], cells.x0[c] - w.rear_table.x0[j, tt]
-    return fz, rz, tz, sf, sr, cells.x0[c] - w.trunk_x0, low, high
+    return fz, rz, tz, sf, sr, cells.x0[c] - w.trunk.x0, low, high
 
 
 @vector_leaf

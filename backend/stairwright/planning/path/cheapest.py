@@ -68,6 +68,8 @@ def pose_costs(
         tt = cells.t0[c] + t
         lean = (tt - lat.pitches // 2) * lat.turn + 0.8 * cells.slope[c]
         fz, rz, tz, sf, sr, st, _, _ = table_rows(w, cells, c, t)
+        front_moments, fu, fv = moments(w.front_table, i, tt, sf, fz)
+        rear_moments, ru, rv = moments(w.rear_table, j, tt, sr, rz)
         for z in range(lat.nz):
             k = row_start(lat, t, z)
             if k + lat.nx <= lo or k >= hi:
@@ -86,10 +88,10 @@ def pose_costs(
             base = np.float32(0.075 * pulls[1] * lean * lean + 0.3 * rise * rise)
             first = share * np.float32((cells.x0[c] + a) * lat.step) + carried
             fc = w.front_table.cost[i, tt, fz + z, a + sf : b + sf]
-            fm = moments(w.front_table, i, tt, fz + z, a + sf, b + sf)
+            fm = front_moments[fv + z, fu + a : fu + b]
             rc = w.rear_table.cost[j, tt, rz + z, a + sr : b + sr]
-            rm = moments(w.rear_table, j, tt, rz + z, a + sr, b + sr)
-            tc = w.trunk[tt, tz + z, a + st : b + st]
+            rm = rear_moments[rv + z, ru + a : ru + b]
+            tc = w.trunk.cost[tt, tz + z, a + st : b + st]
             row, wide = out[k + a : k + b], width[k + a : k + b]
             for x in range(b - a):
                 e = fc[x] + rc[x] + tc[x]

@@ -20,7 +20,7 @@ from stairwright.compiled import leaf
 from .cells import Cells, World, quality, row_start, table_rows, volume_size
 from .collide import legs_clear
 from .kernels import dilate, gather, reach
-from .tables import INF, Floats32, Lattice, moments
+from .tables import Floats32, Lattice, moments, shifted
 from .volumes import Volumes, offset
 
 Ints = NDArray[np.int32]
@@ -126,8 +126,8 @@ def _wider(
     mass, share = np.float32(1.0 / w.robot.mass), np.float32(w.robot.trunk_mass / w.robot.mass)
     carried = mass * (w.front_table.carried[i] + w.rear_table.carried[j])
     step, x_first = np.float32(lat.step), np.float32(cells.x0[c] * lat.step)
-    first_f, last_f = w.front_table.first, w.front_table.last
-    first_r, last_r = w.rear_table.first, w.rear_table.last
+    front, rear, trunk = w.front_table.possible, w.rear_table.possible, w.trunk.possible
+    one = np.uint64(1)
     page = lat.row * (lat.nz + 4)
     count = 0
     for t in range(max(0, lo // page - 2), min(lat.nt, hi // page - 1)):
@@ -135,23 +135,19 @@ def _wider(
         pitch = (tt - lat.pitches // 2) * lat.turn
         cos, sin = math.cos(pitch), math.sin(pitch)
         fz, rz, tz, sf, sr, st, low, high = table_rows(w, cells, c, t)
+        front_moments, fu, fv = moments(w.front_table, i, tt, sf, fz)
+        rear_moments, ru, rv = moments(w.rear_table, j, tt, sr, rz)
         for z in range(low, high):
             k = row_start(lat, t, z)
-            a = max(lo - k, first_f[i, tt, fz + z] - sf, first_r[j, tt, rz + z] - sr, 0)
-            b = min(hi - k, last_f[i, tt, fz + z] - sf, last_r[j, tt, rz + z] - sr, lat.nx)
-            some = False
-            for x in range(k + a, k + b):
-                some |= result[x] > width[x]
-            if not some:
+            possible = shifted(front[i, tt, fz + z], sf) & shifted(rear[j, tt, rz + z], sr)
+            possible &= trunk[tt, tz + z, st]
+            if possible == 0:
                 continue
-            front, rear = w.front_table.cost[i, tt, fz + z], w.rear_table.cost[j, tt, rz + z]
-            trunk = w.trunk[tt, tz + z]
-            fm = moments(w.front_table, i, tt, fz + z, a + sf, b + sf)
-            rm = moments(w.rear_table, j, tt, rz + z, a + sr, b + sr)
+            a, b = max(lo - k, 0), min(hi - k, lat.nx)
+            fm, rm = front_moments[fv + z], rear_moments[rv + z]
             for x in range(a, b):
-                possible = front[x + sf] + rear[x + sr] + trunk[x + st] < INF
-                if result[k + x] > width[k + x] and possible:
-                    legs = carried + mass * (fm[x - a] + rm[x - a])
+                if possible >> np.uint64(x) & one and result[k + x] > width[k + x]:
+                    legs = carried + mass * (fm[fu + x] + rm[ru + x])
                     fresh.at[count] = k + x
                     fresh.com[count] = share * (x_first + np.float32(x) * step) + legs
                     fresh.x[count], fresh.z[count] = left + x * lat.step, down + z * lat.step

@@ -25,7 +25,7 @@ from .tables import (
     hip_grid,
     on_lattice,
 )
-from .trunk import trunk_grid
+from .trunk import trunk_table
 from .volumes import Volumes, make_volumes
 
 Floats = NDArray[np.float64]
@@ -82,9 +82,7 @@ class Search:
             front.hip_x - rear.hip_x, front.hip_z - rear.hip_z
         )
         self.near = 2 * p.wheel_radius + LEGS_GAP + _APART
-        self.trunk, self.trunk_x0, self.trunk_z0 = trunk_grid(
-            ground, p, lattice, self.pulls, bounds, self.centres, self.far
-        )
+        self.trunk = trunk_table(ground, p, lattice, self.pulls, bounds, self.centres, self.far)
 
     def find(
         self,
@@ -179,7 +177,7 @@ class Search:
     def _world(self, com: float) -> World:
         return World(
             self.ground, self.planar, *self.legs, self.centres, self.s, self.lattice,
-            self.front_table, self.rear_table, self.trunk, self.trunk_x0, self.trunk_z0,
+            self.front_table, self.rear_table, self.trunk,
             self.bounds.legs, com,
         )  # fmt: skip
 

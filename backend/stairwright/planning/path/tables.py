@@ -14,6 +14,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.compiled import leaf
 from stairwright.robot.description import Planar
 
 from .ground import Ground
@@ -25,6 +26,7 @@ Floats32 = NDArray[np.float32]
 Ints = NDArray[np.int32]
 Longs = NDArray[np.int64]
 Bytes = NDArray[np.uint8]
+Words = NDArray[np.uint64]
 
 INF = np.float32(1e9)
 
@@ -73,6 +75,7 @@ class LegTable(NamedTuple):
         carried: What to add about the world's origin, per sample [kg m].
         x0, z0: Lattice index of the first column and row, per sample and pitch.
         u, v: Column and row of the hip grid that those read.
+        possible: Bit k of a row's word tells whether its column k is possible.
         first, last: First possible column of a row and the one after the last (0, 0 if none).
     """
 
@@ -83,6 +86,7 @@ class LegTable(NamedTuple):
     z0: Ints
     u: Ints
     v: Ints
+    possible: Words
     first: Bytes
     last: Bytes
 
@@ -204,6 +208,7 @@ def on_lattice(
     out = np.full((n, lat.pitches, m, lat.row), INF, np.float32)
     x0, z0 = np.empty((n, lat.pitches), np.int32), np.empty((n, lat.pitches), np.int32)
     us, vs = np.empty((n, lat.pitches), np.int32), np.empty((n, lat.pitches), np.int32)
+    possible = np.zeros((n, lat.pitches, m), np.uint64)
     first = np.zeros((n, lat.pitches, m), np.uint8)
     last = np.zeros((n, lat.pitches, m), np.uint8)
     middle = np.float32(0.5 * (leg.thigh_min + leg.thigh_max))
@@ -243,13 +248,34 @@ def on_lattice(
                     b -= 1
                 if b > a:
                     first[i, t, j], last[i, t, j] = a, b
+                    possible[i, t, j] = bits(value[:b])
     carried = (mass * centres[:, 0]).astype(np.float32)
-    return LegTable(out, moment, carried, x0, z0, us, vs, first, last)
+    return LegTable(out, moment, carried, x0, z0, us, vs, possible, first, last)
+
+
+@leaf
+def bits(row: Floats32) -> np.uint64:
+    """A word whose bit k tells whether column k of a row of at most 64 costs is possible."""
+    word = np.uint64(0)
+    for k in range(len(row)):
+        word |= np.uint64(row[k] < INF) << np.uint64(k)
+    return word
+
+
+@nb.njit(cache=True)
+def shifted(word: np.uint64, by: int) -> np.uint64:
+    """A word whose bit k is bit k + by of `word`, 0 where that has none."""
+    if abs(by) > 63:
+        return np.uint64(0)
+    return word >> np.uint64(by) if by >= 0 else word << np.uint64(-by)
 
 
 @nb.njit(cache=True, inline="always")
-def moments(table: LegTable, i: int, t: int, row: int, a: int, b: int) -> Floats32:
-    """Columns [a, b) of the moments of sample `i` at pitch `t`, less what it `carried`."""
+def moments(table: LegTable, i: int, t: int, column: int, row: int) -> tuple[Floats32, int, int]:
+    """Moments of sample `i` at pitch `t`, less what it `carried`.
+
+    Returns:
+        Rows and columns of moments, and where in them a column and a row of the table lie.
+    """
     u, v = table.u[i, t], table.v[i, t]
-    out: Floats32 = table.moment[v % 2, u % 2, v // 2 + row, u // 2 + a : u // 2 + b]
-    return out
+    return table.moment[v % 2, u % 2], u // 2 + column, v // 2 + row

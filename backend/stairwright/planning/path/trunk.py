@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numba as nb
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from stairwright.robot.description import Planar
 
 from .ground import Ground, box_clearance, link_clearance
-from .tables import INF, Bounds, Lattice, Pulls
+from .tables import INF, Bounds, Lattice, Pulls, Words, bits
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -20,19 +21,32 @@ Flags = NDArray[np.bool_]
 _MOST = 400  # wheel samples that are looked at; those of long courses are close to each other
 
 
+class TrunkTable(NamedTuple):
+    """The trunk on the body lattice.
+
+    Attributes:
+        cost: (pitches, rows, columns), INF where it cannot be, or no window comes.
+        possible: Words alike, whose bit k tells whether the k-th column from there on is possible.
+        x0, z0: Lattice index of the first column and row.
+    """
+
+    cost: Floats32
+    possible: Words
+    x0: int
+    z0: int
+
+
 @nb.njit(cache=True, nogil=True)
-def trunk_grid(
+def trunk_table(
     g: Ground, p: Planar, lat: Lattice, pulls: Pulls, b: Bounds, centres: Floats, far: float
-) -> tuple[Floats32, int, int]:
-    """Cost (pitches, rows, columns) of the trunk, INF where it cannot be or no window comes.
+) -> TrunkTable:
+    """Cost of the trunk wherever a window comes.
 
     Args:
         g, p, lat, pulls, b: Ground, robot, lattice, weights, bounds.
         centres: (n, 2) wheel centres [m].
         far: Largest distance in x of two wheels [m].
 
-    Returns:
-        The costs, and the lattice's column and row where they begin.
     """
     used, x0, z0 = _windows(lat, centres, far)
     nz, nx = used.shape
@@ -58,7 +72,14 @@ def trunk_grid(
                 if c >= b.trunk:
                     e = max(0.0, soft - c) / soft
                     out[t, j, i] = pulls.clearance * 0.5 * e * e
-    return out, x0, z0
+    possible = np.zeros((lat.pitches, nz, nx), np.uint64)
+    for t in range(lat.pitches):
+        for j in range(nz):
+            word = bits(out[t, j, nx : nx + lat.nx])
+            for i in range(nx - 1, -1, -1):
+                word = word << np.uint64(1) | np.uint64(out[t, j, i] < INF)
+                possible[t, j, i] = word
+    return TrunkTable(out, possible, x0, z0)
 
 
 @nb.njit(cache=True, nogil=True)
