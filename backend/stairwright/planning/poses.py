@@ -57,7 +57,7 @@ def _pose(
     progress: float, time: float,
 ) -> Pose:  # fmt: skip
     """The document of one pose; the values are ours: validating takes as long as finding them."""
-    return Pose.model_construct(
+    return Pose.trusted(
         progress=progress,
         time=time,
         x_c=trunk[0],
@@ -70,7 +70,7 @@ def _pose(
         com=(r[_COM], r[_COM + 1]),
         collision_points=[(x, z) for x, z in points],
         forces=_pairs(r[_FORCES:_COM]),
-        margins=Margins.model_construct(
+        margins=Margins.trusted(
             clearance=r[_MARGINS],
             com=_finite(r[_MARGINS + 1]),
             friction=_finite(r[_MARGINS + 2]),

@@ -36,35 +36,47 @@ def make_poses(
     com = r.poses[:, [COM_X, COM_Z]]
     margins = np.stack([r.clearance, r.com, r.friction - r.need, r.leg_limit - r.torque], axis=1)
     columns = (
-        progress.tolist(), time.tolist(), body.tolist(), q.tolist(), wheels.tolist(), s.tolist(),
-        contacts.tolist(), com.tolist(), _pairs(points), r.forces.tolist(), margins.tolist(),
+        progress.tolist(), time.tolist(), *body.T.tolist(), _tuples(q), _pairs(wheels), _tuples(s),
+        _pairs(contacts), _tuples(com), _groups(points), _pairs(r.forces), *margins.T.tolist(),
     )  # fmt: skip
     poses = [
         # The values are ours: validating thousands of floats would cost more than planning them.
-        Pose.model_construct(
+        Pose.trusted(
             progress=u,
             time=t,
-            x_c=b[0],
-            z_c=b[1],
-            pitch=b[2],
-            q=tuple(j),
-            wheels=(tuple(w[0]), tuple(w[1])),
-            wheel_progress=tuple(sw),
-            contacts=(tuple(c[0]), tuple(c[1])),
-            com=tuple(m),
+            x_c=x,
+            z_c=z,
+            pitch=pitch,
+            q=j,
+            wheels=w,
+            wheel_progress=sw,
+            contacts=c,
+            com=m,
             collision_points=cp,
-            forces=(tuple(f[0]), tuple(f[1])),
-            margins=Margins.model_construct(clearance=g[0], com=g[1], friction=g[2], torque=g[3]),
+            forces=f,
+            margins=Margins.trusted(clearance=clear, com=tip, friction=slip, torque=load),
         )
-        for u, t, b, j, w, sw, c, m, cp, f, g in zip(*columns, strict=True)
+        for u, t, x, z, pitch, j, w, sw, c, m, cp, f, clear, tip, slip, load in zip(
+            *columns, strict=True
+        )
     ]
     return poses, key_poses(path, s), float(time[-1])
 
 
-def _pairs(points: Floats) -> list[list[tuple[float, float]]]:
-    """(n, m, 2) points as n lists of pairs, without a list a point: the collector walks them."""
+def _tuples(rows: Floats) -> list[tuple[float, ...]]:
+    """(n, m) numbers as n tuples, without a list a row: the collector walks them."""
+    return list(zip(*rows.T.tolist(), strict=True))
+
+
+def _pairs(points: Floats) -> list[tuple[tuple[float, ...], ...]]:
+    """(n, 2, 2) points of front and rear as n pairs of tuples."""
+    return list(zip(_tuples(points[:, 0]), _tuples(points[:, 1]), strict=True))
+
+
+def _groups(points: Floats) -> list[list[tuple[float, ...]]]:
+    """(n, m, 2) points as n lists of tuples."""
     n, m = points.shape[:2]
-    flat = list(zip(*points.reshape(n * m, 2).T.tolist(), strict=True))
+    flat = _tuples(points.reshape(n * m, 2))
     return [flat[k * m : (k + 1) * m] for k in range(n)]
 
 

@@ -67,11 +67,10 @@ def pose_times(
     fastest = length / np.maximum(least, 1e-9)
     node = np.minimum(np.append(fastest, fastest[-1]), np.insert(fastest, 0, fastest[0]))
     node[0] = node[-1] = min(0.02, 0.2 * speed)
-    for order in (range(1, len(node)), range(len(node) - 2, -1, -1)):
-        for k in order:
-            before = k - 1 if order.step > 0 else k + 1
-            ahead = length[min(k, before)]
-            node[k] = min(node[k], (node[before] ** 2 + 2 * _ACCELERATION * ahead) ** 0.5)
+    gained = 2 * _ACCELERATION * np.concatenate([[0.0], np.cumsum(length)])  # of squared speed
+    square = np.minimum.accumulate(node**2 - gained) + gained
+    square = np.minimum.accumulate((square + gained)[::-1])[::-1] - gained
+    node = np.sqrt(np.maximum(square, 0.0))
     mean = np.maximum(0.5 * (node[:-1] + node[1:]), 1e-6)
     steps = np.maximum(least, length / mean)
     times = np.concatenate([[0.0], np.cumsum(steps)])
