@@ -30,12 +30,15 @@ class Stage(NamedTuple):
         fine: The search's lattice; None: no search, the piece is only polished anew.
         depth: By how much bounds may be broken where it is tried: it mends no more [m].
         places: Most bad places; more are hardly ever all mended, and each takes its time.
+        longest: Largest extent of a bad place [m]; a search of more takes as long as the first one,
+            and mends nothing.
     """
 
     width: float
     fine: float | None
     depth: float = np.inf
     places: int = 1000
+    longest: float = 0.6
 
 
 STAGES = (Stage(0.1, None, depth=0.008), Stage(0.15, 1.25), Stage(0.25, 1.0, places=1))
@@ -54,7 +57,8 @@ def mend(q: Question, found: Refined, bad: Ints, stage: Stage) -> Refined:
     for low, high in places if len(places) <= stage.places else []:
         inner = _nodes(u, low - width, high + width)
         begin, end = _nodes(u, low - width - blend, high + width + blend)
-        if found.record.room[begin : end + 1].min() < -stage.depth:
+        deep = found.record.room[begin : end + 1].min() < -stage.depth
+        if deep or high - low > stage.longest * size:
             continue
         begin, inner = max(begin, last), (max(inner[0], last), inner[1])
         way = _way(q, found, begin, end, *inner, stage.fine)
