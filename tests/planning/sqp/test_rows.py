@@ -5,8 +5,8 @@ import pytest
 
 import stairwright as sw
 from stairwright.planning.pose_search import PoseSearch
+from stairwright.planning.sqp import model
 from stairwright.planning.sqp import rows as r
-from stairwright.planning.sqp import solve
 from stairwright.planning.sqp.gaps import collect
 from stairwright.planning.sqp.state import com, make_body, new_state, place
 from stairwright.planning.weights import CriticalWeights
@@ -79,7 +79,7 @@ def test_gradients(seed, links):
     assert least <= rows.value[:count].min() + 1e-12
     free = np.arange(5)
     A = np.empty((count, 5))
-    solve._gradients(state, rows, count, free, A)
+    model.gradients(state, rows, count, free, A, model.make_scratch(5))
     for k in range(count):
         assert row_value(search, task, state, rows, k) == pytest.approx(rows.value[k], abs=1e-12)
         for a in range(5):
@@ -100,8 +100,9 @@ def test_hessian_of_the_lagrangian(seed, links):
         moving = new_state(search.body, links)
         assert place(search.body, search.course, at, moving)
         g, H, A = np.empty(5), np.empty((5, 5)), np.empty((count, 5))
-        solve._model(task, moving, rows, force, count, g, H)
-        solve._gradients(moving, rows, count, np.arange(5), A)
+        scratch = model.make_scratch(5)
+        model.lagrangian(task, moving, rows, force, count, g, H, scratch)
+        model.gradients(moving, rows, count, np.arange(5), A, scratch)
         return g - A.T @ force, H
 
     _, H = slope(y)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numba as nb
 import numpy as np
@@ -11,10 +12,33 @@ from numpy.typing import NDArray
 from stairwright.compiled import leaf
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 SOLVED, INFEASIBLE, STALLED = 0, 1, 2
 _FEASIBLE = 1e-11  # violation that is none, relative to a row's size
 _ROUNDS = 200
+
+
+class Room(NamedTuple):
+    """What a programme of n unknowns takes: factors (n, n), active rows (n,), directions (n,)."""
+
+    L: Floats
+    J: Floats
+    R: Floats
+    active: Ints
+    u: Floats  # (n + 1,) their multipliers
+    d: Floats
+    z: Floats
+    r: Floats
+
+
+@nb.njit(cache=True)
+def make_room(n: int) -> Room:
+    """Room for programmes of `n` unknowns, one after the other."""
+    return Room(
+        np.empty((n, n)), np.empty((n, n)), np.empty((n, n)), np.empty(n, np.int64),
+        np.empty(n + 1), np.empty(n), np.empty(n), np.empty(n),
+    )  # fmt: skip
 
 
 @nb.njit(cache=True)
@@ -32,10 +56,19 @@ def solve_qp(H: Floats, g: Floats, A: Floats, b: Floats, x: Floats, multipliers:
     Returns:
         `SOLVED`, `INFEASIBLE` (no x satisfies all rows) or `STALLED` (rounding errors).
     """
+    return solve_qp_within(H, g, A, b, x, multipliers, make_room(len(g)))
+
+
+@leaf
+def solve_qp_within(
+    H: Floats, g: Floats, A: Floats, b: Floats, x: Floats, multipliers: Floats, room: Room
+) -> int:
+    """As `solve_qp`, for who asks often."""
     n, m = len(g), len(b)
-    multipliers[:] = 0.0
-    J = _inverse_factor(H)
-    if not math.isfinite(J[0, 0]):
+    L, J, R, active, u, d, z, r = room
+    for i in range(m):
+        multipliers[i] = 0.0
+    if not _inverse_factor(H, L, J):
         return STALLED
     for i in range(n):
         x[i] = 0.0
@@ -45,18 +78,19 @@ def solve_qp(H: Floats, g: Floats, A: Floats, b: Floats, x: Floats, multipliers:
             along += J[i, k] * g[i]
         for i in range(n):
             x[i] -= J[i, k] * along
-    R = np.zeros((n, n))
-    active = np.zeros(n, np.int64)
-    u, d, z, r = np.zeros(n + 1), np.empty(n), np.empty(n), np.empty(n)
     count = 0
     for _ in range(_ROUNDS):
         worst, p = 0.0, -1
         for i in range(m):
-            slack, size = -b[i], abs(b[i]) + 1e-3
+            slack = -b[i]
             for k in range(n):
                 slack += A[i, k] * x[k]
+            if slack >= worst:
+                continue
+            size = abs(b[i]) + 1e-3
+            for k in range(n):
                 size += abs(A[i, k] * x[k])
-            if slack < -_FEASIBLE * size and slack < worst:
+            if slack < -_FEASIBLE * size:
                 worst, p = slack, i
         if p < 0:
             for j in range(count):
@@ -102,11 +136,13 @@ def solve_qp(H: Floats, g: Floats, A: Floats, b: Floats, x: Floats, multipliers:
     return STALLED
 
 
-@nb.njit(cache=True)
-def _inverse_factor(H: Floats) -> Floats:
-    """J (n, n) with J J' = H^-1 (the inverse of the transposed Cholesky factor); nan if none."""
+@leaf
+def _inverse_factor(H: Floats, L: Floats, J: Floats) -> bool:
+    """J (n, n) with J J' = H^-1: the inverse of H's Cholesky factor L, transposed.
+
+    False if H has none.
+    """
     n = len(H)
-    L, J = np.zeros((n, n)), np.zeros((n, n))
     for i in range(n):
         for j in range(i + 1):
             total = H[i, j]
@@ -114,18 +150,19 @@ def _inverse_factor(H: Floats) -> Floats:
                 total -= L[i, k] * L[j, k]
             if i == j:
                 if not total > 0.0:
-                    J[0, 0] = np.nan
-                    return J
+                    return False
                 L[i, i] = math.sqrt(total)
             else:
                 L[i, j] = total / L[j, j]
     for c in range(n):  # column c of L^-1 is row c of J
+        for i in range(c):
+            J[c, i] = 0.0
         for i in range(c, n):
             total = 1.0 if i == c else 0.0
             for k in range(c, i):
                 total -= L[i, k] * J[c, k]
             J[c, i] = total / L[i, i]
-    return J
+    return True
 
 
 @leaf

@@ -94,7 +94,7 @@ def gradient(st: State, rows: Rows, k: int, out: Floats) -> None:
     """Gradient (U,) of row `k` by u."""
     kind, i, j = rows.what[k, 0], rows.what[k, 1], rows.what[k, 2]
     nx, nz, sign = rows.numbers[k, 0], rows.numbers[k, 1], rows.numbers[k, 2]
-    out[:] = 0.0
+    _clear(out)
     if kind == JOINT:
         out[2 + i], out[2 + j] = sign, -sign
     elif kind == PLACE:
@@ -144,9 +144,15 @@ def _between(st: State, rows: Rows, k: int) -> tuple[float, float]:
     return st.points[i, 0] - ax, st.points[i, 1] - az
 
 
-@nb.njit(cache=True)
-def add_curvature(st: State, rows: Rows, k: int, factor: float, H: Floats) -> None:
-    """Add `factor` times the second derivative of row `k` to H (U, U)."""
+@leaf
+def _clear(out: Floats) -> None:
+    for a in range(U):
+        out[a] = 0.0
+
+
+@leaf
+def add_curvature(st: State, rows: Rows, k: int, factor: float, H: Floats, across: Floats) -> None:
+    """Add `factor` times the second derivative of row `k` to H (U, U); `across` (U,) is scratch."""
     kind, i, j = rows.what[k, 0], rows.what[k, 1], rows.what[k, 2]
     nx, nz, sign = rows.numbers[k, 0], rows.numbers[k, 1], rows.numbers[k, 2]
     if kind in (BEHIND, PLANE):
@@ -164,20 +170,20 @@ def add_curvature(st: State, rows: Rows, k: int, factor: float, H: Floats) -> No
             _bend(st, i, ax, az, H)
         _bend(st, j, -ax, -az, H)
         H[angle, angle] -= ax * dx + az * dz
-        tilt = np.zeros(U)
+        _clear(across)
         if i != FIXED:
-            _pull(st, i, az, -ax, tilt)
-        _pull(st, j, -az, ax, tilt)
+            _pull(st, i, az, -ax, across)
+        _pull(st, j, -az, ax, across)
         for a in range(U):
-            H[angle, a] += tilt[a]
-            H[a, angle] += tilt[a]
+            H[angle, a] += across[a]
+            H[a, angle] += across[a]
     elif kind == APART:
         dx, dz = _between(st, rows, k)
         gap = max(math.hypot(dx, dz), 1e-9)
         ux, uz = dx / gap, dz / gap
         _bend(st, i, factor * ux, factor * uz, H)
         _bend(st, j, -factor * ux, -factor * uz, H)
-        across = np.zeros(U)  # |d|'' = (across the line)(across the line)' / |d|
+        _clear(across)  # |d|'' = (across the line)(across the line)' / |d|
         _pull(st, i, -uz, ux, across)
         _pull(st, j, uz, -ux, across)
         for a in range(U):

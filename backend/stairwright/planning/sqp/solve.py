@@ -18,9 +18,9 @@ from stairwright.terrain.wheel_path import curve_at
 
 from .cells import Course
 from .gaps import collect
-from .qp import SOLVED, solve_qp
-from .rows import Rows, Task, U, add_curvature, gradient, new_rows
-from .state import WHEEL, Body, State, new_state, place
+from .model import direction, gradients, hold, lagrangian, make_scratch
+from .rows import Task, new_rows
+from .state import Body, State, new_state, place
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -33,9 +33,7 @@ _PATIENCE = 8  # rounds in which a violation must fall by `_FALL`, or there is n
 _FALL = 0.8
 _HALVINGS = 8
 _MEMORY = 6  # rounds; a step must better the worst of so many (Grippo, Lampariello, Lucidi 1986)
-_LEAST_CURVATURE = 1e-3
 _LONGEST = (0.15, 0.15, 0.5, 0.05, 0.05)  # m, m, rad, m, m; of one step
-_RELAXED = 1e4  # cost of what linearised constraints lack where they contradict each other
 
 
 @nb.njit(cache=True)
@@ -73,13 +71,15 @@ def solve_pose(
     closest, since = np.inf, 0
     values, worsts = np.full(_MEMORY, -np.inf), np.zeros(_MEMORY)  # of the last rounds
     g, H, A = np.empty(5), np.empty((5, 5)), np.empty((len(rows.value), len(free)))
+    multipliers, scratch = np.empty(len(rows.value)), make_scratch(len(free))
     while rounds < _ROUNDS:
         rounds += 1
-        _model(task, st, held, force, holding, g, H)
-        _gradients(st, rows, count, free, A)
-        multipliers = np.zeros(count)
-        relaxed = _direction(H, g, A[:count], rows.value[:count], free, step, multipliers)
-        holding = _hold(rows, multipliers, held, force)
+        lagrangian(task, st, held, force, holding, g, H, scratch)
+        gradients(st, rows, count, free, A, scratch)
+        relaxed = direction(
+            H, g, A[:count], rows.value[:count], free, step, multipliers[:count], scratch
+        )
+        holding = hold(rows, multipliers, count, held, force)
         size = np.abs(step).max()
         worst = max(0.0, -least)
         if size < _STEP and worst <= TOLERANCE:
@@ -89,7 +89,7 @@ def solve_pose(
             closest, since = worst, 0
         if since > _PATIENCE or not math.isfinite(size):
             break
-        penalty = max(penalty, 1.5 * multipliers.sum())
+        penalty = max(penalty, 1.5 * multipliers[:count].sum())
         shorten = 1.0
         for k in range(5):
             if abs(step[k]) > _LONGEST[k]:
@@ -150,150 +150,6 @@ def _within_reach(body: Body, course: Course, y: Floats, st: State) -> bool:
         if not moved:
             break
     return place(body, course, y, st)
-
-
-@nb.njit(cache=True)
-def _model(
-    task: Task, st: State, held: Rows, force: Floats, holding: int,
-    g: Floats, H: Floats,
-) -> None:  # fmt: skip
-    """Gradient (5,) of the cost and Hessian (5, 5) of the Lagrangian by y."""
-    gu, Hu = np.zeros(U), np.zeros((U, U))
-    for k in range(7):
-        w = 2.0 * task.weights[k]
-        error = (st.y[k] if k < 3 else st.q[k - 3]) - task.reference[k]
-        i = k
-        gu[i] += w * error
-        Hu[i, i] += w
-        if k >= 3:
-            # Joint = angle of its link minus angle of the link that it turns against.
-            j = 2 if k == 3 or k == 5 else k - 1
-            gu[j] -= w * error
-            Hu[j, j] += w
-            Hu[i, j] -= w
-            Hu[j, i] -= w
-    _reduce(st, gu, g)
-    row = np.empty(U)
-    for k in range(holding):
-        gradient(st, held, k, row)
-        gu -= force[k] * row
-        add_curvature(st, held, k, -force[k], Hu)
-    for leg in range(2):
-        _closure(st, leg, gu, Hu)
-    # H = Z' Hu Z, where Z (U, 5) holds the turns of the link angles and ones elsewhere.
-    half, row = np.empty((U, 5)), np.empty(5)
-    for i in range(U):
-        _reduce(st, Hu[i], half[i])
-    for j in range(5):
-        _reduce(st, half[:, j], row)
-        H[j] = row
-
-
-@leaf
-def _closure(st: State, leg: int, gu: Floats, Hu: Floats) -> None:
-    """Curvature of "the wheel is on the curve" with the multiplier that its leg's angles imply."""
-    wheel, upper = WHEEL + leg, 1 + 2 * leg
-    ax, az = st.arms[wheel, upper, 1], -st.arms[wheel, upper, 0]
-    bx, bz = st.arms[wheel, upper + 1, 1], -st.arms[wheel, upper + 1, 0]
-    det = ax * bz - az * bx
-    g1, g2 = gu[2 + upper], gu[3 + upper]
-    mx, mz = (g1 * bz - g2 * az) / det, (ax * g2 - bx * g1) / det
-    for a in (0, upper, upper + 1):
-        Hu[2 + a, 2 + a] += mx * st.arms[wheel, a, 0] + mz * st.arms[wheel, a, 1]
-    tx, tz, bent = st.curve[leg, 0], st.curve[leg, 1], st.curve[leg, 2]
-    Hu[7 + leg, 7 + leg] -= bent * (mz * tx - mx * tz)
-
-
-@leaf
-def _reduce(st: State, gu: Floats, out: Floats) -> None:
-    """Gradient by y (5,) from the gradient by u (U,)."""
-    for k in range(5):
-        out[k] = gu[k] if k < 3 else gu[4 + k]
-        for a in range(4):
-            out[k] += gu[3 + a] * st.turns[a, k]
-
-
-@nb.njit(cache=True)
-def _gradients(st: State, rows: Rows, count: int, free: Ints, A: Floats) -> None:
-    gu, gy = np.empty(U), np.empty(5)
-    for k in range(count):
-        gradient(st, rows, k, gu)
-        _reduce(st, gu, gy)
-        for j in range(len(free)):
-            A[k, j] = gy[free[j]]
-
-
-@nb.njit(cache=True)
-def _direction(
-    H: Floats, g: Floats, A: Floats, value: Floats, free: Ints, step: Floats, multipliers: Floats
-) -> bool:
-    """Step (5,) of the quadratic model; True if the rows contradicted each other and gave way."""
-    n = len(free)
-    B, c, d = np.empty((n, n)), np.empty(n), np.empty(n)
-    for i in range(n):
-        c[i] = g[free[i]]
-        for j in range(n):
-            B[i, j] = H[free[i], free[j]]
-    _lift(B)
-    step[:] = 0.0
-    relaxed = solve_qp(B, c, A, -value, d, multipliers) != SOLVED
-    if relaxed:
-        # One more unknown: how much all rows give way, dear and never negative.
-        m = len(value)
-        B1, c1, d1 = np.zeros((n + 1, n + 1)), np.empty(n + 1), np.empty(n + 1)
-        A1, b1, force = np.zeros((m + 1, n + 1)), np.zeros(m + 1), np.empty(m + 1)
-        B1[:n, :n], B1[n, n] = B, _RELAXED
-        c1[:n], c1[n] = c, 1.0
-        A1[:m, :n], A1[:, n] = A, 1.0
-        b1[:m] = -value
-        solve_qp(B1, c1, A1, b1, d1, force)
-        d[:] = d1[:n]
-        multipliers[:] = force[:m]
-    for i in range(n):
-        step[free[i]] = d[i]
-    return relaxed
-
-
-@nb.njit(cache=True)
-def _lift(B: Floats) -> None:
-    """Make B positive definite: negative eigenvalues change sign, and none stays near zero."""
-    if _curved(B):
-        return
-    values, vectors = np.linalg.eigh(B)
-    for k in range(len(values)):
-        values[k] = max(abs(values[k]), _LEAST_CURVATURE)
-    B[:] = (vectors * values) @ vectors.T
-
-
-@nb.njit(cache=True)
-def _curved(B: Floats) -> bool:
-    """Whether all eigenvalues of B are above `_LEAST_CURVATURE`: its Cholesky factor exists."""
-    n = len(B)
-    L = np.empty((n, n))
-    for i in range(n):
-        for j in range(i + 1):
-            total = B[i, j] - (_LEAST_CURVATURE if i == j else 0.0)
-            for k in range(j):
-                total -= L[i, k] * L[j, k]
-            if i == j:
-                if not total > 0.0:
-                    return False
-                L[i, i] = math.sqrt(total)
-            else:
-                L[i, j] = total / L[j, j]
-    return True
-
-
-@nb.njit(cache=True)
-def _hold(rows: Rows, multipliers: Floats, held: Rows, force: Floats) -> int:
-    """Copy the rows with a multiplier to `held` and `force`; returns their number."""
-    count = 0
-    for k in range(len(multipliers)):
-        if multipliers[k] > 0.0 and count < len(force):
-            held.what[count], held.numbers[count] = rows.what[k], rows.numbers[k]
-            force[count] = multipliers[k]
-            count += 1
-    return count
 
 
 @leaf
