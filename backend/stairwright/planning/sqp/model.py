@@ -126,6 +126,7 @@ def _reduce(st: State, gu: Floats, out: Floats) -> None:
 
 @leaf
 def gradients(st: State, rows: Rows, count: int, free: Ints, A: Floats, scratch: Scratch) -> None:
+    """Fill A (count, n) with the rows' gradients by the free unknowns."""
     gu, gy = scratch.row, scratch.gy
     for k in range(count):
         gradient(st, rows, k, gu)
