@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import importlib
+import inspect
 import os
+import pkgutil
 import subprocess
 import sys
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from numba.core.dispatcher import Dispatcher
 from numba.core.errors import NumbaError
 from numpy.typing import NDArray
 
+import stairwright
 from stairwright.compiled import leaf
 
 # Plans, a verdict and a rollout, then again: of what that makes hardly an array is left (a search
@@ -59,6 +65,31 @@ def test_a_leaf_that_makes_an_array_is_refused() -> None:
 
     with pytest.raises(NumbaError, match="zeros"):
         make(3)
+
+
+def _dispatchers() -> Iterator[Dispatcher]:
+    """All compiled functions of the package."""
+    for found in pkgutil.walk_packages(stairwright.__path__, "stairwright."):
+        if not found.name.endswith("__main__"):
+            for item in vars(importlib.import_module(found.name)).values():
+                if isinstance(item, Dispatcher) and item.py_func.__module__ == found.name:
+                    yield item
+
+
+def _is_of_numbers(function: Dispatcher) -> bool:
+    annotations = [p.annotation for p in inspect.signature(function.py_func).parameters.values()]
+    return set(annotations) <= {"float", "int", "bool", "np.uint64", "Leg", "Planar", "Lattice"}
+
+
+def test_leaves_call_only_leaves_and_functions_of_numbers() -> None:
+    leaves = [one for one in _dispatchers() if one.targetoptions.get("_nrt") is False]
+    assert len(leaves) > 50
+    for one in leaves:
+        for name in one.py_func.__code__.co_names:
+            called = one.py_func.__globals__.get(name)
+            if isinstance(called, Dispatcher) and called not in leaves:
+                inlined = called.targetoptions.get("inline") == "always"
+                assert inlined or _is_of_numbers(called), (one.py_func, called.py_func)
 
 
 def test_no_compiled_function_keeps_an_array_for_good() -> None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 
+import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.compiled import leaf
 from stairwright.robot.description import Planar
 
-from .contact import GRAVITY, com_interval
+from .contact import CAP, GRAVITY, RAYS, com_interval_within
 
 Floats = NDArray[np.float64]
 
@@ -18,29 +19,36 @@ Floats = NDArray[np.float64]
 NOTHING_HOLDS = -1.0  # m; the margin where no CoM is in equilibrium, and the least that is stated
 
 
-@leaf
+@nb.njit(cache=True)
 def com_margin(points: Floats, normals: Floats, count: int, friction: float, com_x: float) -> float:
     """How far the CoM may shift in x, the smaller way, with equilibrium [m]; negative outside.
 
     It is finite: `NOTHING_HOLDS` where these contacts hold no CoM at all, and never below that.
     """
-    low, high = com_interval(points, normals, count, friction)
+    return _com_margin(points, normals, count, friction, com_x, np.empty(RAYS))
+
+
+@leaf
+def _com_margin(
+    points: Floats, normals: Floats, count: int, friction: float, com_x: float, rays: Floats
+) -> float:
+    low, high = com_interval_within(points, normals, count, friction, CAP, rays)
     if low > high:
         return NOTHING_HOLDS
     return max(NOTHING_HOLDS, min(com_x - low, high - com_x))
 
 
-@leaf
+@nb.njit(cache=True)
 def friction_needed(points: Floats, normals: Floats, count: int, com_x: float) -> float:
     """Least friction with which any number of contacts hold a CoM at `com_x`; inf if none does."""
-    lo, hi = 0.0, 1.0
-    while com_margin(points, normals, count, hi, com_x) < 0.0:
+    lo, hi, rays = 0.0, 1.0, np.empty(RAYS)
+    while _com_margin(points, normals, count, hi, com_x, rays) < 0.0:
         lo, hi = hi, 2.0 * hi
         if hi > 1e3:
             return np.inf
     for _ in range(24):
         mid = 0.5 * (lo + hi)
-        if com_margin(points, normals, count, mid, com_x) >= 0.0:
+        if _com_margin(points, normals, count, mid, com_x, rays) >= 0.0:
             hi = mid
         else:
             lo = mid

@@ -215,10 +215,8 @@ def table_rows(
     i, j, tt = cells.front[c], cells.rear[c], cells.t0[c] + t
     fz, rz = cells.z0[c] - w.front_table.z0[i, tt], cells.z0[c] - w.rear_table.z0[j, tt]
     tz, rows = cells.z0[c] - w.trunk.z0, w.front_table.cost.shape[2]
-    low, high = (
-        max(0, -fz, -rz, -tz),
-        min(w.lat.nz, rows - fz, rows - rz, w.trunk.cost.shape[1] - tz),
-    )
+    low = max(0, -fz, -rz, -tz)
+    high = min(w.lat.nz, rows - fz, rows - rz, w.trunk.cost.shape[1] - tz)
     sf, sr = cells.x0[c] - w.front_table.x0[i, tt], cells.x0[c] - w.rear_table.x0[j, tt]
     return fz, rz, tz, sf, sr, cells.x0[c] - w.trunk.x0, low, high
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from stairwright.robot.description import Robot
 
 from .legs import LEGS_GAP, make_legs
-from .tables import Bounds, Lattice
+from .tables import WORD, Bounds, Lattice
 
 Floats = NDArray[np.float64]
 
@@ -54,6 +54,8 @@ def make_lattice(robot: Robot, fine: float = 1.0) -> Lattice:
     step = reach / 12.1 * fine
     turn = 0.12 * fine
     half = math.ceil(reach / (0.5 * step))
+    row = 8 * math.ceil((2 * round(13 / fine) + 6) / 8)
+    assert row <= WORD, "a row of the lattice must fit into a word"
     return Lattice(
         step=step,
         turn=turn,
@@ -61,7 +63,7 @@ def make_lattice(robot: Robot, fine: float = 1.0) -> Lattice:
         nt=2 * round(8 / fine) + 1,
         nz=round(17 / fine),
         nx=2 * round(13 / fine),
-        row=8 * math.ceil((2 * round(13 / fine) + 6) / 8),
+        row=row,
         low=-round(3 / fine),
         half=half,
     )

@@ -29,6 +29,7 @@ Bytes = NDArray[np.uint8]
 Words = NDArray[np.uint64]
 
 INF = np.float32(1e9)
+WORD = 64  # columns whose possibility one word tells
 
 
 class Lattice(NamedTuple):
@@ -255,7 +256,7 @@ def on_lattice(
 
 @leaf
 def bits(row: Floats32) -> np.uint64:
-    """A word whose bit k tells whether column k of a row of at most 64 costs is possible."""
+    """A word whose bit k tells whether column k of a row of at most `WORD` costs is possible."""
     word = np.uint64(0)
     for k in range(len(row)):
         word |= np.uint64(row[k] < INF) << np.uint64(k)
@@ -265,7 +266,7 @@ def bits(row: Floats32) -> np.uint64:
 @nb.njit(cache=True)
 def shifted(word: np.uint64, by: int) -> np.uint64:
     """A word whose bit k is bit k + by of `word`, 0 where that has none."""
-    if abs(by) > 63:
+    if abs(by) >= WORD:
         return np.uint64(0)
     return word >> np.uint64(by) if by >= 0 else word << np.uint64(-by)
 
