@@ -93,3 +93,13 @@ def test_more_places_than_a_stage_is_for_are_left_alone():
     alone = mend(course, found, both, STAGES[1]._replace(places=1))
     assert np.array_equal(alone.body, found.body)
     assert np.array_equal(mend(course, found, NONE, STAGES[1]).body, found.body)
+
+
+def test_a_place_longer_than_a_stage_is_for_is_left_alone():
+    course = flight("up", "a1_wheeled", 0.6)
+    found = polished(course)
+    travel = found.s.mean(axis=1) - found.s[0].mean()
+    long = np.flatnonzero((travel > 0.4) & (travel < 0.4 + STAGES[1].longest + 0.1))
+    assert mend(course, found, long, STAGES[1]) is found
+    short = np.flatnonzero((travel > 0.4) & (travel < 0.5))
+    assert mend(course, found, short, STAGES[1]) is not found
