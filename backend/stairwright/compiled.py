@@ -4,7 +4,10 @@ Numba counts references to every array of every struct that a function is given,
 small functions that takes longer than what they do: 0.2 us for a struct of ten arrays. A leaf goes
 without. The compiler refuses one that makes an array itself; one that is *given* an array by a
 function that it calls would never free it; and what a leaf calls is compiled as it is. So leaves
-call only leaves and functions of numbers, which a test holds them to.
+call only leaves, functions of numbers and what is inlined, which a test holds them to.
+
+Numba keeps what it has compiled by the text of a function, not by these options: remove
+`__pycache__` after changing them.
 """
 
 from __future__ import annotations
@@ -13,10 +16,13 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 import numba as nb
+from numba.core.cpu import CPUTargetOptions
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-_BORROWING: dict[str, Any] = {"cache": True, "_nrt": False}
+_BORROWING: dict[str, Any] = {"cache": True}
+if hasattr(CPUTargetOptions, "_nrt"):  # without, leaves are as slow as others, no more
+    _BORROWING["_nrt"] = False
 
 
 def leaf(function: F) -> F:

@@ -42,9 +42,9 @@ class Model(BaseModel):
 
     @classmethod
     def trusted(cls, **values: Any) -> Self:
-        """A record of all its fields, unchecked: for thousands of values that are our own.
+        """A record of values that are our own, unchecked: all its fields, by name, in their order.
 
-        It equals what `model_construct` makes, in a third of the time.
+        It equals what `model_construct` makes of them, in a third of the time.
         """
         record = cls.__new__(cls)
         for name, content in (

@@ -77,19 +77,33 @@ def _dispatchers() -> Iterator[Dispatcher]:
 
 
 def _is_of_numbers(function: Dispatcher) -> bool:
-    annotations = [p.annotation for p in inspect.signature(function.py_func).parameters.values()]
-    return set(annotations) <= {"float", "int", "bool", "np.uint64", "Leg", "Planar", "Lattice"}
+    signature = inspect.signature(function.py_func)
+    given = {parameter.annotation for parameter in signature.parameters.values()}
+    numbers = {"float", "int", "bool", "np.uint64", "tuple[float, float]"}
+    return signature.return_annotation in numbers and given <= numbers | {
+        "Leg",
+        "Planar",
+        "Lattice",
+    }
+
+
+def _called(function: Dispatcher) -> Iterator[Dispatcher]:
+    """Compiled functions that it calls, and those that inlined ones call in it."""
+    for name in function.py_func.__code__.co_names:
+        called = function.py_func.__globals__.get(name)
+        if isinstance(called, Dispatcher):
+            if called.targetoptions.get("inline") == "always":
+                yield from _called(called)
+            else:
+                yield called
 
 
 def test_leaves_call_only_leaves_and_functions_of_numbers() -> None:
     leaves = [one for one in _dispatchers() if one.targetoptions.get("_nrt") is False]
     assert len(leaves) > 50
     for one in leaves:
-        for name in one.py_func.__code__.co_names:
-            called = one.py_func.__globals__.get(name)
-            if isinstance(called, Dispatcher) and called not in leaves:
-                inlined = called.targetoptions.get("inline") == "always"
-                assert inlined or _is_of_numbers(called), (one.py_func, called.py_func)
+        for called in _called(one):
+            assert called in leaves or _is_of_numbers(called), (one.py_func, called.py_func)
 
 
 def test_no_compiled_function_keeps_an_array_for_good() -> None:

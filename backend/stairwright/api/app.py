@@ -42,8 +42,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
-        await services.start()
         _complete(app)
+        await services.start()
         yield
         await services.stop()
 

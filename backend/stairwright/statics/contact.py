@@ -52,7 +52,7 @@ def com_interval(
 def com_interval_within(
     points: Floats, normals: Floats, count: int, friction: float, cap: float, rays: Floats
 ) -> tuple[float, float]:
-    """As `com_interval`, for who asks often: `rays` of shape `RAYS` is scratch."""
+    """As `com_interval`, for who asks often: `rays` of shape `RAYS` is overwritten."""
     n = 2 * count
     dx, dz, moment = rays[0], rays[1], rays[2]
     for i in range(count):

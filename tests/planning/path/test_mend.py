@@ -12,6 +12,7 @@ from stairwright.planning.path.mend import STAGES, mend
 from stairwright.planning.path.record import evaluate_path
 from stairwright.planning.path.refine import Refined, refine
 from stairwright.planning.path.solve import Course, Rung, Solved, pose_course
+from stairwright.planning.planner import plan
 from stairwright.planning.weights import PathWeights
 from stairwright.terrain.stairs import stair
 
@@ -99,7 +100,14 @@ def test_a_place_longer_than_a_stage_is_for_is_left_alone():
     course = flight("up", "a1_wheeled", 0.6)
     found = polished(course)
     travel = found.s.mean(axis=1) - found.s[0].mean()
-    long = np.flatnonzero((travel > 0.4) & (travel < 0.4 + STAGES[1].longest + 0.1))
-    assert mend(course, found, long, STAGES[1]) is found
+    stage = STAGES[1]._replace(longest=0.3)
+    assert mend(course, found, np.flatnonzero((travel > 0.4) & (travel < 0.8)), stage) is found
     short = np.flatnonzero((travel > 0.4) & (travel < 0.5))
-    assert mend(course, found, short, STAGES[1]) is not found
+    assert mend(course, found, short, stage) is not found
+
+
+def test_a_long_bad_place_is_mended():
+    """Knees back, down a flight, with little friction: 0.67 m are bad."""
+    terrain = stair(0.12, 0.22, 5, direction="down")
+    answer = plan(terrain, "a1_wheeled", 0.35)
+    assert answer.feasible

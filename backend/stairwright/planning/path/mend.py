@@ -30,18 +30,18 @@ class Stage(NamedTuple):
         fine: The search's lattice; None: no search, the piece is only polished anew.
         depth: By how much bounds may be broken where it is tried: it mends no more [m].
         places: Most bad places; more are hardly ever all mended, and each takes its time.
-        longest: Largest extent of a bad place [m]; a search of more takes as long as the first one,
-            and mends nothing.
+        longest: Largest extent of a bad place, for legs of 0.4 m [m]; a fine search of more takes
+            as long as the whole course, and has mended nothing.
     """
 
     width: float
     fine: float | None
     depth: float = np.inf
     places: int = 1000
-    longest: float = 0.6
+    longest: float = np.inf
 
 
-STAGES = (Stage(0.1, None, depth=0.008), Stage(0.15, 1.25), Stage(0.25, 1.0, places=1))
+STAGES = (Stage(0.1, None, depth=0.008), Stage(0.15, 1.25), Stage(0.25, 1.0, places=1, longest=0.9))
 _BLEND = 0.08  # m on either side of that, which are polished with it
 _HELD = 3  # nodes at the ends of a piece stay, so that it meets the path without a kink
 _GRAINS = (Grain(0.5, 0.006, 0.6), Grain(0.15, 0.006, 0.6))

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from stairwright.robot.description import Planar
 
 from .ground import Ground, box_clearance, link_clearance
-from .tables import INF, Bounds, Lattice, Pulls, Words, bits
+from .tables import INF, Bounds, Lattice, Pulls, Words
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Flags = NDArray[np.bool_]
 
-_MOST = 400  # wheel samples that are looked at; those of long courses are close to each other
+_SAMPLES = 400  # from twice as many on only every other wheel is looked at, and so on
 
 
 class TrunkTable(NamedTuple):
@@ -75,7 +75,7 @@ def trunk_table(
     possible = np.zeros((lat.pitches, nz, nx), np.uint64)
     for t in range(lat.pitches):
         for j in range(nz):
-            word = bits(out[t, j, nx : nx + lat.nx])
+            word = np.uint64(0)
             for i in range(nx - 1, -1, -1):
                 word = word << np.uint64(1) | np.uint64(out[t, j, i] < INF)
                 possible[t, j, i] = word
@@ -93,7 +93,7 @@ def _windows(lat: Lattice, centres: Floats, far: float) -> tuple[Flags, int, int
     z0 = math.floor(z.min() / lat.step) + lat.low - 2
     z1 = math.ceil(z.max() / lat.step) + lat.low + lat.nz + 2
     used = np.zeros((z1 - z0 + 1, x1 - x0 + 1), np.bool_)
-    for i in range(0, len(x), max(1, len(x) // _MOST)):
+    for i in range(0, len(x), max(1, len(x) // _SAMPLES)):
         left, right, low, high = x[i], x[i], z[i], z[i]
         for j in range(len(x)):
             if abs(x[j] - x[i]) <= far:

@@ -23,7 +23,7 @@ _RELAXED = 1e4  # cost of what linearised constraints lack where they contradict
 
 
 class Scratch(NamedTuple):
-    """What every round takes, made once.
+    """What every round takes, made once; n unknowns are free, at most m rows are near.
 
     Attributes:
         gu, Hu: (U,), (U, U) gradient and Hessian by u.
@@ -50,6 +50,7 @@ class Scratch(NamedTuple):
 
 @nb.njit(cache=True)
 def make_scratch(n: int) -> Scratch:
+    """Scratch for `n` free unknowns."""
     return Scratch(
         np.empty(U), np.empty((U, U)), np.empty(U), np.empty(U), np.empty((U, 5)), np.empty(5),
         np.empty((n, n)), np.empty(n), np.empty(n), np.empty(MOST), make_room(n),

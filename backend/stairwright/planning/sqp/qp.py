@@ -63,7 +63,7 @@ def solve_qp(H: Floats, g: Floats, A: Floats, b: Floats, x: Floats, multipliers:
 def solve_qp_within(
     H: Floats, g: Floats, A: Floats, b: Floats, x: Floats, multipliers: Floats, room: Room
 ) -> int:
-    """As `solve_qp`, for who asks often."""
+    """As `solve_qp`, for who asks often: `room`, made for just as many unknowns, is overwritten."""
     n, m = len(g), len(b)
     L, J, R, active, u, d, z, r = room
     for i in range(m):
