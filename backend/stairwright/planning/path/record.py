@@ -24,6 +24,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 LEAST_COM = 0.001  # m; no robot's centre of mass is known better
+# Where the CoM has less room than this [m], friction must leave more than that: else a wheel that
+# slides a little tips the robot.
+THIN_COM, FIRM_GRIP = 0.006, 0.025
 _SPARE = 5e-4  # m
 
 
@@ -63,13 +66,14 @@ class Record:
 
     @cached_property
     def _rooms(self) -> Floats:
-        """(6, n) margins, each against its bound, in comparable sizes."""
+        """(7, n) margins, each against its bound, in comparable sizes."""
         margins: Floats = np.stack(
             [
                 self.clearance,
                 self.poses[:, LEGS] - LEGS_GAP,
                 0.2 * self.poses[:, SLACK],
                 self.com - LEAST_COM,
+                np.maximum(self.com - THIN_COM, 0.2 * (self.friction - self.need - FIRM_GRIP)),
                 (self.wheel_limit - self.wheel_torque) * 0.01,
                 (self.leg_limit - self.torque) * 0.01,
             ]
