@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numba as nb
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 
 from stairwright.compiled import leaf
 
-from .qp import SOLVED, Room, make_room, solve_qp, solve_qp_within
+from .qp import SOLVED, Room, factor, make_room, solve_qp, solve_qp_within
 from .rows import MOST, Rows, Task, U, add_curvature, gradient
 from .state import WHEEL, State
 
@@ -175,30 +174,12 @@ def _lift(B: Floats, L: Floats) -> None:
 
     L, of the same shape, is scratch.
     """
-    if _curved(B, L):
+    if factor(B, _LEAST_CURVATURE, L):
         return
     values, vectors = np.linalg.eigh(B)
     for k in range(len(values)):
         values[k] = max(abs(values[k]), _LEAST_CURVATURE)
     B[:] = (vectors * values) @ vectors.T
-
-
-@leaf
-def _curved(B: Floats, L: Floats) -> bool:
-    """Whether all eigenvalues of B are above `_LEAST_CURVATURE`; L, of its shape, is scratch."""
-    n = len(B)
-    for i in range(n):
-        for j in range(i + 1):
-            total = B[i, j] - (_LEAST_CURVATURE if i == j else 0.0)
-            for k in range(j):
-                total -= L[i, k] * L[j, k]
-            if i == j:
-                if not total > 0.0:
-                    return False
-                L[i, i] = math.sqrt(total)
-            else:
-                L[i, j] = total / L[j, j]
-    return True
 
 
 @leaf

@@ -137,15 +137,14 @@ def solve_qp_within(
 
 
 @leaf
-def _inverse_factor(H: Floats, L: Floats, J: Floats) -> bool:
-    """J (n, n) with J J' = H^-1: the inverse of H's Cholesky factor L, transposed.
+def factor(H: Floats, least: float, L: Floats) -> bool:
+    """Fill the lower triangle of L with the Cholesky factor of H less `least` on the diagonal.
 
-    False if H has none.
+    False if there is none: not all eigenvalues of H are above `least`.
     """
-    n = len(H)
-    for i in range(n):
+    for i in range(len(H)):
         for j in range(i + 1):
-            total = H[i, j]
+            total = H[i, j] - (least if i == j else 0.0)
             for k in range(j):
                 total -= L[i, k] * L[j, k]
             if i == j:
@@ -154,6 +153,18 @@ def _inverse_factor(H: Floats, L: Floats, J: Floats) -> bool:
                 L[i, i] = math.sqrt(total)
             else:
                 L[i, j] = total / L[j, j]
+    return True
+
+
+@leaf
+def _inverse_factor(H: Floats, L: Floats, J: Floats) -> bool:
+    """J (n, n) with J J' = H^-1: the inverse of H's Cholesky factor L, transposed.
+
+    False if H has none.
+    """
+    if not factor(H, 0.0, L):
+        return False
+    n = len(H)
     for c in range(n):  # column c of L^-1 is row c of J
         for i in range(c):
             J[c, i] = 0.0
