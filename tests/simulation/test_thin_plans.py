@@ -34,6 +34,30 @@ def test_a_plan_that_is_called_feasible_succeeds(height, tread, count, friction)
     assert sw.rollout(plan).outcome == "success"
 
 
+# Direction, height, tread, number, friction, robot: plans of these tipped while one wheel was in a
+# corner or on an edge.
+STEADY = [
+    ("up", 0.201, 0.173, 5, 0.54, "a1_wheeled"),
+    ("up", 0.163, 0.234, 3, 0.30, "a1_wheeled"),
+    ("up", 0.138, 0.233, 3, 0.46, "a1_wheeled"),
+    ("up", 0.104, 0.275, 5, 0.31, "a1_wheeled_x"),
+    ("up", 0.213, 0.184, 4, 0.31, "a1_wheeled"),
+    ("up", 0.124, 0.224, 5, 0.31, "a1_wheeled_x"),
+    ("down", 0.184, 0.244, 5, 0.68, "a1_wheeled"),
+    ("down", 0.208, 0.197, 4, 0.65, "a1_wheeled"),
+    ("down", 0.182, 0.202, 3, 0.68, "a1_wheeled"),
+]
+
+
+@pytest.mark.parametrize(("direction", "height", "tread", "count", "friction", "robot"), STEADY)
+def test_a_wheel_in_a_corner_or_on_an_edge_tips_no_robot(
+    direction, height, tread, count, friction, robot
+):
+    plan = sw.plan(stair(height, tread, count, direction=direction), robot, friction)
+    assert plan.feasible
+    assert sw.rollout(plan).outcome == "success"
+
+
 def test_a_ramp_near_its_friction_angle_is_planned():
     """There the CoM has ample room: grip alone may be scarce."""
     run = 1.3

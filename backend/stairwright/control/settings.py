@@ -60,7 +60,7 @@ class ControllerSettings(Model):
         None, 0.0, 20.0, "Nm s/rad", "Wheel damping", "K_d of eq 14; the robot's if empty", "log"
     )
     wheel_sync: float = _number(
-        2.0, 0.0, 20.0, "1/s", "Wheel synchronisation", "Pull of each wheel to its place", "linear"
+        5.0, 0.0, 20.0, "1/s", "Wheel synchronisation", "Pull of each wheel to its place", "linear"
     )
     yaw_damping: float = _number(
         1.2, 0.0, 20.0, "1", "Yaw damping", "K_d of eq 16, per wheel radius and track", "linear"
@@ -108,7 +108,7 @@ class ControllerSettings(Model):
         1e-4, 0.0, 1.0, "1", "Beta", "Weight of the change of forces (eq 11)", "linear"
     )
     friction_share: float = _number(
-        0.9,
+        0.95,
         0.1,
         1.0,
         "1",

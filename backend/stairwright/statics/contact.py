@@ -45,19 +45,23 @@ def com_interval(
     Returns:
         (low, high); low > high (+inf, -inf) where nothing can hold the robot.
     """
-    return com_interval_within(points, normals, count, friction, cap, np.empty(RAYS))
+    grips = np.full(count, friction)
+    return com_interval_within(points, normals, count, grips, cap, np.empty(RAYS))
 
 
 @leaf
 def com_interval_within(
-    points: Floats, normals: Floats, count: int, friction: float, cap: float, rays: Floats
+    points: Floats, normals: Floats, count: int, grips: Floats, cap: float, rays: Floats
 ) -> tuple[float, float]:
-    """As `com_interval`, for who asks often: `rays` of shape `RAYS` is overwritten."""
+    """As `com_interval`, for who asks often.
+
+    `grips` (m,) is the friction of each contact; `rays` of shape `RAYS` is overwritten.
+    """
     n = 2 * count
     dx, dz, moment = rays[0], rays[1], rays[2]
     for i in range(count):
         for k in range(2):
-            side = friction if k == 0 else -friction
+            side = grips[i] if k == 0 else -grips[i]
             x = normals[i, 0] + side * normals[i, 1]
             z = normals[i, 1] - side * normals[i, 0]
             dx[2 * i + k], dz[2 * i + k] = x, z

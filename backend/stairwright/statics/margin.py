@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from stairwright.compiled import leaf
 from stairwright.robot.description import Planar
 
-from .contact import CAP, GRAVITY, RAYS, com_interval_within
+from .contact import CAP, GRAVITY, RAYS, com_interval, com_interval_within
 
 Floats = NDArray[np.float64]
 
@@ -25,14 +25,12 @@ def com_margin(points: Floats, normals: Floats, count: int, friction: float, com
 
     It is finite: `NOTHING_HOLDS` where these contacts hold no CoM at all, and never below that.
     """
-    return _com_margin(points, normals, count, friction, com_x, np.empty(RAYS))
+    return room_within(*com_interval(points, normals, count, friction), com_x)
 
 
 @leaf
-def _com_margin(
-    points: Floats, normals: Floats, count: int, friction: float, com_x: float, rays: Floats
-) -> float:
-    low, high = com_interval_within(points, normals, count, friction, CAP, rays)
+def room_within(low: float, high: float, com_x: float) -> float:
+    """`com_margin` of a CoM at `com_x` that may lie from `low` to `high` [m]."""
     if low > high:
         return NOTHING_HOLDS
     return max(NOTHING_HOLDS, min(com_x - low, high - com_x))
@@ -41,18 +39,28 @@ def _com_margin(
 @nb.njit(cache=True)
 def friction_needed(points: Floats, normals: Floats, count: int, com_x: float) -> float:
     """Least friction with which any number of contacts hold a CoM at `com_x`; inf if none does."""
-    lo, hi, rays = 0.0, 1.0, np.empty(RAYS)
-    while _com_margin(points, normals, count, hi, com_x, rays) < 0.0:
+    lo, hi, grips, rays = 0.0, 1.0, np.ones(count), np.empty(RAYS)
+    while _outside(points, normals, count, grips, com_x, rays):
         lo, hi = hi, 2.0 * hi
+        grips[:] = hi
         if hi > 1e3:
             return np.inf
     for _ in range(24):
         mid = 0.5 * (lo + hi)
-        if _com_margin(points, normals, count, mid, com_x, rays) >= 0.0:
+        grips[:] = mid
+        if not _outside(points, normals, count, grips, com_x, rays):
             hi = mid
         else:
             lo = mid
     return hi
+
+
+@leaf
+def _outside(
+    points: Floats, normals: Floats, count: int, grips: Floats, com_x: float, rays: Floats
+) -> bool:
+    low, high = com_interval_within(points, normals, count, grips, CAP, rays)
+    return not low <= com_x <= high
 
 
 @leaf

@@ -17,7 +17,7 @@ from stairwright.compiled import leaf, vector_leaf
 from stairwright.robot.description import Planar
 from stairwright.statics.contact import CAP
 
-from .contacts import GENTLE, TOUCH, lagged_interval, make_scratch, pair_interval
+from .contacts import TOUCH, lagged_interval, make_scratch, pair_interval, steady_interval
 from .ground import Ground
 from .legs import Leg
 from .tables import Floats32, Lattice, LegTable
@@ -109,9 +109,7 @@ def build_cells(
             continue
         front[m], rear[m], index[i, j] = i, j, m
         spans[m, 0], spans[m, 1] = lo, hi
-        spans[m, 2], spans[m, 3] = pair_interval(
-            pieces, corners, r, s[i], s[j], reserve, GENTLE, scratch
-        )
+        spans[m, 2], spans[m, 3] = steady_interval(pieces, corners, r, s[i], s[j], reserve, scratch)
         slope[m] = math.atan2(centres[i, 1] - centres[j, 1], centres[i, 0] - centres[j, 0])
         middle = int(round(-0.8 * slope[m] / lat.turn)) + lat.pitches // 2
         t0[m] = min(lat.pitches - lat.nt, max(0, middle - lat.nt // 2))

@@ -15,6 +15,7 @@ from stairwright.terrain.wheel_path import curve_at
 Floats = NDArray[np.float64]
 
 GENTLE = 0.75  # weights; ray strength that poses with reserve do with: no wheels that pinch
+STRAY = 0.005  # m; how far a wheel may be from its place
 TOUCH = 0.0018  # m; a wheel this near to a concave corner (by arc length) touches both faces
 
 
@@ -43,17 +44,27 @@ def wheel_contacts(
 
 
 class Scratch(NamedTuple):
-    """What finding an interval takes: contact points, their normals, rays of the friction cones."""
+    """What finding an interval takes.
 
+    Attributes:
+        faces, face_normals: (4, 2) where wheels touch the terrain.
+        points, normals, grips: (4, 2), (4, 2), (4,) contacts that are counted, their friction.
+        rays: Of their friction cones.
+    """
+
+    faces: Floats
+    face_normals: Floats
     points: Floats
     normals: Floats
+    grips: Floats
     rays: Floats
 
 
 @nb.njit(cache=True)
 def make_scratch() -> Scratch:
     """Made once for many intervals."""
-    return Scratch(np.empty((4, 2)), np.empty((4, 2)), np.empty(RAYS))
+    pairs = np.empty((4, 4, 2))
+    return Scratch(pairs[0], pairs[1], pairs[2], pairs[3], np.empty(4), np.empty(RAYS))
 
 
 @leaf
@@ -61,11 +72,76 @@ def pair_interval(
     pieces: Floats, corners: Floats, r: float, sf: float, sr: float, friction: float, cap: float,
     scratch: Scratch,
 ) -> tuple[float, float]:  # fmt: skip
-    """CoM interval (low, high) with the front wheels at `sf` and the rear wheels at `sr` [m]."""
-    points, normals, rays = scratch
-    n = wheel_contacts(pieces, corners, r, sf, points, normals, 0)
-    n += wheel_contacts(pieces, corners, r, sr, points, normals, n)
-    return com_interval_within(points, normals, n, friction, cap, rays)
+    """CoM interval (low, high) with the front wheels at `sf` and the rear wheels at `sr` [m].
+
+    A wheel between two faces pushes on either with friction, or on both without. Friction on both
+    could hold more: a motor that drives the wheel against the face ahead lifts the robot's nose.
+    But it takes all the grip of both at once, and robots whose plans counted on it tipped.
+    """
+    front = wheel_contacts(pieces, corners, r, sf, scratch.faces, scratch.face_normals, 0)
+    rear = wheel_contacts(pieces, corners, r, sr, scratch.faces, scratch.face_normals, front)
+    low, high = np.inf, -np.inf
+    for i in range(1 if front == 1 else 3):
+        n = _lean(0, front, i, friction, scratch, 0)
+        for j in range(1 if rear == 1 else 3):
+            count = _lean(front, front + rear, j, friction, scratch, n)
+            lo, hi = com_interval_within(
+                scratch.points, scratch.normals, count, scratch.grips, cap, scratch.rays
+            )
+            if lo <= hi:
+                low, high = min(low, lo), max(high, hi)
+    return low, high
+
+
+@leaf
+def steady_interval(
+    pieces: Floats, corners: Floats, r: float, sf: float, sr: float, friction: float,
+    scratch: Scratch,
+) -> tuple[float, float]:  # fmt: skip
+    """CoM interval without pinching that also holds where a wheel on an edge strays by `STRAY`.
+
+    Round an edge a few millimetres tilt the face by a tenth of a radian. Low > high where no CoM
+    suits all cases.
+    """
+    low, high = pair_interval(pieces, corners, r, sf, sr, friction, GENTLE, scratch)
+    for case in range(4):
+        strayed = STRAY if case % 2 == 0 else -STRAY
+        s = sf if case < 2 else sr
+        if low > high or not _turns(pieces, corners, r, s, s + strayed):
+            continue
+        f, b = (s + strayed, sr) if case < 2 else (sf, s + strayed)
+        lo, hi = pair_interval(pieces, corners, r, f, b, friction, GENTLE, scratch)
+        low, high = max(low, lo), min(high, hi)
+    return low, high
+
+
+@leaf
+def _turns(pieces: Floats, corners: Floats, r: float, s: float, other: float) -> bool:
+    """Whether the face tilts from `s` to `other`, both between the same two corners."""
+    if np.searchsorted(corners, min(s, other) - TOUCH) != np.searchsorted(
+        corners, max(s, other) + TOUCH
+    ):
+        return False
+    _, _, ax, az = curve_at(pieces, r, s)
+    _, _, bx, bz = curve_at(pieces, r, other)
+    return bool(ax * bx + az * bz < 1.0 - 1e-6)
+
+
+@leaf
+def _lean(begin: int, end: int, way: int, friction: float, scratch: Scratch, at: int) -> int:
+    """Write the contacts of the wheel that touches the faces from `begin` on to row `at`.
+
+    Its friction is on face `way`; 2 stands for both faces without any. Returns the row after the
+    last.
+    """
+    for k in range(begin, end):
+        if way == 2 or way == k - begin:
+            scratch.points[at, 0], scratch.points[at, 1] = scratch.faces[k, 0], scratch.faces[k, 1]
+            scratch.normals[at, 0] = scratch.face_normals[k, 0]
+            scratch.normals[at, 1] = scratch.face_normals[k, 1]
+            scratch.grips[at] = 0.0 if way == 2 else friction
+            at += 1
+    return at
 
 
 @leaf
@@ -79,12 +155,15 @@ def lagged_interval(
     this are what a controller can follow. Low > high where no CoM suits all cases.
     """
     low, high = -np.inf, np.inf
-    points, normals, rays = scratch
-    for a in range(3):
+    _, _, points, normals, grips, rays = scratch
+    grips[:] = friction
+    for a in range(4):
         n = _late(pieces, corners, r, sf, a, lag, points, normals, 0)
-        for b in range(3):
+        for b in range(4):
+            if max(a, b) == 3 and a + b > 3:
+                continue
             count = _late(pieces, corners, r, sr, b, lag, points, normals, n)
-            lo, hi = com_interval_within(points, normals, count, friction, GENTLE, rays)
+            lo, hi = com_interval_within(points, normals, count, grips, GENTLE, rays)
             low, high = max(low, lo), min(high, hi)
             if low > high:
                 return low, high
@@ -104,7 +183,13 @@ def _late(
         return at + wheel_contacts(pieces, corners, r, s, points, normals, at)
     # The lagging wheel's normal at the planned centre: the direction decides.
     x, z, _, _ = curve_at(pieces, r, s)
-    _, _, nx, nz = curve_at(pieces, r, s - (lag if case == 1 else 0.3 * lag))
+    other = s - lag if case == 1 else s - 0.3 * lag
+    if case == 3:
+        other = s + STRAY
+        k = int(np.searchsorted(corners, s))
+        if k < len(corners) and corners[k] < other:
+            other = s
+    _, _, nx, nz = curve_at(pieces, r, other)
     points[at, 0], points[at, 1] = x - r * nx, z - r * nz
     normals[at, 0], normals[at, 1] = nx, nz
     return at + 1
@@ -138,6 +223,10 @@ def path_intervals(
             lo, hi = out[k, 0], out[k, 1]
         out[k, 2], out[k, 3] = lo, hi
         lo, hi = lagged_interval(pieces, corners, r, s[k, 0], s[k, 1], friction, lag, scratch)
+        if lo > hi:
+            lo, hi = lagged_interval(
+                pieces, corners, r, s[k, 0], s[k, 1], friction, 0.3 * lag, scratch
+            )
         if lo > hi:
             lo, hi = out[k, 2], out[k, 3]
         out[k, 4], out[k, 5] = lo, hi

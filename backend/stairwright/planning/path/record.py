@@ -12,17 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.robot.description import Planar, Robot
-from stairwright.statics.contact import GRAVITY, least_friction
-from stairwright.statics.margin import com_margin, friction_needed, leg_torques
+from stairwright.statics.contact import CAP, GRAVITY, least_friction
+from stairwright.statics.margin import friction_needed, leg_torques, room_within
 from stairwright.terrain.wheel_path import WheelPath, curve_at
 
-from .contacts import wheel_contacts
+from .contacts import make_scratch, pair_interval, wheel_contacts
 from .ground import Ground
 from .legs import COM_X, LEGS, LEGS_GAP, LINKS, RECORD, SLACK, TRUNK, Leg, evaluate
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+LEAST_CLEARANCE = 0.001  # m; a controller that is better than good still strays that far
 LEAST_COM = 0.001  # m; no robot's centre of mass is known better
 # Where the CoM has less room than this [m], friction must leave more than that: else a wheel that
 # slides a little tips the robot.
@@ -69,7 +70,7 @@ class Record:
         """(7, n) margins, each against its bound, in comparable sizes."""
         margins: Floats = np.stack(
             [
-                self.clearance,
+                self.clearance - LEAST_CLEARANCE,
                 self.poses[:, LEGS] - LEGS_GAP,
                 0.2 * self.poses[:, SLACK],
                 self.com - LEAST_COM,
@@ -161,7 +162,7 @@ def _evaluate_path(
     pair_at, pair_n, pair_f = np.empty((2, 2)), np.empty((2, 2)), np.empty((2, 2))
     kept = np.zeros((2, 2))
     faces, face_n = np.zeros((6, 2)), np.zeros((6, 2))
-    weight = p.mass * GRAVITY
+    scratch, weight = make_scratch(), p.mass * GRAVITY
     for k in range(n):
         for m in range(2):
             wheels[2 * m], wheels[2 * m + 1], _, _ = curve_at(pieces, r, s[k, m])
@@ -169,7 +170,8 @@ def _evaluate_path(
         x = poses[k, COM_X]
         a = wheel_contacts(pieces, corners, r, s[k, 0], at, normals, 0)
         b = wheel_contacts(pieces, corners, r, s[k, 1], at, normals, a)
-        com[k] = com_margin(at, normals, a + b, friction, x)
+        low, high = pair_interval(pieces, corners, r, s[k, 0], s[k, 1], friction, CAP, scratch)
+        com[k] = room_within(low, high, x)
         need[k] = friction_needed(at, normals, a + b, x)
         # A wheel between two faces may lean on either or on both: their bisector stands for both,
         # with a cone that is narrower than the true one.
