@@ -23,7 +23,7 @@ from .legs import COM_X, LEGS, LEGS_GAP, LINKS, RECORD, SLACK, TRUNK, Leg, evalu
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-LEAST_CLEARANCE = 0.001  # m; a controller that is better than good still strays that far
+LEAST_CLEARANCE = 0.0005  # m; the best controller strays that far
 LEAST_COM = 0.001  # m; no robot's centre of mass is known better
 # Where the CoM has less room than this [m], friction must leave more than that: else a wheel that
 # slides a little tips the robot.
