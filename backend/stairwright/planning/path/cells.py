@@ -110,9 +110,8 @@ def build_cells(
         front[m], rear[m], index[i, j] = i, j, m
         spans[m, 0], spans[m, 1] = lo, hi
         spans[m, 2], spans[m, 3] = steady_interval(pieces, corners, r, s[i], s[j], reserve, scratch)
-        slope[m] = math.atan2(centres[i, 1] - centres[j, 1], centres[i, 0] - centres[j, 0])
-        middle = int(round(-0.8 * slope[m] / lat.turn)) + lat.pitches // 2
-        t0[m] = min(lat.pitches - lat.nt, max(0, middle - lat.nt // 2))
+        slope[m] = _slope(centres, i, j)
+        t0[m] = _first_pitch(slope[m], lat)
         x0[m] = int(round(0.5 * (centres[i, 0] + centres[j, 0]) / lat.step)) - lat.nx // 2
         z0[m] = int(round(0.5 * (centres[i, 1] + centres[j, 1]) / lat.step)) + lat.low
         m += 1
@@ -121,6 +120,41 @@ def build_cells(
         front[:m].copy(), rear[:m].copy(), index, spans[:m].copy(),
         t0[:m].copy(), z0[:m].copy(), x0[:m].copy(), slope[:m].copy(), origin,
     )  # fmt: skip
+
+
+@leaf
+def _slope(centres: Floats, front: int, rear: int) -> float:
+    x, z = centres[front, 0] - centres[rear, 0], centres[front, 1] - centres[rear, 1]
+    return math.atan2(z, x)
+
+
+@leaf
+def _first_pitch(slope: float, lat: Lattice) -> int:
+    """Index of the first pitch in the window of a cell of this `slope`."""
+    middle = int(round(-0.8 * slope / lat.turn)) + lat.pitches // 2
+    return min(lat.pitches - lat.nt, max(0, middle - lat.nt // 2))
+
+
+@nb.njit(cache=True, nogil=True)
+def pitch_ranges(centres: Floats, near: float, far: float, lat: Lattice) -> Ints:
+    """Pitches (2, n, 2) that any cell of a sample looks at: the first and the one after the last.
+
+    First with the sample's wheel in front, then with it behind; see `build_cells`.
+    """
+    n = len(centres)
+    out = np.zeros((2, n, 2), np.int32)
+    out[:, :, 0] = lat.pitches
+    for i in range(n):
+        for j in range(i - 1, -1, -1):
+            if centres[i, 0] - centres[j, 0] > far:
+                break
+            gap = math.hypot(centres[i, 0] - centres[j, 0], centres[i, 1] - centres[j, 1])
+            if near <= gap <= far:
+                first = _first_pitch(_slope(centres, i, j), lat)
+                for wheel, k in ((0, i), (1, j)):
+                    out[wheel, k, 0] = min(out[wheel, k, 0], first)
+                    out[wheel, k, 1] = max(out[wheel, k, 1], first + lat.nt)
+    return out
 
 
 @nb.njit(cache=True, nogil=True)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .cells import FORWARD, MOVES, Cells, World, build_cells, lag_spans
+from .cells import FORWARD, MOVES, Cells, World, build_cells, lag_spans, pitch_ranges
 from .cheapest import cheapest, trace
 from .course import Stand, sample_course, scale, stand_height
 from .flood import flood
@@ -57,12 +57,20 @@ class Search:
         )
         front, rear = self.legs
         widest = max(leg.reach_max for leg in self.legs) + 0.2 * (p.thigh + p.calf)
+        self.far = 2 * max(leg.reach_max for leg in self.legs) + math.hypot(
+            front.hip_x - rear.hip_x, front.hip_z - rear.hip_z
+        )
+        self.near = 2 * p.wheel_radius + LEGS_GAP + _APART
         kept, like = alike(path.vertices, self.centres, widest)
+        pitches = pitch_ranges(self.centres, self.near, self.far, lattice)
 
         def table(leg: Leg, grid: HipGrid) -> LegTable:
+            wanted = pitches[0 if leg is front else 1]
             mass = p.thigh_mass + p.calf_mass + p.wheel_mass
             slack = 0.02 + bounds.thigh
-            built: LegTable = on_lattice(grid, like, leg, mass, self.centres, lattice, slack)
+            built: LegTable = on_lattice(
+                grid, like, leg, mass, self.centres, wanted, lattice, slack
+            )
             return built
 
         def hips(leg: Leg) -> HipGrid:
@@ -78,10 +86,6 @@ class Search:
         )
         self.front_table = table(front, grid if same else hips(front))
         self.ground = ground
-        self.far = 2 * max(leg.reach_max for leg in self.legs) + math.hypot(
-            front.hip_x - rear.hip_x, front.hip_z - rear.hip_z
-        )
-        self.near = 2 * p.wheel_radius + LEGS_GAP + _APART
         self.trunk = trunk_table(ground, p, lattice, self.pulls, bounds, self.centres, self.far)
 
     def find(

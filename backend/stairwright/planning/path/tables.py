@@ -189,10 +189,11 @@ def on_lattice(
     leg: Leg,
     mass: float,
     centres: Floats,
+    pitches: Ints,
     lat: Lattice,
     slack: float,
 ) -> LegTable:
-    """Read a hip grid onto the body lattice for every pitch; thigh limits are applied here.
+    """Read a hip grid onto the body lattice; thigh limits are applied here.
 
     Args:
         grid: Of `hip_grid`.
@@ -200,13 +201,15 @@ def on_lattice(
         leg: The leg.
         mass: Of the leg pair with its wheels [kg].
         centres: (n, 2) wheel centres [m].
+        pitches: (n, 2) first pitch that is wanted of a sample and the one after the last; what
+            the table holds of others means nothing.
         lat: The body lattice.
         slack: Of the thigh joints [rad].
     """
     cost, moment, angle = grid
     n, m = len(centres), cost.shape[3]
     fine = 0.5 * lat.step
-    out = np.full((n, lat.pitches, m, lat.row), INF, np.float32)
+    out = np.empty((n, lat.pitches, m, lat.row), np.float32)
     x0, z0 = np.empty((n, lat.pitches), np.int32), np.empty((n, lat.pitches), np.int32)
     us, vs = np.empty((n, lat.pitches), np.int32), np.empty((n, lat.pitches), np.int32)
     possible = np.zeros((n, lat.pitches, m), np.uint64)
@@ -218,7 +221,8 @@ def on_lattice(
     soft = np.float32(0.15)
     zero, weight = np.float32(0.0), np.float32(0.2)
     for i in range(n):
-        for t in range(lat.pitches):
+        for t in range(pitches[i, 0], pitches[i, 1]):
+            out[i, t] = INF
             pitch = (t - lat.pitches // 2) * lat.turn
             c, s = math.cos(pitch), math.sin(pitch)
             # Hip = body + (ox, oz); first lattice point whose hip lies on the grid.
