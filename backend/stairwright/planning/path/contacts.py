@@ -149,7 +149,7 @@ def lagged_interval(
     pieces: Floats, corners: Floats, r: float, sf: float, sr: float, friction: float, lag: float,
     scratch: Scratch,
 ) -> tuple[float, float]:  # fmt: skip
-    """CoM interval that also holds if either wheel is still `lag` behind its plan.
+    """CoM interval that also holds if either wheel is `lag` behind its plan, or `STRAY` ahead.
 
     A wheel that arrives late at a corner pushes on the face behind it alone; plans that tolerate
     this are what a controller can follow. Low > high where no CoM suits all cases.
@@ -161,7 +161,7 @@ def lagged_interval(
         n = _late(pieces, corners, r, sf, a, lag, points, normals, 0)
         for b in range(4):
             if max(a, b) == 3 and a + b > 3:
-                continue
+                continue  # ahead while the other is not in time: too much to ask
             count = _late(pieces, corners, r, sr, b, lag, points, normals, n)
             lo, hi = com_interval_within(points, normals, count, grips, GENTLE, rays)
             low, high = max(low, lo), min(high, hi)
@@ -175,13 +175,13 @@ def _late(
     pieces: Floats, corners: Floats, r: float, s: float, case: int, lag: float,
     points: Floats, normals: Floats, at: int,
 ) -> int:  # fmt: skip
-    """Write the contacts of a wheel in time (case 0), late (1) or a little late (2).
+    """Write the contacts of a wheel in time (case 0), late (1), a little late (2) or ahead (3).
 
     Returns the row after the last.
     """
     if case == 0:
         return at + wheel_contacts(pieces, corners, r, s, points, normals, at)
-    # The lagging wheel's normal at the planned centre: the direction decides.
+    # The straying wheel's normal at the planned centre: the direction decides.
     x, z, _, _ = curve_at(pieces, r, s)
     other = s - lag if case == 1 else s - 0.3 * lag
     if case == 3:
@@ -208,7 +208,7 @@ def path_intervals(
 ) -> None:
     """Rows (6,): interval at `friction`, interval at `reserve`, interval with lag, per pair `s`.
 
-    Where one of the stricter two is empty the interval before it stands in.
+    Where one of the stricter two is empty the interval before it stands in; before that, less lag.
     """
     scratch = make_scratch()
     for k in range(len(s)):
