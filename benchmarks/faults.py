@@ -210,7 +210,14 @@ def slow_viewer(seconds: float) -> Row:
         api.put(f"/sessions/{session['id']}/scene", json={"plan_id": plan["id"]})
         address = service.url.replace("http", "ws") + session["scene"]
         protocol = Subprotocol(f"viser-v{viser.__version__}")
-        with connect(address, subprotocols=[protocol], max_queue=1, max_size=None, close_timeout=1):
+        with connect(
+            address,
+            subprotocols=[protocol],
+            max_queue=1,
+            max_size=None,
+            close_timeout=1,
+            ping_interval=None,
+        ):
             times, memory = [], []
             begun = time.perf_counter()
             while time.perf_counter() - begun < seconds:
