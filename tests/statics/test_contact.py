@@ -74,8 +74,8 @@ def test_interval_equals_linear_programme(contacts, friction):
 def test_level_ground_holds_the_com_between_the_wheels():
     points, normals = unpack([(0.4, 0.0, 0.0), (0.0, 0.0, 0.0)])
     assert com_interval(points, normals, 2, 0.5) == pytest.approx((0.0, 0.4))
-    assert com_margin(points, normals, 2, 0.5, 0.1) == pytest.approx(0.1)
-    assert com_margin(points, normals, 2, 0.5, -0.1) == pytest.approx(-0.1)
+    assert com_margin(*com_interval(points, normals, 2, 0.5), 0.1) == pytest.approx(0.1)
+    assert com_margin(*com_interval(points, normals, 2, 0.5), -0.1) == pytest.approx(-0.1)
 
 
 def test_slope_needs_its_tangent_as_friction():
@@ -112,5 +112,5 @@ def test_nothing_holds_a_robot_between_frictionless_walls():
     points, normals = unpack([(0.2, 0.0, math.pi / 2), (-0.2, 0.0, -math.pi / 2)])
     low, high = com_interval(points, normals, 2, 1e-6)
     assert low > high
-    assert com_margin(points, normals, 2, 1e-6, 0.0) == NOTHING_HOLDS
+    assert com_margin(low, high, 0.0) == NOTHING_HOLDS
     assert friction_needed(points, normals, 2, 0.0) < 1.0  # but friction can wedge it

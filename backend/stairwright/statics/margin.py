@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from stairwright.compiled import leaf
 from stairwright.robot.description import Planar
 
-from .contact import CAP, GRAVITY, RAYS, com_interval, com_interval_within
+from .contact import CAP, GRAVITY, RAYS, com_interval_within
 
 Floats = NDArray[np.float64]
 
@@ -19,18 +19,13 @@ Floats = NDArray[np.float64]
 NOTHING_HOLDS = -1.0  # m; the margin where no CoM is in equilibrium, and the least that is stated
 
 
-@nb.njit(cache=True)
-def com_margin(points: Floats, normals: Floats, count: int, friction: float, com_x: float) -> float:
-    """How far the CoM may shift in x, the smaller way, with equilibrium [m]; negative outside.
-
-    It is finite: `NOTHING_HOLDS` where these contacts hold no CoM at all, and never below that.
-    """
-    return room_within(*com_interval(points, normals, count, friction), com_x)
-
-
 @leaf
-def room_within(low: float, high: float, com_x: float) -> float:
-    """`com_margin` of a CoM at `com_x` that may lie from `low` to `high` [m]."""
+def com_margin(low: float, high: float, com_x: float) -> float:
+    """How far a CoM at `com_x` may shift in x, the smaller way, with equilibrium [m].
+
+    Equilibrium holds from `low` to `high` [m], see `com_interval`. Negative outside, and finite:
+    `NOTHING_HOLDS` where no CoM is held at all, and never below that.
+    """
     if low > high:
         return NOTHING_HOLDS
     return max(NOTHING_HOLDS, min(com_x - low, high - com_x))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from stairwright.robot.description import Planar, Robot
 from stairwright.statics.contact import CAP, GRAVITY, least_friction
-from stairwright.statics.margin import friction_needed, leg_torques, room_within
+from stairwright.statics.margin import com_margin, friction_needed, leg_torques
 from stairwright.terrain.wheel_path import WheelPath, curve_at
 
 from .contacts import make_scratch, pair_interval, wheel_contacts
@@ -171,7 +171,7 @@ def _evaluate_path(
         a = wheel_contacts(pieces, corners, r, s[k, 0], at, normals, 0)
         b = wheel_contacts(pieces, corners, r, s[k, 1], at, normals, a)
         low, high = pair_interval(pieces, corners, r, s[k, 0], s[k, 1], friction, CAP, scratch)
-        com[k] = room_within(low, high, x)
+        com[k] = com_margin(low, high, x)
         need[k] = friction_needed(at, normals, a + b, x)
         # A wheel between two faces may lean on either or on both: their bisector stands for both,
         # with a cone that is narrower than the true one.
