@@ -47,6 +47,8 @@ def of_plan(plan: Plan) -> str:
     if plan.certificate is not None:
         passed = "passed" if plan.certificate.passed else "NOT passed"
         rows.append(("certificate", f"{passed} ({plan.certificate.scope})"))
+        if plan.certificate.motion is not None:
+            rows.append(("", plan.certificate.motion.message))
     rows.append(("id", plan.id))
     return columns(rows)
 

@@ -73,6 +73,21 @@ def test_an_infeasible_profile_says_what_and_where(product: Product) -> None:
     card.get_by_role("button", name="Undo edit").click()
 
 
+def test_poses_without_a_motion_between_them_are_not_called_feasible(product: Product) -> None:
+    """Going down with both knees back the robot tips between two poses of the paper."""
+    product.open()
+    product.choose_terrain("three-stairs-up-down")
+    product.page.get_by_role("button", name="Robot").click()
+    product.page.get_by_role("menuitemradio").first.click()
+    product.planned()
+    product.page.get_by_role("radio", name="Paper: critical poses").click()
+    pill = product.page.get_by_title("only the poses are certified")
+    pill.wait_for(timeout=PATIENCE)
+    assert "Poses only" in pill.inner_text()
+    results = product.page.get_by_role("region", name="Results")
+    results.get_by_text("only the poses are certified").wait_for()
+
+
 def test_running_can_be_cancelled(shared: Product, server: Any) -> None:
     product = shared.fresh("ramp-30deg-025")
     held: list[Route] = []

@@ -3,7 +3,7 @@ import pytest
 
 import stairwright as sw
 from stairwright.errors import InputError
-from stairwright.planning.interpolation import certify_motion, reference
+from stairwright.planning.interpolation import reference
 from stairwright.statics.contact import GRAVITY
 from tests.shapely_checker import check
 
@@ -78,22 +78,3 @@ def test_one_pose_is_no_trajectory():
     plan = sw.plan("curb-015", method="critical")
     with pytest.raises(InputError, match="two poses"):
         reference(plan.model_copy(update={"poses": plan.poses[:1]}))
-
-
-@pytest.mark.parametrize("robot", sw.robots())
-@pytest.mark.parametrize("terrain", ["single-stair-036", "three-stairs-up", "loading-dock"])
-def test_the_motion_between_critical_poses_passes_the_exact_check(terrain, robot):
-    plan = sw.plan(terrain, robot, method="critical")
-    assert plan.certificate.motion is None
-    certificate = certify_motion(plan)
-    assert certificate.scope == "motion"
-    assert certificate.passed, [check for check in certificate.checks if not check.passed]
-
-
-def test_a_plan_says_where_its_poses_cannot_be_joined():
-    """Both knees back, the robot tips between the poses at the edge that it steps down from."""
-    plan = sw.plan("three-stairs-up-down", "a1_wheeled", method="critical")
-    assert plan.certificate.scope == "poses"
-    assert plan.certificate.motion.kind == "statics"
-    assert plan.certificate.motion.at[0] == pytest.approx(2.4, abs=0.4)
-    assert not certify_motion(plan).passed

@@ -21,7 +21,6 @@ def assemble(
     *,
     seconds: float,
     critical: list[int] | None = None,
-    motion: Problem | None = None,
     certified: bool = True,
 ) -> Plan:
     """The document of a plan whose poses are timed by eqs 25-26, with a certificate of its poses.
@@ -36,7 +35,6 @@ def assemble(
         problem: What stops the robot, if anything.
         seconds: Time that planning took [s].
         critical: Indices of key poses.
-        motion: What is known to stop the motion between the poses.
         certified: Check the poses.
     """
     numbers = weights.model_dump()
@@ -59,5 +57,4 @@ def assemble(
     )
     if not (poses and certified):
         return plan
-    certificate = certify(plan, "poses").model_copy(update={"motion": motion})
-    return plan.model_copy(update={"certificate": certificate})
+    return plan.model_copy(update={"certificate": certify(plan, "poses")})

@@ -47,6 +47,7 @@ def eased_shift(progress: Floats, com: Floats, low: Floats, high: Floats) -> Flo
 def _eased(progress: Floats, missing: Floats) -> Floats:
     first = np.searchsorted(progress, progress - EASE)
     last = np.searchsorted(progress, progress + EASE, side="right")
-    most = np.array([missing[a:b].max() for a, b in zip(first, last, strict=True)])
-    mean = np.array([most[a:b].mean() for a, b in zip(first, last, strict=True)])
+    windows = np.stack([first, last], axis=1).ravel()
+    most = np.maximum.reduceat(np.append(missing, 0.0), windows)[::2]
+    mean: Floats = np.add.reduceat(np.append(most, 0.0), windows)[::2] / (last - first)
     return mean

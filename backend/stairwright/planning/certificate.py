@@ -257,16 +257,17 @@ class _Checker:
         if len(poses) < 2 or self.scope == "poses":
             return []
         steps = np.diff([p.progress for p in poses])
-        q = np.array([p.q for p in poses])
+        jumps = np.abs(np.diff([p.q for p in poses], axis=0)).max(axis=1)
+        widest = int(np.argmax(jumps))
         checks = [
             Check(
                 name="least step of progress", value=float(steps.min()), bound=0.0, unit="m",
                 passed=bool(steps.min() > 0.0),
             ),
             Check(
-                name="largest joint step", value=float(np.abs(np.diff(q, axis=0)).max()),
-                bound=_JOINT_STEP, unit="rad",
-                passed=bool(np.abs(np.diff(q, axis=0)).max() <= _JOINT_STEP),
+                name="largest joint step", value=float(jumps[widest]), bound=_JOINT_STEP,
+                unit="rad", passed=bool(jumps[widest] <= _JOINT_STEP),
+                progress=poses[widest].progress,
             ),
         ]  # fmt: skip
         return checks

@@ -21,6 +21,7 @@ from stairwright.terrain.wheel_path import wheel_path
 
 from .assembly import assemble
 from .diagnosis import diagnose, no_stand, statics_problem
+from .joining import motion_problem
 from .path.course import NoStand, Stand, find_stands, stand
 from .plan import Plan, Pose, Problem
 from .pose_locations import Obstacle, find_obstacles, front_places
@@ -81,7 +82,7 @@ def plan_critical(
     poses = _poses(search, knots, weights.speed)
     if problem is None:
         problem = _unbalanced(search, poses)
-    return assemble(
+    plan = assemble(
         "critical",
         terrain,
         robot,
@@ -90,10 +91,14 @@ def plan_critical(
         poses,
         problem,
         critical=[i for i, knot in enumerate(knots) if knot.optimal],
-        motion=_tipping(search, knots, poses) if certified else None,
         certified=certified,
         seconds=now() - started,
     )
+    if problem is not None or plan.certificate is None:
+        return plan
+    motion = _tipping(search, knots, poses) or motion_problem(plan)
+    certificate = plan.certificate.model_copy(update={"motion": motion})
+    return plan.model_copy(update={"certificate": certificate})
 
 
 @dataclass(frozen=True)
@@ -233,5 +238,5 @@ def _tipping(search: PoseSearch, knots: list[_Knot], poses: list[Pose]) -> Probl
         kind="statics",
         at=poses[k].contacts[0],
         progress=poses[k].progress,
-        message=f"On the way from this pose to the next {what}: only the poses are certified.",
+        message=f"Between poses {k + 1} and {k + 2} {what}: only the poses are certified.",
     )

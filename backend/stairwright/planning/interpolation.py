@@ -23,8 +23,7 @@ from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
 from .balance_way import ROOM, com_ways, eased_shift
-from .certificate import certify
-from .plan import Certificate, Plan
+from .plan import Plan
 from .pose_search import PoseSearch
 from .reference import Reference
 from .sqp.nearest import BETWEEN
@@ -37,14 +36,14 @@ Mode = Literal["joint", "curve"]
 _ROOMS = (0.015, 0.006, 0.002)  # m that the CoM keeps from where balance ends, if it must
 _SHARES = (0.75, 0.5, 0.25, 0.0)  # of the way that the CoM should move, where no move balances
 _FREE = (-np.inf, np.inf)
-_COARSE = 4  # samples between those where corrections are solved for
+_COARSE = 8  # samples between those where corrections are solved for
 
 
 def reference(
     plan: Plan,
     mode: Mode | None = None,
     *,
-    spacing: float = 0.005,
+    spacing: float = 0.0025,
     joint_rate: float | None = 1.5,
 ) -> Reference:
     """The trajectory of `plan`, sampled at its poses and at most `spacing` of progress apart.
@@ -226,28 +225,3 @@ def _stretch(time: Floats, q: Floats, joint_rate: float | None) -> Floats:
         step = np.maximum(step, np.abs(np.diff(q, axis=0)).max(axis=1) / joint_rate)
     stretched: Floats = np.concatenate([[0.0], np.cumsum(np.maximum(step, 1e-9))])
     return stretched
-
-
-def certify_motion(plan: Plan) -> Certificate:
-    """The exact check of the motion that is tracked between a plan's poses: `reference(plan)`.
-
-    Plans of sparse poses certify these only (``certificate.scope`` is ``poses``); this says what
-    `certificate` says of the dense trajectory that joins them, sample by sample.
-    """
-    samples = reference(plan)
-    first = plan.poses[0]
-    poses = [
-        first.model_copy(
-            update={
-                "progress": float(samples.progress[i]),
-                "time": float(samples.time[i]),
-                "x_c": float(samples.trunk[i, 0]),
-                "z_c": float(samples.trunk[i, 1]),
-                "pitch": float(samples.trunk[i, 2]),
-                "q": tuple(samples.q[i].tolist()),
-                "wheel_progress": tuple(samples.wheel_progress[i].tolist()),
-            }
-        )
-        for i in range(len(samples.time))
-    ]
-    return certify(plan.model_copy(update={"poses": poses}), "motion")

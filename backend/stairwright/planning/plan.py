@@ -15,6 +15,7 @@ from stairwright.terrain.profile import Terrain
 
 Method = Literal["path", "critical", "nominal"]
 Vector2 = tuple[float, float]
+ProblemKind = Literal["reach", "clearance", "statics", "torque", "joint_limit", "start", "goal"]
 Vector4 = tuple[float, float, float, float]
 
 
@@ -61,7 +62,7 @@ class Limit(Model):
 class Problem(Model):
     """What stops the robot, where, and by how much."""
 
-    kind: Literal["reach", "clearance", "statics", "torque", "joint_limit", "start", "goal"]
+    kind: ProblemKind
     at: Vector2 = Field(description="place on the terrain [m]")
     progress: float = Field(description="how far the plan gets [m]")
     message: str

@@ -32,9 +32,10 @@ export type Pose = Omit<
 
 export type Problem = Omit<Schemas["Problem"], "at"> & { at: Vec2 };
 
-export type Plan = Omit<Schemas["Plan"], "terrain" | "problem" | "poses"> & {
+export type Plan = Omit<Schemas["Plan"], "terrain" | "problem" | "certificate" | "poses"> & {
   terrain: TerrainDocument;
   problem?: Problem | null;
+  certificate?: (Omit<Schemas["Certificate"], "motion"> & { motion?: Problem | null }) | null;
   poses: Pose[];
 };
 

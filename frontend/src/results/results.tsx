@@ -55,9 +55,11 @@ function Content() {
       </>
     );
   }
+  const motion = plan.value?.certificate?.motion;
   return (
     <>
       <h2>Results</h2>
+      {motion && <p>{motion.message}</p>}
       <p>
         {plan.value
           ? "Run the rollout to see outcome, pitch error, peak torque and speed. The plots show the plan."

@@ -15,6 +15,8 @@ function planSentence(): string {
   const shown = plan.peek();
   if (!shown || stale.peek()) return "";
   if (shown.problem) return `Infeasible. ${shown.problem.message}`;
+  const motion = shown.certificate?.motion;
+  if (motion) return `Feasible poses. ${motion.message}`;
   const clearance = Math.min(...shown.poses.map((p) => p.margins.clearance));
   return `Feasible, smallest clearance ${fixed(clearance * 1000, 0)} mm`;
 }

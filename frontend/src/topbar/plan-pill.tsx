@@ -64,6 +64,16 @@ export function PlanPill() {
       </div>
     );
   }
+  const motion = shown?.certificate?.motion;
+  if (motion) {
+    return (
+      <div class="pill warn" title={motion.message}>
+        <Icon name="warning" />
+        <b>Poses only</b>
+        <span class="wide">motion not certified at x {fixed(motion.at[0], 2)} m</span>
+      </div>
+    );
+  }
   return (
     <div class="pill">
       <Icon name="check" />
