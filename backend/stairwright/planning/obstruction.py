@@ -15,7 +15,7 @@ from functools import partial
 
 import numpy as np
 
-from .path.solve import Blocked, Course
+from .path.solve import QUICK, Blocked, Course
 from .plan import Limit, Pose, Problem
 from .relaxation import (
     AMPLE,
@@ -81,7 +81,8 @@ def _ranked(
     ranked = [(first, ratio)] if least else []
     asked = [(one, one.highest(ratio)) for one in others if one.highest(ratio) > 1.0]
     opened = list(pool.map(lambda one: one[0].opens(course, one[1]), asked))
-    for candidate, high in [one for one, opens in zip(asked, opened, strict=True) if opens]:
+    able = [one for one, opens in zip(asked, opened, strict=True) if opens]
+    for candidate, high in sorted(able, key=lambda one: one[1]):
         found = _least(course, candidate, ratio, 1.0 + CLOSE, pool, high)
         if found is not None:
             ratio = found[1]
@@ -154,7 +155,7 @@ def _confirmed(
 ) -> tuple[Candidate, float] | None:
     """The least factor with which a certified plan exists, and on which of the `ranked`.
 
-    Factors from those told on are tried, the least first, two at once.
+    Factors from those told on are tried, the least first, two attempts at once.
 
     Args:
         course: The question.
@@ -165,22 +166,20 @@ def _confirmed(
         {(min(ratio * more, one.most), k)
          for k, (one, ratio) in enumerate(ranked[:_RIVALS]) for more in _MORE}
     )  # fmt: skip
+    attempts = [(ratio, k, rung) for ratio, k in tries for rung in QUICK]
     low: dict[int, float] = {}
-    for begin in range(0, len(tries), 2):
-        group = tries[begin : begin + 2]
-        with race(pool, lambda one: ranked[one[1]][0].solves(course, one[0]), group) as answers:
-            for (ratio, k), enough in zip(group, answers, strict=True):
-                if enough:
-                    break
+    with race(pool, lambda one: ranked[one[1]][0].solves(course, one[0], one[2:]), attempts) as ends:
+        for (ratio, k, rung), enough in zip(attempts, ends, strict=True):
+            if enough:
+                break
+            if rung is QUICK[-1]:
                 low[k] = ratio
-            else:
-                continue
-        candidate = ranked[k][0]
-        if k in low:
-            solves = partial(candidate.solves, course)
-            ratio = _narrow(solves, low[k], ratio, _SURE, pool)[1]
-        return candidate, ratio
-    return None
+        else:
+            return None
+    candidate = ranked[k][0]
+    if k in low:
+        ratio = _narrow(partial(candidate.solves, course), low[k], ratio, _SURE, pool)[1]
+    return candidate, ratio
 
 
 def _torque(course: Course, blocked: Blocked) -> Problem | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -13,7 +13,7 @@ from stairwright.terrain.profile import Terrain
 
 from .path.course import NoStand
 from .path.lattice import BOLD
-from .path.solve import Course, pose_course
+from .path.solve import QUICK, Course, Rung, pose_course
 
 Kind = Literal["reach", "clearance", "statics", "torque", "joint_limit"]
 
@@ -57,13 +57,13 @@ class Candidate:
             return False
         return changed.find(_FINE, BOLD, cheap=False).quality > 0
 
-    def solves(self, course: Course, ratio: float) -> bool:
-        """Whether there is a certified plan with the quantity changed so."""
+    def solves(self, course: Course, ratio: float, rungs: Sequence[Rung] = QUICK) -> bool:
+        """Whether one of `rungs` leads to a certified plan with the quantity changed so."""
         try:
             changed = self.change(course, self.at(ratio))
         except NoStand:
             return False
-        return changed.quick() is not None
+        return changed.quick(rungs) is not None
 
 
 def candidates_of(course: Course) -> list[Candidate]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time as clock
+from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 
@@ -154,9 +155,9 @@ class Course(Question):
             any(one.opened for one in blocked), any(one.torque for one in blocked),
         )  # fmt: skip
 
-    def quick(self) -> Solved | None:
+    def quick(self, rungs: Sequence[Rung] = QUICK) -> Solved | None:
         """The first path that a few rungs lead to."""
-        answers = (self.attempt(rung) for rung in QUICK)
+        answers = (self.attempt(rung) for rung in rungs)
         return next((one for one in answers if isinstance(one, Solved)), None)
 
     def attempt(self, rung: Rung) -> Solved | Blocked:
