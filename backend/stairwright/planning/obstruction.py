@@ -15,7 +15,7 @@ from functools import partial
 
 import numpy as np
 
-from .path.solve import QUICK, Blocked, Course
+from .path.solve import QUICK, Blocked, Course, Rung
 from .plan import Limit, Pose, Problem
 from .relaxation import (
     AMPLE,
@@ -168,7 +168,12 @@ def _confirmed(
     )  # fmt: skip
     attempts = [(ratio, k, rung) for ratio, k in tries for rung in QUICK]
     low: dict[int, float] = {}
-    with race(pool, lambda one: ranked[one[1]][0].solves(course, one[0], one[2:]), attempts) as ends:
+
+    def leads(attempt: tuple[float, int, Rung]) -> bool:
+        ratio, k, rung = attempt
+        return ranked[k][0].solves(course, ratio, (rung,))
+
+    with race(pool, leads, attempts) as ends:
         for (ratio, k, rung), enough in zip(attempts, ends, strict=True):
             if enough:
                 break

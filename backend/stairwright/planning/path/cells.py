@@ -63,49 +63,57 @@ class Cells(NamedTuple):
 
 
 @nb.njit(cache=True, nogil=True)
+def wheel_pairs(
+    centres: Floats, near: float, far: float, front: int, rear: int
+) -> tuple[Ints, Ints]:
+    """Samples of front and rear wheels `near`..`far` apart, in lexicographic order.
+
+    The front wheel is at sample `front` or ahead of it, the rear wheel not ahead of `rear`: wheels
+    that roll forward from one stand to another are nowhere else.
+    """
+    n = len(centres)
+    fronts, rears = np.empty(n * n, np.int32), np.empty(n * n, np.int32)
+    k = 0
+    for i in range(front, n):
+        first = i
+        while first > 0 and centres[i, 0] - centres[first - 1, 0] <= far:
+            first -= 1
+        for j in range(first, min(i, rear + 1)):
+            gap = math.hypot(centres[i, 0] - centres[j, 0], centres[i, 1] - centres[j, 1])
+            if near <= gap <= far:
+                fronts[k], rears[k] = i, j
+                k += 1
+    return fronts[:k].copy(), rears[:k].copy()
+
+
+@nb.njit(cache=True, nogil=True)
 def build_cells(
     pieces: Floats,
     corners: Floats,
     r: float,
     s: Floats,
     centres: Floats,
-    i0: int,
-    i1: int,
-    near: float,
-    far: float,
+    pairs: tuple[Ints, Ints],
     lat: Lattice,
     friction: float,
     reserve: float,
     com: float,
 ) -> Cells:
-    """All pairs of samples whose wheels are `near`..`far` apart and that can stand at all.
+    """Those `pairs` of samples (see `wheel_pairs`) that can stand at all.
 
-    The front wheel runs from sample `i0` to `i1`. CoM intervals with lag are left to `lag_spans`.
+    CoM intervals with lag are left to `lag_spans`.
     """
-    n = len(s)
+    n, k = len(s), len(pairs[0])
     index = np.full((n, n), -1, np.int32)
-    front, rear = np.empty(n * n, np.int32), np.empty(n * n, np.int32)
-    k = 0
-    for i in range(i0, i1 + 1):
-        for j in range(i - 1, -1, -1):
-            gap = math.hypot(centres[i, 0] - centres[j, 0], centres[i, 1] - centres[j, 1])
-            if centres[i, 0] - centres[j, 0] > far:
-                break
-            if near <= gap <= far:
-                index[i, j] = 0
-        for j in range(i):
-            if index[i, j] == 0:
-                front[k], rear[k] = i, j
-                k += 1
+    front, rear = np.empty(k, np.int32), np.empty(k, np.int32)
     spans = np.empty((k, 6))
     t0, z0, x0 = np.empty(k, np.int32), np.empty(k, np.int32), np.empty(k, np.int32)
     slope, scratch = np.empty(k), make_scratch()
     m = 0
     for c in range(k):
-        i, j = front[c], rear[c]
+        i, j = pairs[0][c], pairs[1][c]
         lo, hi = pair_interval(pieces, corners, r, s[i], s[j], friction, CAP, scratch)
         if hi - lo < 2 * com:
-            index[i, j] = -1
             continue
         front[m], rear[m], index[i, j] = i, j, m
         spans[m, 0], spans[m, 1] = lo, hi
@@ -136,24 +144,19 @@ def _first_pitch(slope: float, lat: Lattice) -> int:
 
 
 @nb.njit(cache=True, nogil=True)
-def pitch_ranges(centres: Floats, near: float, far: float, lat: Lattice) -> Ints:
+def pitch_ranges(centres: Floats, pairs: tuple[Ints, Ints], lat: Lattice) -> Ints:
     """Pitches (2, n, 2) that any cell of a sample looks at: the first and the one after the last.
 
-    First with the sample's wheel in front, then with it behind; see `build_cells`.
+    First with the sample's wheel in front, then with it behind, by all `pairs` of them.
     """
-    n = len(centres)
-    out = np.zeros((2, n, 2), np.int32)
+    out = np.zeros((2, len(centres), 2), np.int32)
     out[:, :, 0] = lat.pitches
-    for i in range(n):
-        for j in range(i - 1, -1, -1):
-            if centres[i, 0] - centres[j, 0] > far:
-                break
-            gap = math.hypot(centres[i, 0] - centres[j, 0], centres[i, 1] - centres[j, 1])
-            if near <= gap <= far:
-                first = _first_pitch(_slope(centres, i, j), lat)
-                for wheel, k in ((0, i), (1, j)):
-                    out[wheel, k, 0] = min(out[wheel, k, 0], first)
-                    out[wheel, k, 1] = max(out[wheel, k, 1], first + lat.nt)
+    for c in range(len(pairs[0])):
+        first = _first_pitch(_slope(centres, pairs[0][c], pairs[1][c]), lat)
+        for wheel in range(2):
+            k = pairs[wheel][c]
+            out[wheel, k, 0] = min(out[wheel, k, 0], first)
+            out[wheel, k, 1] = max(out[wheel, k, 1], first + lat.nt)
     return out
 
 

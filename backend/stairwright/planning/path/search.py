@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .cells import FORWARD, MOVES, Cells, World, build_cells, lag_spans, pitch_ranges
+from .cells import FORWARD, MOVES, Cells, World, build_cells, lag_spans, pitch_ranges, wheel_pairs
 from .cheapest import cheapest, trace
 from .course import Stand, sample_course, scale, stand_height
 from .flood import flood
@@ -56,13 +56,16 @@ class Search:
             weights.com_margin, weights.clearance, weights.torque, weights.smoothness, weights.pitch
         )
         front, rear = self.legs
-        widest = max(leg.reach_max for leg in self.legs) + 0.2 * (p.thigh + p.calf)
-        self.far = 2 * max(leg.reach_max for leg in self.legs) + math.hypot(
+        far = 2 * max(leg.reach_max for leg in self.legs) + math.hypot(
             front.hip_x - rear.hip_x, front.hip_z - rear.hip_z
         )
-        self.near = 2 * p.wheel_radius + LEGS_GAP + _APART
+        near = 2 * p.wheel_radius + LEGS_GAP + _APART
+        self.pairs = wheel_pairs(
+            self.centres, near, far, self._index(begin)[0], self._index(end)[1]
+        )
+        widest = max(leg.reach_max for leg in self.legs) + 0.2 * (p.thigh + p.calf)
         kept, like = alike(path.vertices, self.centres, widest)
-        pitches = pitch_ranges(self.centres, self.near, self.far, lattice)
+        pitches = pitch_ranges(self.centres, self.pairs, lattice)
 
         def table(leg: Leg, grid: HipGrid) -> LegTable:
             wanted = pitches[0 if leg is front else 1]
@@ -73,20 +76,24 @@ class Search:
             )
             return built
 
-        def hips(leg: Leg) -> HipGrid:
+        def hips(leg: Leg, samples: Ints) -> HipGrid:
             grid: HipGrid = hip_grid(
-                ground, p, leg, self.centres[kept], lattice, self.pulls, bounds
-            )
+                ground, p, leg, self.centres[kept], np.unique(like[samples]), lattice, self.pulls,
+                bounds,
+            )  # fmt: skip
             return grid
 
-        grid = hips(rear)
-        self.rear_table = table(rear, grid)
         same = all(
             getattr(front, a) == getattr(rear, a) for a in ("knee", "reach_min", "reach_max")
         )
-        self.front_table = table(front, grid if same else hips(front))
+        if same:
+            grid = hips(rear, np.concatenate(self.pairs))
+            self.front_table, self.rear_table = table(front, grid), table(rear, grid)
+        else:
+            self.front_table = table(front, hips(front, self.pairs[0]))
+            self.rear_table = table(rear, hips(rear, self.pairs[1]))
         self.ground = ground
-        self.trunk = trunk_table(ground, p, lattice, self.pulls, bounds, self.centres, self.far)
+        self.trunk = trunk_table(ground, p, lattice, self.pulls, bounds, self.centres, self.pairs)
 
     def find(
         self,
@@ -113,8 +120,8 @@ class Search:
         i0, j0 = self._index(self.begin)
         i1, j1 = self._index(self.end)
         cells = build_cells(
-            self.path.pieces, self.path.corners, p.wheel_radius, self.s, self.centres,
-            0, len(self.s) - 1, self.near, self.far, lat, friction, reserve, com,
+            self.path.pieces, self.path.corners, p.wheel_radius, self.s, self.centres, self.pairs,
+            lat, friction, reserve, com,
         )  # fmt: skip
         source, goal = int(cells.number[i0, j0]), int(cells.number[i1, j1])
         exits = np.flatnonzero(cells.front == len(self.s) - 1)

@@ -136,13 +136,20 @@ def _outlines(vertices: Floats, centres: Floats, reach: float, first: Longs, las
 
 @nb.njit(cache=True, nogil=True)
 def hip_grid(
-    g: Ground, p: Planar, leg: Leg, centres: Floats, lat: Lattice, pulls: Pulls, b: Bounds
+    g: Ground,
+    p: Planar,
+    leg: Leg,
+    centres: Floats,
+    wanted: Ints,
+    lat: Lattice,
+    pulls: Pulls,
+    b: Bounds,
 ) -> tuple[Floats32, Floats32, Floats32]:
     """Cost, moment and world thigh angle per wheel sample and hip position, split by parity.
 
     Arrays are (n, 2, 2, m, m), the last two (2, 2, m, m): sample, parity of row and column,
     row // 2, column // 2, so that the body lattice (every second hip position) reads neighbours in
-    memory. Moments [kg m] are about the wheel's centre.
+    memory. Moments [kg m] are about the wheel's centre. Samples that are not `wanted` cost INF.
     """
     n, size = len(centres), 2 * lat.half + 1
     m = size // 2 + 1
@@ -155,8 +162,9 @@ def hip_grid(
     span = leg.reach_max - leg.reach_min
     soft = 0.15 * (p.thigh + p.calf) / 2.0
     load = p.mass * 9.81 / 4.0 / p.leg_torque
+    centres = centres[wanted]
     around = ground_near(g, centres, far + soft + max(p.thigh_radius, p.calf_radius))
-    clear = np.empty(n, np.float32)
+    clear = np.empty(len(wanted), np.float32)
     for v in range(size):
         dz = (v - lat.half) * fine
         for u in range(size):
@@ -174,10 +182,10 @@ def hip_grid(
             moment[at] += p.calf_mass * (1.0 - p.calf_com) * (dx + ax)
             base = 0.2 * f * f + pulls.torque * tau
             ground_clearance(g, around, p, centres, (dx, dz), (ax, az), soft, b.links, clear)
-            for i in range(n):
-                if clear[i] < b.links:
+            for k, i in enumerate(wanted):
+                if clear[k] < b.links:
                     continue
-                e = max(0.0, soft - clear[i]) / soft
+                e = max(0.0, soft - clear[k]) / soft
                 cost[i, v % 2, u % 2, v // 2, u // 2] = pulls.clearance * 0.25 * e * e + base
     return cost, moment, angle
 

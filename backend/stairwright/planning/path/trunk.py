@@ -16,9 +16,8 @@ from .tables import INF, Bounds, Lattice, Pulls, Words
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
+Ints = NDArray[np.int32]
 Flags = NDArray[np.bool_]
-
-_SAMPLES = 400  # from twice as many on only every other wheel is looked at, and so on
 
 
 class TrunkTable(NamedTuple):
@@ -38,17 +37,22 @@ class TrunkTable(NamedTuple):
 
 @nb.njit(cache=True, nogil=True)
 def trunk_table(
-    g: Ground, p: Planar, lat: Lattice, pulls: Pulls, b: Bounds, centres: Floats, far: float
+    g: Ground,
+    p: Planar,
+    lat: Lattice,
+    pulls: Pulls,
+    b: Bounds,
+    centres: Floats,
+    pairs: tuple[Ints, Ints],
 ) -> TrunkTable:
     """Cost of the trunk wherever a window comes.
 
     Args:
         g, p, lat, pulls, b: Ground, robot, lattice, weights, bounds.
         centres: (n, 2) wheel centres [m].
-        far: Largest distance in x of two wheels [m].
-
+        pairs: Samples of front and rear wheels.
     """
-    used, x0, z0 = _windows(lat, centres, far)
+    used, x0, z0 = _windows(lat, centres, pairs)
     nz, nx = used.shape
     out = np.full((lat.pitches, nz, nx + lat.row), INF, np.float32)
     soft = 0.15 * (p.thigh + p.calf) / 2.0
@@ -83,25 +87,28 @@ def trunk_table(
 
 
 @nb.njit(cache=True, nogil=True)
-def _windows(lat: Lattice, centres: Floats, far: float) -> tuple[Flags, int, int]:
+def _windows(lat: Lattice, centres: Floats, pairs: tuple[Ints, Ints]) -> tuple[Flags, int, int]:
     """Places (rows, columns) that the window of some pair of wheels covers, and where they begin.
 
-    Every window lies round the mean of two wheels at most `far` apart.
+    Every window lies round the mean of its two wheels; what lies between windows of one front wheel
+    counts too.
     """
     x, z, half = centres[:, 0], centres[:, 1], lat.nx // 2 + 2
     x0, x1 = math.floor(x.min() / lat.step) - half, math.ceil(x.max() / lat.step) + half
     z0 = math.floor(z.min() / lat.step) + lat.low - 2
     z1 = math.ceil(z.max() / lat.step) + lat.low + lat.nz + 2
     used = np.zeros((z1 - z0 + 1, x1 - x0 + 1), np.bool_)
-    for i in range(0, len(x), max(1, len(x) // _SAMPLES)):
-        left, right, low, high = x[i], x[i], z[i], z[i]
-        for j in range(len(x)):
-            if abs(x[j] - x[i]) <= far:
-                left, right = min(left, x[j]), max(right, x[j])
-                low, high = min(low, z[j]), max(high, z[j])
-        a = max(0, int(0.5 * (left + x[i]) / lat.step) - half - x0)
-        b = int(0.5 * (right + x[i]) / lat.step) + half - x0
-        d = max(0, int(0.5 * (low + z[i]) / lat.step) + lat.low - 2 - z0)
-        e = int(0.5 * (high + z[i]) / lat.step) + lat.low + lat.nz + 2 - z0
+    fronts, rears = pairs
+    begin = 0
+    while begin < len(fronts):
+        i, end = fronts[begin], begin
+        while end < len(fronts) and fronts[end] == i:
+            end += 1
+        a = max(0, int(0.5 * (x[rears[begin]] + x[i]) / lat.step) - half - x0)
+        b = int(0.5 * (x[rears[end - 1]] + x[i]) / lat.step) + half - x0
+        heights = z[rears[begin:end]]
+        d = max(0, int(0.5 * (heights.min() + z[i]) / lat.step) + lat.low - 2 - z0)
+        e = int(0.5 * (heights.max() + z[i]) / lat.step) + lat.low + lat.nz + 2 - z0
         used[d : e + 1, a : b + 1] = True
+        begin = end
     return used, x0, z0
