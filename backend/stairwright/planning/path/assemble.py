@@ -28,7 +28,7 @@ def make_poses(
     """Poses, indices of the key poses, and the duration [s]."""
     s, body, r = found.s, found.body, found.record
     q = r.poses[:, :4]
-    time = pose_times(robot, s, body, q, r.com, weights.speed)
+    time = pose_times(robot, s, body, q, r.firm, weights.speed)
     progress = path_parameter(s, body)
     wheels = np.stack([path.centres(s[:, k]) for k in range(2)], axis=1)
     contacts = np.stack([path.contacts(s[:, k]) for k in range(2)], axis=1)

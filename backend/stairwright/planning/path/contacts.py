@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from stairwright.compiled import leaf
 from stairwright.statics.contact import CAP, RAYS, com_interval_within
+from stairwright.statics.margin import com_margin
 from stairwright.terrain.wheel_path import curve_at
 
 Floats = NDArray[np.float64]
@@ -91,6 +92,21 @@ def pair_interval(
             if lo <= hi:
                 low, high = min(low, lo), max(high, hi)
     return low, high
+
+
+@nb.njit(cache=True, nogil=True)
+def firm_margins(
+    pieces: Floats, corners: Floats, r: float, s: Floats, com_x: Floats, friction: float
+) -> Floats:
+    """CoM margins (n,) [m] within `pair_interval`, with the wheels at `s` (n, 2) [m].
+
+    No more than the margins that plans state, which count friction on both faces of a corner.
+    """
+    scratch, out = make_scratch(), np.empty(len(s))
+    for k in range(len(s)):
+        low, high = pair_interval(pieces, corners, r, s[k, 0], s[k, 1], friction, CAP, scratch)
+        out[k] = com_margin(low, high, com_x[k])
+    return out
 
 
 @leaf

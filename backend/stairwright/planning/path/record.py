@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.robot.description import Planar, Robot
-from stairwright.statics.contact import CAP, GRAVITY, least_friction
+from stairwright.statics.contact import GRAVITY, com_interval, least_friction
 from stairwright.statics.margin import com_margin, friction_needed, leg_torques
 from stairwright.terrain.wheel_path import WheelPath, curve_at
 
-from .contacts import make_scratch, pair_interval, wheel_contacts
+from .contacts import firm_margins, wheel_contacts
 from .ground import Ground
 from .legs import COM_X, LEGS, LEGS_GAP, LINKS, RECORD, SLACK, TRUNK, Leg, evaluate
 
@@ -38,6 +38,7 @@ class Record:
     Attributes:
         poses: (n, RECORD) see `legs.evaluate`.
         com: (n,) CoM margin at the friction there is.
+        firm: (n,) the same with friction on one face of a corner only, which robots can hold.
         need: (n,) friction needed.
         forces: (n, 2, 2) force of each wheel pair, tangential and normal [N]; a wheel between two
             faces counts them along the bisector of the faces that carry it.
@@ -48,6 +49,7 @@ class Record:
 
     poses: Floats
     com: Floats
+    firm: Floats
     need: Floats
     forces: Floats
     torque: Floats
@@ -73,8 +75,8 @@ class Record:
                 self.clearance - LEAST_CLEARANCE,
                 self.poses[:, LEGS] - LEGS_GAP,
                 0.2 * self.poses[:, SLACK],
-                self.com - LEAST_COM,
-                np.maximum(self.com - THIN_COM, 0.2 * (self.friction - self.need - FIRM_GRIP)),
+                self.firm - LEAST_COM,
+                np.maximum(self.firm - THIN_COM, 0.2 * (self.friction - self.need - FIRM_GRIP)),
                 (self.wheel_limit - self.wheel_torque) * 0.01,
                 (self.leg_limit - self.torque) * 0.01,
             ]
@@ -103,7 +105,7 @@ class Record:
         return np.flatnonzero(self.room < _SPARE)
 
 
-_OF_NODES = ("poses", "com", "need", "forces", "torque", "wheel_torque")
+_OF_NODES = ("poses", "com", "firm", "need", "forces", "torque", "wheel_torque")
 
 
 def joined(records: Sequence[Record]) -> Record:
@@ -162,7 +164,7 @@ def _evaluate_path(
     pair_at, pair_n, pair_f = np.empty((2, 2)), np.empty((2, 2)), np.empty((2, 2))
     kept = np.zeros((2, 2))
     faces, face_n = np.zeros((6, 2)), np.zeros((6, 2))
-    scratch, weight = make_scratch(), p.mass * GRAVITY
+    weight = p.mass * GRAVITY
     for k in range(n):
         for m in range(2):
             wheels[2 * m], wheels[2 * m + 1], _, _ = curve_at(pieces, r, s[k, m])
@@ -170,7 +172,7 @@ def _evaluate_path(
         x = poses[k, COM_X]
         a = wheel_contacts(pieces, corners, r, s[k, 0], at, normals, 0)
         b = wheel_contacts(pieces, corners, r, s[k, 1], at, normals, a)
-        low, high = pair_interval(pieces, corners, r, s[k, 0], s[k, 1], friction, CAP, scratch)
+        low, high = com_interval(at, normals, a + b, friction)
         com[k] = com_margin(low, high, x)
         need[k] = friction_needed(at, normals, a + b, x)
         # A wheel between two faces may lean on either or on both: their bisector stands for both,
@@ -225,5 +227,11 @@ def evaluate_path(
 ) -> Record:
     """Judge the nodes `s` (n, 2), `body` (n, 3) of a path exactly."""
     p = robot.planar
-    values = _evaluate_path(path.pieces, path.corners, ground, p, *legs, s, body, friction, 0.3)
-    return Record(*values, friction, p.leg_torque, p.wheel_torque)
+    poses, com, need, forces, torque, wheel_torque = _evaluate_path(
+        path.pieces, path.corners, ground, p, *legs, s, body, friction, 0.3
+    )
+    x = np.ascontiguousarray(poses[:, COM_X])
+    firm = firm_margins(path.pieces, path.corners, path.radius, s, x, friction)
+    return Record(
+        poses, com, firm, need, forces, torque, wheel_torque, friction, p.leg_torque, p.wheel_torque
+    )  # fmt: skip

@@ -64,11 +64,7 @@ class Solved:
     keys: list[int]
     total: float
     certificate: Certificate
-
-    @property
-    def margin(self) -> float:
-        """Thinnest CoM margin [m]."""
-        return min(pose.margins.com for pose in self.poses)
+    margin: float  # m; thinnest of the CoM
 
     @property
     def bad(self) -> Ints:
@@ -210,4 +206,4 @@ class Course(Question):
             self.terrain, self.robot, self.friction, self.weights, clock.perf_counter(), poses,
             keys, total,
         )  # fmt: skip
-        return Solved(poses, keys, total, certify(plan))
+        return Solved(poses, keys, total, certify(plan), float(found.record.firm.min()))

@@ -9,7 +9,9 @@ from stairwright.planning.plan import Plan
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.statics.contact import GRAVITY
+from stairwright.terrain.wheel_path import wheel_path
 
+from .contacts import firm_margins
 from .course import rolled
 
 Floats = NDArray[np.float64]
@@ -82,7 +84,9 @@ def retimed(plan: Plan, speed: float) -> Plan:
     s = np.array([pose.wheel_progress for pose in plan.poses])
     body = np.array([(pose.x_c, pose.z_c, pose.pitch) for pose in plan.poses])
     q = np.array([pose.q for pose in plan.poses])
-    margin = np.array([pose.margins.com for pose in plan.poses])
+    com_x = np.array([pose.com[0] for pose in plan.poses])
+    path = wheel_path(plan.terrain, plan.robot_description.wheel.radius)
+    margin = firm_margins(path.pieces, path.corners, path.radius, s, com_x, plan.friction)
     times = pose_times(plan.robot_description, s, body, q, margin, speed).tolist()
     poses = [
         pose.model_copy(update={"time": time}) for pose, time in zip(plan.poses, times, strict=True)

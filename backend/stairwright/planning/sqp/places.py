@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.compiled import leaf
+from stairwright.planning.path.contacts import wheel_contacts
 from stairwright.statics.contact import com_interval
 from stairwright.terrain.wheel_path import curve_at, ground_height
 
@@ -17,7 +18,6 @@ from .cells import Course
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-CORNER = 1.5e-3  # m; a wheel this near to a concave corner touches both faces
 CONTACTS = 4  # at most, of both wheel pairs
 SETTLE = 0.10  # m that a resting rear wheel is past steep ground, for legs of 0.4 m
 GRIP = 0.9  # of the friction angle: steeper ground does not hold a resting wheel alone
@@ -42,26 +42,14 @@ def contacts(
     Returns:
         The number of contacts.
     """
-    count, r = 0, course.radius
+    count = 0
     for wheel in range(2):
-        s = front if wheel == 0 else rear
-        corner = -1.0
-        k = int(np.searchsorted(course.corners, s - CORNER, side="right"))
-        if k < len(course.corners) and course.corners[k] < s + CORNER:
-            corner = course.corners[k]
-        x, z, _, _ = curve_at(course.pieces, r, s)
-        for side in range(2):
-            if corner < 0.0:
-                at = s
-            else:
-                at = corner - 1e-7 if side == 0 else corner + 1e-7
-            _, _, nx, nz = curve_at(course.pieces, r, at)
-            points[count, 0], points[count, 1] = x - r * nx, z - r * nz
-            normals[count, 0], normals[count, 1] = nx, nz
-            owner[count] = wheel
-            count += 1
-            if corner < 0.0:
-                break
+        begin = count
+        count += wheel_contacts(
+            course.pieces, course.corners, course.radius, front if wheel == 0 else rear,
+            points, normals, begin,
+        )  # fmt: skip
+        owner[begin:count] = wheel
     return count
 
 

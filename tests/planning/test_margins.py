@@ -1,0 +1,74 @@
+"""The CoM margin that plans state is the contract's: found again with shapely and scipy's LP."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from scipy.optimize import linprog
+
+import stairwright as sw
+from stairwright.statics.contact import CAP
+from stairwright.terrain.stairs import stair
+
+TOUCHES = 0.0014  # m; a rim this near to a face touches it
+CLEARLY = 0.0025  # m; one this far away does not
+NOSING = 0.0002  # m; the same for the end of a face, which the rim passes before it touches
+
+
+def faces_at(terrain, centre, radius):
+    """Contact points and normals of a wheel, or None where it is not clear whether it touches."""
+    points, normals = [], []
+    for a, b in zip(terrain.vertices[:-1], terrain.vertices[1:], strict=True):
+        segment = shapely.linestrings([a, b])
+        gap = shapely.distance(segment, shapely.points(centre)) - radius
+        at = np.array(segment.interpolate(segment.project(shapely.points(centre))).coords[0])
+        end = min(np.hypot(*(at - a)), np.hypot(*(at - b))) < 1e-6
+        if gap > (NOSING if end else CLEARLY):
+            continue
+        if gap > TOUCHES:
+            return None
+        if not any(np.hypot(*(at - p)) < 0.005 for p in points):
+            points.append(at)
+            normals.append((centre - at) / np.hypot(*(centre - at)))
+    return points, normals
+
+
+def margin(points, normals, friction, x):
+    """How far a CoM at `x` may shift with equilibrium inside the cones, the smaller way."""
+    columns = []
+    for (px, pz), (nx, nz) in zip(points, normals, strict=True):
+        for side in (friction, -friction):
+            fx, fz = nx + side * nz, nz - side * nx
+            columns.append((fx, fz, px * fz - pz * fx))
+    rays = np.array(columns).T
+    ends = []
+    for sign in (1.0, -1.0):
+        answer = linprog(sign * rays[2], A_eq=rays[:2], b_eq=[0.0, 1.0], bounds=(0.0, CAP))
+        assert answer.status == 0
+        ends.append(sign * answer.fun)
+    return min(x - ends[0], ends[1] - x)
+
+
+@pytest.mark.parametrize("method", ["path", "critical"])
+@pytest.mark.parametrize("robot", sw.robots())
+def test_stated_com_margins_are_those_of_all_friction_cones(robot, method):
+    terrain, friction = stair(0.17, 0.29, 2), 0.6
+    plan = sw.plan(terrain, robot, friction, method=method)
+    assert plan.feasible
+    radius = plan.robot_description.wheel.radius
+    judged = corners = 0
+    for pose in plan.poses:
+        wheels = [faces_at(terrain, np.array(centre), radius) for centre in pose.wheels]
+        if None in wheels:
+            continue
+        points, normals = (sum((wheel[k] for wheel in wheels), []) for k in range(2))
+        mine = margin(points, normals, friction, pose.com[0])
+        assert pose.margins.com == pytest.approx(mine, abs=1e-3), pose.progress
+        assert math.isfinite(pose.margins.com)
+        judged += 1
+        corners += len(points) > 2
+    assert judged > 0.7 * len(plan.poses)
+    assert corners >= 2
