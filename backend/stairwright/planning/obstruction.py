@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from concurrent.futures import Executor
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 
@@ -45,12 +45,15 @@ def explain(course: Course, blocked: Blocked) -> tuple[Problem, Way]:
         blocked: What its solution attempt returned.
     """
     pool = search_threads()
-    way = pool.submit(course.partial)
-    problem = _name(course, blocked, pool)
-    return problem, way.result()
+    # As far as it goes: found beside the first plan that is tried, where a thread is at leisure.
+    partial_way = cache(lambda: pool.submit(course.partial))
+    problem = _name(course, blocked, pool, partial_way)
+    return problem, partial_way().result()
 
 
-def _name(course: Course, blocked: Blocked, pool: Executor) -> Problem:
+def _name(
+    course: Course, blocked: Blocked, pool: Executor, meanwhile: Callable[[], object]
+) -> Problem:
     if blocked.torque:
         torque = _torque(course, blocked)
         if torque is not None:
@@ -58,6 +61,7 @@ def _name(course: Course, blocked: Blocked, pool: Executor) -> Problem:
     candidates = candidates_of(course)
     for _ in range(_ASKED):
         ranked = _ranked(course, candidates, pool)
+        meanwhile()
         answer = _confirmed(course, ranked, pool)
         if answer is not None:
             return _problem(course, blocked, *answer)

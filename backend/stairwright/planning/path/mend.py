@@ -12,6 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.planning.threads import still_wanted
+
 from .course import rolled, scale
 from .lattice import BOLD, make_lattice
 from .question import Question
@@ -55,6 +57,7 @@ def mend(q: Question, found: Refined, bad: Ints, stage: Stage) -> Refined:
     parts, last = [], 0
     places = _places(u[bad], width + blend)
     for low, high in places if len(places) <= stage.places else []:
+        still_wanted()
         inner = _nodes(u, low - width, high + width)
         begin, end = _nodes(u, low - width - blend, high + width + blend)
         deep = found.record.room[begin : end + 1].min() < -stage.depth
@@ -97,6 +100,7 @@ def _way(
     if (s[b] < s[a]).any():
         return None
     search = Search(q, found.stand(a), found.stand(b), make_lattice(q.robot, fine), BOLD)
+    still_wanted()
     new = search.find(q.friction, q.reserve, BOLD.com)
     if new.s is None or new.body is None:
         return None
@@ -111,6 +115,7 @@ def _polished(q: Question, old: Refined, way: tuple[Floats, Floats]) -> Refined 
     ends = (old.stand(0), old.stand(-1))
     pieces = []
     for grain in _GRAINS:
+        still_wanted()
         pieces.append(refine(q, ends, *way, grain, _HELD))
         if not len(pieces[-1].record.bad):
             return pieces[-1]

@@ -183,6 +183,7 @@ class Course(Question):
         """Polish, mend and certify; where that fails, the arc lengths at the worst place."""
         assert finding.s is not None
         assert finding.body is not None
+        still_wanted()
         found = refine(self, self.stands, finding.s, finding.body)
         judged: Refined | None = None
         for stage in (*STAGES, None):
