@@ -177,6 +177,7 @@ def test_compiled_equals_plain(name: str) -> None:
                 random.normal(0, 0.5, 3),
                 random.uniform(0.5, 1.0, 1),
                 [0.4],
+                random.integers(0, 3, 2),
             ]
         )
         assert len(row) == WIDTH

@@ -15,7 +15,7 @@ WEIGHT, RADIUS = 116.0, 0.05
 
 
 def resting(path: WheelPath, places, com, friction: float = 0.6):
-    out = np.zeros((len(places), 5))
+    out = np.zeros((len(places), 7))
     ground = (path.pieces, path.corners, path.radius)
     resting_forces(*ground, WEIGHT, friction, np.array(places), np.array(com), out)
     return out[:, :4].reshape(-1, 2, 2)

@@ -18,6 +18,9 @@ Floats = NDArray[np.float64]
 MAX_ACCELERATION = 3.5  # m/s^2, along x
 CONTROL_PERIOD = 0.002  # s
 MAX_LEARNT = 15.0  # rad/s^2 that the pitch integral may add
+# Weight of the difference between left and right forces: where grip runs out the QP would rather
+# carry all with one wheel of a pair, and nothing else keeps the robot from rolling over.
+EVEN = 0.02
 
 
 def desired_wrench(
@@ -55,15 +58,17 @@ def force_cost(
     desired: Floats,
     resting: Floats,
     previous: Floats,
+    even: float = 0.0,
 ) -> tuple[Floats, Floats]:
     """Hessian H (8, 8) and gradient g (8,) of ``F' H F / 2 + g' F``, half the cost of eq 11.
 
     ``D' S D + alpha |F - F_rest|^2 + beta |F - F_prev|^2`` with ``D = A F - b_des``; the paper's
-    cost has ``F_rest = 0``.
+    cost has ``F_rest = 0``. `even` weights the squares of left less right forces, which it has not.
     """
     weights = np.array([settings.force_weight, settings.force_weight, settings.moment_weight])
     weighted = force_map.T * weights
     hessian = weighted @ force_map + (settings.alpha + settings.beta) * np.eye(8)
+    hessian += even * np.kron(np.eye(2), np.kron([[1.0, -1.0], [-1.0, 1.0]], np.eye(2)))
     gradient = -weighted @ desired - settings.alpha * resting - settings.beta * previous
     return hessian, gradient
 

@@ -18,14 +18,14 @@ from . import balance, rigid_body
 from .contact import locate, support, wheel_traction
 from .controller import gains
 from .qp import solve_native
-from .setpoint import RATES, SHARE, SURGES
+from .setpoint import LEANS, RATES, SHARE, SURGES
 from .settings import ControllerSettings
 
 Floats = NDArray[np.float64]
 
 _MAX_ACCELERATION = balance.MAX_ACCELERATION
 _GRAVITY = rigid_body.GRAVITY
-_PERIOD, _MAX_LEARNT = balance.CONTROL_PERIOD, balance.MAX_LEARNT
+_PERIOD, _MAX_LEARNT, _EVEN = balance.CONTROL_PERIOD, balance.MAX_LEARNT, balance.EVEN
 _Q, _PITCH, _COM, _FORCE = 2, 6, 7, 22
 
 _NAMES = (
@@ -126,7 +126,7 @@ def contact_control(
     """Torques (12,) before the motors' limits; updates the memory in place.
 
     `record` is of `parameters`, `pieces` and `corners` of the `WheelPath`, `qpos` (19,) and `qvel`
-    (18,) are measured, `target` (31,) is a row in the order of `setpoint`, `yaw_rate` is commanded.
+    (18,) are measured, `target` (33,) is a row in the order of `setpoint`, `yaw_rate` is commanded.
     The memory is `places` (4,), `forces` (8,) and `learnt` (1,).
     """
     p = record[0]
@@ -190,8 +190,8 @@ def contact_control(
             world[i, 2 * k] = qpos[0] + r00 * px + r01 * side + r02 * pz
             world[i, 2 * k + 1] = qpos[2] + r20 * px + r21 * side + r22 * pz
         places[i] = locate(pieces, R, world[i, 4], world[i, 5], places[i])
-        planned = target[0] if i < 2 else target[1]
-        support(pieces, R, corners, places[i], planned, usable, held[i])
+        planned, lean = target[i // 2], int(target[LEANS.start + i // 2])
+        support(pieces, R, corners, places[i], planned, usable, lean, held[i])
         nx, nz, friction[i], reach = held[i, 0], held[i, 1], held[i, 2], held[i, 3]
         lx, lz = world[i, 4] - reach * nx - com_x, world[i, 5] - reach * nz - com_z
         A[0, 2 * i], A[1, 2 * i], A[2, 2 * i] = nz, -nx, lz * nz + lx * nx
@@ -214,12 +214,15 @@ def contact_control(
         for j in range(i + 1):
             H[i, j] = S[0] * A[0, i] * A[0, j] + S[1] * A[1, i] * A[1, j] + S[2] * A[2, i] * A[2, j]
             H[j, i] = H[i, j]
-        H[i, i] += p.alpha + p.beta
+        H[i, i] += p.alpha + p.beta + _EVEN
         fx, fz = 0.5 * target[_FORCE + 2 * (i // 4)], 0.5 * target[_FORCE + 2 * (i // 4) + 1]
         nx, nz = held[i // 2, 0], held[i // 2, 1]
         resting = fx * nz - fz * nx if i % 2 == 0 else fx * nx + fz * nz
         g[i] = -A[0, i] * b[0] - A[1, i] * b[1] - A[2, i] * b[2]
         g[i] -= p.alpha * resting + p.beta * forces[i]
+    for i in (0, 1, 4, 5):  # left and right wheel of a pair
+        H[i, i + 2] -= _EVEN
+        H[i + 2, i] -= _EVEN
     solve_native(H, g, friction, p.force_limit, forces)
 
     # Torques: J' F and the legs' weight, tracking (eq 27), rolling (eqs 14-16) with feed-forward.

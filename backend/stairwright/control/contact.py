@@ -6,8 +6,9 @@ corner the curve has a kink and the wheel touches two faces, which asks for two 
 - Projection alone keeps pushing on the face that the wheel comes from, and the robot waits there
   for ever. While the plan is already past a corner that the wheel has not passed (or the other way
   round), the *planned* face counts.
-- While plan and wheel are both in the corner, both faces carry. Their friction cones span one
-  wider cone round the bisector of the normals, whose apex is the wheel's centre.
+- While plan and wheel are both in the corner, it leans on the face before, on the face after, or on
+  both, as the static forces of the plan do. On both, the friction cones span one wider cone round
+  the bisector of the normals, whose apex is the wheel's centre.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ WINDOW = 0.15  # m; a wheel is looked for this far from where it was
 CORNER_REACH = 0.04  # m; how far from a corner the planned face may count
 CORNER_PLANNED = 0.008  # m; a plan this near to a corner counts on both faces
 CORNER_MEASURED = 0.010  # m; a wheel this near to a corner gets there at once
+BEFORE, AFTER, BOTH = 0, 1, 2  # faces of a corner that a wheel leans on
 WIDEST = math.radians(80.0)  # half of the widest cone
 _BESIDE = 1e-6  # m
 
@@ -61,25 +63,29 @@ def support(
     measured: float,
     planned: float,
     friction: float,
+    lean: int,
     out: Floats,
 ) -> None:
-    """How the wheel at `measured` is carried, into `out` (8,).
+    """How the wheel at `measured` is carried, into `out` (8,); in a corner as `lean` says.
 
     ``[nx, nz, friction, reach, ax, az, bx, bz]``: normal and friction of the cone of its force, how
     far the force acts from the wheel's centre [m] (the radius; 0 in a corner), and the normals of
     the face before and after a corner (both the same elsewhere).
     """
+    nx, nz = face_normal(pieces, radius, corners, measured, planned)
     for corner in corners:
         if abs(planned - corner) < CORNER_PLANNED and abs(measured - corner) < CORNER_MEASURED:
             _, _, ax, az = curve_at(pieces, radius, corner - _BESIDE)
             _, _, bx, bz = curve_at(pieces, radius, corner + _BESIDE)
+            if lean != BOTH:
+                nx, nz = (ax, az) if lean == BEFORE else (bx, bz)
+                break
             length = math.hypot(ax + bx, az + bz)
             half = 0.5 * math.acos(min(1.0, max(-1.0, ax * bx + az * bz)))
             wide = math.tan(min(WIDEST, half + math.atan(friction)))
             out[0], out[1], out[2], out[3] = (ax + bx) / length, (az + bz) / length, wide, 0.0
             out[4], out[5], out[6], out[7] = ax, az, bx, bz
             return
-    nx, nz = face_normal(pieces, radius, corners, measured, planned)
     out[0], out[1], out[2], out[3] = nx, nz, friction, radius
     out[4], out[5], out[6], out[7] = nx, nz, nx, nz
 

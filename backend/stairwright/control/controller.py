@@ -89,8 +89,9 @@ class Controller:
         planned = target.wheel_progress[LEG_PAIR]
         usable = max(settings.friction_share, target.friction_share) * self.friction
         held = np.empty((4, 8))
-        for row, here, there in zip(held, self.places, planned, strict=True):
-            support(self.path.pieces, radius, self.path.corners, here, there, usable, row)
+        leans = np.repeat(target.leans, 2)
+        for row, here, there, lean in zip(held, self.places, planned, leans, strict=True):
+            support(self.path.pieces, radius, self.path.corners, here, there, usable, lean, row)
         normals, friction, reach = held[:, :2], held[:, 2], held[:, 3:4]
         frames = rigid_body.contact_frames(normals)
         points = state.wheels - reach * normals
@@ -144,7 +145,8 @@ class Controller:
         return self._joined(state, target, torques, wheel)
 
     def _solve(self, force_map: Floats, desired: Floats, resting: Floats, friction: Floats) -> None:
-        H, g = balance.force_cost(self.settings, force_map, desired, resting, self.forces)
+        even = balance.EVEN if self.settings.form == "contact" else 0.0
+        H, g = balance.force_cost(self.settings, force_map, desired, resting, self.forces, even)
         C, d = balance.force_limits(self.settings, friction)
         self.forces = qp.solve(self.settings.solver, H, g, C, d, self.forces)
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .contact import BOTH
+
 Floats = NDArray[np.float64]
 
 # Columns of a set point's row: values, their rates of change, static forces, accelerations.
@@ -21,7 +23,8 @@ FORCES = slice(22, 26)
 SURGES = 26  # accelerations of pitch and CoM, the columns from `PITCH` on
 SHARE = 29  # of the friction that the static forces need
 PROGRESS = 30  # the plan's
-WIDTH = 31
+LEANS = slice(31, 33)  # what each wheel pair leans on in a corner, see `contact`; not to be mixed
+WIDTH = 33
 
 
 @dataclass(frozen=True)
@@ -43,6 +46,7 @@ class Setpoint:
         pitch_acceleration: [rad/s^2].
         com_acceleration: (2,) [m/s^2].
         friction_share: part of the friction that the static forces need.
+        leans: (2,) what each wheel pair leans on in a corner, see `contact`.
         yaw_rate: commanded [rad/s].
     """
 
@@ -60,11 +64,12 @@ class Setpoint:
     pitch_acceleration: float
     com_acceleration: Floats
     friction_share: float = 0.0
+    leans: tuple[int, int] = (BOTH, BOTH)
     yaw_rate: float = 0.0
 
     @classmethod
     def from_row(cls, row: Floats, yaw_rate: float = 0.0) -> Setpoint:
-        """The set point held by a row (31,) in the module's order."""
+        """The set point held by a row (33,) in the module's order."""
         rates = row[RATES : 2 * RATES]
         return cls(
             wheel_progress=row[WHEELS],
@@ -81,5 +86,6 @@ class Setpoint:
             pitch_acceleration=float(row[SURGES]),
             com_acceleration=row[SURGES + 1 : SURGES + 3],
             friction_share=float(row[SHARE]),
+            leans=(int(row[LEANS][0]), int(row[LEANS][1])),
             yaw_rate=yaw_rate,
         )

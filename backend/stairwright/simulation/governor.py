@@ -24,6 +24,7 @@ from stairwright.control.setpoint import (
     COM,
     FORCES,
     JOINTS,
+    LEANS,
     PITCH,
     PROGRESS,
     RATES,
@@ -58,7 +59,7 @@ class Track:
     Attributes:
         start: Way of the first row, which is its progress [m].
         step: Way between rows [m].
-        rows: (n, 31) set points; rates are per metre of way, accelerations per its square.
+        rows: (n, 33) set points; rates are per metre of way, accelerations per its square.
         speeds: (n,) allowed speed along the way [m/s].
     """
 
@@ -129,9 +130,9 @@ def track(
     places, com = np.ascontiguousarray(rows[:, WHEELS]), np.ascontiguousarray(rows[:, COM])
     ground = (path.pieces, path.corners, path.radius)
     weight = robot.mass * GRAVITY
-    resting = np.empty((count, 5))
+    resting = np.empty((count, 7))
     resting_forces(*ground, weight, friction, places, com, resting)
-    rows[:, FORCES], rows[:, SHARE] = resting[:, :4], resting[:, 4]
+    rows[:, FORCES], rows[:, SHARE], rows[:, LEANS] = resting[:, :4], resting[:, 4], resting[:, 5:]
     rows[:, PROGRESS] = np.interp(grid, way, reference.progress)
     speeds = _speeds(np.interp(grid, way, reference.time), grid, rows, robot, settings)
     return Track(first, grid[1] - grid[0], rows, speeds)
@@ -195,7 +196,7 @@ def advance(
     clock: Floats,
     target: Floats,
 ) -> None:
-    """Advance the plan by one control step and write the set point into `target` (31,).
+    """Advance the plan by one control step and write the set point into `target` (33,).
 
     `start`, `step`, `rows` and `speeds` are of the `Track`; `leash` is how far the plan may run
     ahead [m]; `places` (4,) are where the wheels are, NaN before the first measurement; `moving`
@@ -234,6 +235,8 @@ def advance(
     share = spot - k
     for j in range(rows.shape[1]):
         target[j] = rows[k, j] + share * (rows[k + 1, j] - rows[k, j])
+    for j in range(LEANS.start, LEANS.stop):
+        target[j] = rows[k if share < 0.5 else k + 1, j]
     # Speeding up or slowing down as the plan wants it, not as the leash does: that is noise.
     allowed = speeds[k] + share * (speeds[k + 1] - speeds[k])
     gain = rate * rate / allowed * (speeds[k + 1] - speeds[k]) / step if rate > 0.0 else 0.0

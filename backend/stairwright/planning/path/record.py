@@ -25,9 +25,9 @@ Ints = NDArray[np.int64]
 
 LEAST_CLEARANCE = 0.0005  # m; the best controller strays that far
 LEAST_COM = 0.001  # m; no robot's centre of mass is known better
-# Where the CoM has less room than this [m], friction must leave more than that: else a wheel that
-# slides a little tips the robot.
-THIN_COM, FIRM_GRIP = 0.006, 0.025
+# Where the CoM has less room than this [m], that share of the friction must be left: else a wheel
+# that slides a little tips the robot.
+THIN_COM, FIRM_GRIP = 0.006, 0.08
 _SPARE = 5e-4  # m
 
 
@@ -76,7 +76,9 @@ class Record:
                 self.poses[:, LEGS] - LEGS_GAP,
                 0.2 * self.poses[:, SLACK],
                 self.firm - LEAST_COM,
-                np.maximum(self.firm - THIN_COM, 0.2 * (self.friction - self.need - FIRM_GRIP)),
+                np.maximum(
+                    self.firm - THIN_COM, 0.2 * ((1.0 - FIRM_GRIP) * self.friction - self.need)
+                ),
                 (self.wheel_limit - self.wheel_torque) * 0.01,
                 (self.leg_limit - self.torque) * 0.01,
             ]
