@@ -64,7 +64,7 @@ def test_stated_com_margins_are_those_of_all_friction_cones(robot, method):
         wheels = [faces_at(terrain, np.array(centre), radius) for centre in pose.wheels]
         if None in wheels:
             continue
-        points, normals = (sum((wheel[k] for wheel in wheels), []) for k in range(2))
+        points, normals = (wheels[0][k] + wheels[1][k] for k in range(2))
         mine = margin(points, normals, friction, pose.com[0])
         assert pose.margins.com == pytest.approx(mine, abs=1e-3), pose.progress
         assert math.isfinite(pose.margins.com)
