@@ -40,8 +40,13 @@ class Gains:
 
 
 def gains(robot: Robot, settings: ControllerSettings) -> Gains:
-    """The settings' gains, or the robot's where a setting is empty."""
+    """The settings' gains, or the robot's where a setting is empty.
+
+    A wheel is damped at most so that it has its wished rate after one control step: with light
+    rotors more would make it swing ever wider.
+    """
     own = robot.gains
+    spin_inertia = robot.wheel.inertia[1] + robot.actuators.wheel.armature
 
     def pick(value: float | None, default: float) -> float:
         return default if value is None else value
@@ -49,7 +54,7 @@ def gains(robot: Robot, settings: ControllerSettings) -> Gains:
     return Gains(
         pick(settings.joint_stiffness, own.joint_stiffness),
         pick(settings.joint_damping, own.joint_damping),
-        pick(settings.wheel_damping, own.wheel_damping),
+        min(pick(settings.wheel_damping, own.wheel_damping), spin_inertia / balance.CONTROL_PERIOD),
     )
 
 
