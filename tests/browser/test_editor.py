@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from .conftest import TERRAIN, Product
+from .conftest import DESK, PHONE, TERRAIN, Product
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page, WebSocket, WebSocketRoute
+    from playwright.sync_api import Page, ViewportSize, WebSocket, WebSocketRoute
 
 pytestmark = [pytest.mark.browser]
 
@@ -160,6 +160,28 @@ def test_numbers_can_be_typed(product: Product) -> None:
     product.page.get_by_label("Run in metres").fill("0.35")
     product.page.keyboard.press("Enter")
     assert product.corner(7)[0] == pytest.approx(end[0] + 0.05)
+
+
+# The corners whose middle something that floats over the canvas takes from the pointer.
+COVERED = """() => [...document.querySelectorAll("[data-vertex]")].filter(vertex => {
+  const box = vertex.querySelector("rect").getBoundingClientRect();
+  const at = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
+  return at?.closest(".ro, .hint");
+}).length"""
+
+
+@pytest.mark.parametrize("viewport", [DESK, PHONE], ids=["desk", "phone"])
+@pytest.mark.parametrize(("terrain", "corner"), [("three-stairs-up-down", 3), ("loading-dock", 6)])
+def test_the_read_out_covers_no_corner(
+    product: Product, viewport: ViewportSize, terrain: str, corner: int
+) -> None:
+    product.page.set_viewport_size(viewport)
+    try:
+        product.choose_terrain(terrain).vertex(corner).focus()
+        product.page.locator(".ro").wait_for()
+        assert product.page.evaluate(COVERED) == 0
+    finally:
+        product.page.set_viewport_size(DESK)
 
 
 def test_several_corners_move_together(product: Product) -> None:

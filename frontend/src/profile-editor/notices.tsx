@@ -6,7 +6,8 @@ import { plan, planB, planKept, preview, refusal, slow } from "../state/planning
 import { activity, run } from "../state/rollouts";
 import { dismissHint, hintSeen, isNarrow, layers } from "../state/view";
 import { Icon } from "../ui/icon";
-import { canvasBox, projection } from "./viewport";
+import { placeNear } from "./place";
+import { projection } from "./viewport";
 
 export function Legend() {
   if (isEmpty.value || isNarrow.value) return null;
@@ -86,6 +87,8 @@ export function Refusal() {
   );
 }
 
+const HINT = { width: 236, height: 84 };
+
 /** Once, on the first visit, beside the corner that is worth dragging. */
 export function FirstHint() {
   const points = drawing.value.points;
@@ -98,14 +101,11 @@ export function FirstHint() {
   const p = points[i];
   if (!p) return null;
   const { px, py } = projection.value;
-  const box = canvasBox.value;
+  const { left, top, width, free } = placeNear([px(p[0]), py(p[1])], HINT, [18, 14], []);
   return (
     <div
-      class="hint"
-      style={{
-        left: `${Math.min(box.right - 260, px(p[0]) + 18)}px`,
-        top: `${Math.min(box.bottom - 100, py(p[1]) + 14)}px`,
-      }}
+      class={free ? "hint" : "hint through"}
+      style={{ left: `${left}px`, top: `${top}px`, width: `${width}px` }}
     >
       <b>Drag a corner: the poses follow.</b>
       <span>Then press Run rollout to see it driven.</span>

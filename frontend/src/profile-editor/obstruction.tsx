@@ -1,11 +1,13 @@
 /** What stops the robot: the sentence, the numbers, and a line to the place. */
 
-import type { Plan } from "../api/types";
+import { computed } from "@preact/signals";
+import type { Problem } from "../api/types";
 import { fixed } from "../geometry/format";
 import { canUndo, drawing, previous, undo } from "../state/drawing";
 import { plan, preview } from "../state/planning";
 import { isNarrow } from "../state/view";
 import { Icon } from "../ui/icon";
+import type { Rect } from "./place";
 import { canvasBox, centreOn, projection, size } from "./viewport";
 
 /** Needed amounts above this mean: no amount is enough. */
@@ -13,15 +15,14 @@ const HOPELESS = 100;
 const LENGTHS = new Set(["clearance", "reach"]);
 
 /** A limit in the problem's own unit; lengths below 1 m in mm. */
-function quantity(shown: Plan, value: number): string {
-  const problem = shown.problem!;
-  const unit = problem.limit?.unit;
+function quantity({ limit, kind }: Problem, value: number): string {
+  const unit = limit?.unit;
   if (Math.abs(value) >= HOPELESS) return "more than any";
-  if (unit === "m" || (!unit && LENGTHS.has(problem.kind))) {
+  if (unit === "m" || (!unit && LENGTHS.has(kind))) {
     return Math.abs(value) < 0.1 ? `${fixed(value * 1000, 0)} mm` : `${fixed(value, 3)} m`;
   }
   if (unit === "rad") return `${fixed((value * 180) / Math.PI, 1)}°`;
-  if (unit === "Nm" || problem.kind === "torque") return `${fixed(value, 1)} Nm`;
+  if (unit === "Nm" || kind === "torque") return `${fixed(value, 1)} Nm`;
   return fixed(value, 2) + (unit && unit !== "1" ? ` ${unit}` : "");
 }
 
@@ -42,17 +43,23 @@ function lastEdit(): string | null {
   return null;
 }
 
+/** Poses that were found since are newer than the problem. */
+const problem = computed(() => (preview.value ? null : (plan.value?.problem ?? null)));
+
+/** Where the card lies; what else floats over the canvas keeps off it. */
+export const card = computed<Rect | null>(
+  () => problem.value && { left: 52, top: 56, width: isNarrow.value ? 292 : 340, height: 168 },
+);
+
 export function Obstruction() {
-  const shown = plan.value;
-  const problem = shown?.problem;
-  // Poses that were found since are newer than the problem.
-  if (!shown || !problem || preview.value) return null;
+  const stop = problem.value;
+  const at = card.value;
+  if (!stop || !at) return null;
   const { px, py } = projection.value;
   const box = canvasBox.value;
-  const [x, y] = [px(problem.at[0]), py(problem.at[1])];
+  const [x, y] = [px(stop.at[0]), py(stop.at[1])];
   const visible = x > box.left && x < box.right && y > box.top && y < box.bottom;
-  const card = { left: 52, top: 56, width: isNarrow.value ? 292 : 340 };
-  const edge = card.left + card.width;
+  const edge = at.left + at.width;
   const bend = Math.max(edge + 24, x - 35);
   const sentence = lastEdit();
   return (
@@ -61,32 +68,32 @@ export function Obstruction() {
         <svg class="whyline" width={size.value.width} height={size.value.height} aria-hidden="true">
           <circle cx={x} cy={y} r={13} />
           {!isNarrow.value && x > edge + 20 && (
-            <path d={`M${edge} ${card.top + 54}H${bend}L${x} ${y - 13}`} />
+            <path d={`M${edge} ${at.top + 54}H${bend}L${x} ${y - 13}`} />
           )}
         </svg>
       )}
       <section
         class="tag why"
         aria-label="What stops the robot"
-        style={{ left: `${card.left}px`, top: `${card.top}px`, width: `${card.width}px` }}
+        style={{ left: `${at.left}px`, top: `${at.top}px`, width: `${at.width}px` }}
       >
         <h4>
           <Icon name="warning" />
-          {problem.message.charAt(0).toUpperCase() + problem.message.slice(1)}
+          {stop.message.charAt(0).toUpperCase() + stop.message.slice(1)}
         </h4>
         <dl>
           <dt>where</dt>
           <dd>
-            x {fixed(problem.at[0], 2)}, z {fixed(problem.at[1], 2)} m
+            x {fixed(stop.at[0], 2)}, z {fixed(stop.at[1], 2)} m
           </dd>
           <dt>progress</dt>
-          <dd>{fixed(problem.progress, 2)} m</dd>
-          {problem.limit && (
+          <dd>{fixed(stop.progress, 2)} m</dd>
+          {stop.limit && (
             <>
               <dt>needed</dt>
-              <dd>{quantity(shown, problem.limit.needed)}</dd>
+              <dd>{quantity(stop, stop.limit.needed)}</dd>
               <dt>has</dt>
-              <dd class="x">{quantity(shown, problem.limit.available)}</dd>
+              <dd class="x">{quantity(stop, stop.limit.available)}</dd>
             </>
           )}
         </dl>
@@ -97,7 +104,7 @@ export function Obstruction() {
               Undo edit
             </button>
           )}
-          <button type="button" onClick={() => centreOn(problem.at)}>
+          <button type="button" onClick={() => centreOn(stop.at)}>
             Go to spot
           </button>
         </div>

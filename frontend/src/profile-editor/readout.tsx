@@ -3,14 +3,18 @@
 import { fixed } from "../geometry/format";
 import { segmentKind } from "../geometry/profile";
 import { commit, draft, drawing, revert, selection } from "../state/drawing";
-import { isNarrow, tool } from "../state/view";
+import { tool } from "../state/view";
 import { NumberField } from "../ui/number-field";
 import { moveVertices } from "./edits";
+import { card } from "./obstruction";
+import { placeNear } from "./place";
 import { names } from "./vertices";
 import { canvasBox, projection } from "./viewport";
 
-const WIDTH = 204;
-const HEIGHT = 60;
+/** With room for its longest words, on two lines [px]. */
+const SIZE = { width: 214, height: 78 };
+/** From its corner to the read-out, past the number of a rise [px]. */
+const GAP: [number, number] = [64, 28];
 
 function facts(i: number): string {
   const points = drawing.value.points;
@@ -38,12 +42,8 @@ export function Readout() {
   // A typed number may take the corner out of view; its fields stay at the rim.
   const x = Math.min(box.right, Math.max(box.left, px(p[0])));
   const y = Math.min(box.bottom, Math.max(box.top, py(p[1])));
-  // Below and right of the corner, where the ground is; to the other side at the rim.
-  const beside = x + 64 + WIDTH > box.right ? x - WIDTH - 24 : x + 64;
-  // Narrow pages have one free corner, away from the obstruction's card.
-  const left = isNarrow.value ? box.right - WIDTH - 12 : beside;
-  const lowest = box.bottom - HEIGHT - 40;
-  const top = isNarrow.value ? lowest : Math.min(y + 28, lowest);
+  const taken = card.value ? [card.value] : [];
+  const { left, top, width, free } = placeNear([x, y], SIZE, GAP, taken);
   const points = drawing.value.points;
   const set = (axis: 0 | 1) => (value: number) => {
     const by = value - p[axis];
@@ -63,7 +63,11 @@ export function Readout() {
     />
   );
   return (
-    <div class="tag ro" style={{ left: `${left}px`, top: `${Math.max(box.top + 8, top)}px` }}>
+    // Where it has to cover corners, only its fields keep the pointer.
+    <div
+      class={free ? "tag ro" : "tag ro through"}
+      style={{ left: `${left}px`, top: `${top}px`, width: `${width}px` }}
+    >
       <small aria-hidden="true">x</small>
       {field(0)}
       <small aria-hidden="true">z</small>

@@ -1,0 +1,73 @@
+/** Where something may float over the canvas: near a spot, and on nothing that a hand must reach. */
+
+import type { Vec2 } from "../api/types";
+import { drawing } from "../state/drawing";
+import { canvasBox, projection } from "./viewport";
+
+export interface Size {
+  width: number;
+  height: number;
+}
+
+export interface Rect extends Size {
+  left: number;
+  top: number;
+}
+
+/** A fingertip beside the middle of a corner still takes hold of it [px]. */
+const GRIP = 12;
+/** From the canvas's rim, and from the dimensions along its lower one [px]. */
+const RIM = 8;
+const DIMENSIONS = 40;
+
+const around = ([x, y]: Vec2, by: number): Rect => ({
+  left: x - by,
+  top: y - by,
+  width: 2 * by,
+  height: 2 * by,
+});
+
+const overlap = (a: Rect, b: Rect) =>
+  a.left < b.left + b.width &&
+  b.left < a.left + a.width &&
+  a.top < b.top + b.height &&
+  b.top < a.top + a.height;
+
+/** Beside the spot, below it first, where the ground is; else in a corner of the canvas. */
+function places([x, y]: Vec2, { width, height }: Size, gap: Vec2): Rect[] {
+  const box = canvasBox.value;
+  const rightmost = box.right - width - RIM;
+  const lowest = box.bottom - height - DIMENSIONS;
+  const [right, left] = [x + gap[0], x - gap[0] - width];
+  const [below, above] = [y + gap[1], y - gap[1] - height];
+  const wishes: Vec2[] = [
+    [right, below],
+    [left, below],
+    [right, above],
+    [left, above],
+    [rightmost, lowest],
+    [box.left + RIM, lowest],
+    [rightmost, box.top],
+    [box.left + RIM, box.top],
+  ];
+  return wishes.map(([wishX, wishY]) => ({
+    left: Math.max(box.left + RIM, Math.min(rightmost, wishX)),
+    top: Math.max(box.top + RIM, Math.min(lowest, wishY)),
+    width,
+    height,
+  }));
+}
+
+/** The first place that covers no corner and none of `taken`; not free where there is no such. */
+export function placeNear(
+  spot: Vec2,
+  size: Size,
+  gap: Vec2,
+  taken: readonly Rect[],
+): Rect & { free: boolean } {
+  const { px, py } = projection.value;
+  const held = drawing.value.points.map(([x, z]) => around([px(x), py(z)], GRIP));
+  const wanted = places(spot, size, gap);
+  const free = wanted.find((place) => ![...held, ...taken].some((rect) => overlap(place, rect)));
+  return { ...(free ?? wanted[0]!), free: free !== undefined };
+}
