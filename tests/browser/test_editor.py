@@ -193,22 +193,48 @@ def test_several_corners_move_together(product: Product) -> None:
     assert [z for _, z in after] == pytest.approx([z + 0.01 for _, z in before])
 
 
-@pytest.mark.parametrize(("key", "corners"), [("s", 2), ("r", 2), ("p", 1)])
-def test_tools_draw_on_an_empty_canvas(product: Product, key: str, corners: int) -> None:
+def _empty(product: Product) -> None:
+    product.page.keyboard.press("v")
     product.page.get_by_role("button", name=TERRAIN).click()
     product.page.get_by_role("button", name="New", exact=True).click()
     assert product.status == "none"
     product.page.get_by_text("Draw a profile or start from a preset").wait_for()
-    product.page.keyboard.press(key)
+
+
+def _stroke(product: Product, a: tuple[float, float], b: tuple[float, float]) -> None:
+    """From a to b in pixels on the canvas."""
     box = product.page.locator(".ed").bounding_box()
     assert box is not None
-    x, y = box["x"] + 400, box["y"] + 380
-    product.page.mouse.move(x, y)
+    product.page.mouse.move(box["x"] + a[0], box["y"] + a[1])
     product.page.mouse.down()
-    product.page.mouse.move(x + 120, y - 40, steps=10)
+    product.page.mouse.move(box["x"] + b[0], box["y"] + b[1], steps=10)
     product.page.mouse.up()
     product.planned()
+
+
+@pytest.mark.parametrize(("key", "corners"), [("s", 2), ("r", 2), ("p", 1)])
+def test_tools_draw_on_an_empty_canvas(product: Product, key: str, corners: int) -> None:
+    _empty(product)
+    product.page.keyboard.press(key)
+    _stroke(product, (400, 380), (520, 340))
     assert product.corners() >= 2 + corners
+
+
+def test_the_ground_grows_with_a_drawn_line_from_either_side(product: Product) -> None:
+    drawn = []
+    for a, b in [((60, 380), (960, 330)), ((960, 330), (60, 380))]:
+        _empty(product)
+        product.page.keyboard.press("p")
+        _stroke(product, a, b)
+        assert product.status == "feasible"
+        drawn.append([product.corner(i) for i in range(product.corners())])
+    assert drawn[0] == drawn[1]
+    (x0, z0), foot, top, (x3, z3) = drawn[0]
+    assert foot == (pytest.approx(x0 + 1), z0)
+    assert top == (pytest.approx(x3 - 1), z3)
+    product.fresh("flat").page.keyboard.press("p")
+    _stroke(product, (600, 400), (960, 360))
+    assert product.corner(product.corners() - 1)[0] > 2.0
 
 
 def test_stairs_by_the_code(product: Product) -> None:

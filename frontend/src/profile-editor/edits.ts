@@ -102,22 +102,38 @@ export function addFlat(points: Points, from: number, to: number): Vec2[] {
   return join([...before, ...level, ...after]);
 }
 
-/** A drawn line replaces the ground below it; what follows rises or sinks to its end. */
-export function addFree(points: Points, drawn: readonly Vec2[], tolerance: number): Vec2[] {
-  const first = drawn[0];
-  if (!first) return points as Vec2[];
-  const base = ground(points, first[0]);
+/** Level ground for a robot to stand on before and after a drawn line [m]. */
+const STAND = 1;
+
+/**
+ * A drawn line replaces the ground below it; what follows rises or sinks to its end. Where it
+ * leads beyond the ground, or there is none yet, the ground grows with it.
+ */
+export function addFree(points: Points, stroke: readonly Vec2[], tolerance: number): Vec2[] {
+  const line = simplify(fromLeft(stroke).map(tidy), tolerance);
+  const [a, b] = [line[0], line[line.length - 1]];
+  if (!a || !b || a === b) return points as Vec2[];
+  const base = points.length >= 2 ? points : line;
+  const [first, last] = [base[0]!, base[base.length - 1]!];
+  const { before, z } = cut(base, a[0]);
+  const { after, z: under } = cut(base, b[0]);
+  const begin: Vec2[] =
+    a[0] < first[0]
+      ? [[a[0] - STAND, a[1]]]
+      : [[Math.min(first[0], a[0] - STAND), first[1]], ...before, [a[0], z]];
+  const end: Vec2 = [Math.max(last[0], b[0] + STAND), last[1]];
+  return join([...begin, ...line, ...moved([...after, end], 0, b[1] - under)]);
+}
+
+/** The stroke from left to right, whichever way it was drawn, without where it turns back. */
+function fromLeft(stroke: readonly Vec2[]): Vec2[] {
+  const way = (stroke[stroke.length - 1]?.[0] ?? 0) < (stroke[0]?.[0] ?? 0) ? -1 : 1;
   const line: Vec2[] = [];
-  for (const p of drawn) {
-    const x = clampX(base, p[0]);
-    if (line.length === 0 || x >= line[line.length - 1]![0]) line.push([x, p[1]]);
+  for (const p of stroke) {
+    const end = line[line.length - 1];
+    if (!end || way * (p[0] - end[0]) > 0) line.push(p);
   }
-  const kept = simplify(line, tolerance);
-  const end = kept[kept.length - 1]!;
-  const { before, z } = cut(base, kept[0]![0]);
-  const { after, z: under } = cut(base, end[0]);
-  const start: Vec2 = [kept[0]![0], z];
-  return join([...before, start, ...kept, ...moved(after, 0, end[1] - under)]);
+  return way < 0 ? line.reverse() : line;
 }
 
 /** Ramer-Douglas-Peucker: the fewest corners within `tolerance` of the line. */

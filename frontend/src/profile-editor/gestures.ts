@@ -6,7 +6,7 @@ import { heightAt, type Points } from "../geometry/profile";
 import { commit, draft, drawing, revert, selection } from "../state/drawing";
 import { stir } from "../state/planning";
 import { dismissHint, tool } from "../state/view";
-import { addFlat, addFree, addRamp, addStairs, addVertex, ground, moveVertices } from "./edits";
+import { addFlat, addFree, addRamp, addStairs, addVertex, moveVertices } from "./edits";
 import { code, onGrid, type Snapped, snap } from "./snap";
 import { pan, toWorld, view, zoomAt } from "./viewport";
 
@@ -66,7 +66,6 @@ export function press(event: PointerEvent, at: Vec2, target: Target): void {
   performance.clearMarks();
   const panning = event.button === 1 || spaceHeld.peek();
   spacePanned ||= spaceHeld.peek();
-  const drawn = drawing.peek().points;
   const kind = panning ? "pan" : dragKind(target);
   drag = {
     kind,
@@ -74,7 +73,7 @@ export function press(event: PointerEvent, at: Vec2, target: Target): void {
     from: toWorld(...at),
     down: at,
     last: at,
-    points: kind === "tool" ? ground(drawn, toWorld(...at)[0]) : drawn,
+    points: drawing.peek().points,
     index: target.index,
     moved: false,
     line: [],
@@ -191,8 +190,8 @@ function drawWith(d: Drag, at: Vec2, free: boolean): void {
       draft({ points: addFlat(d.points, from[0], now[0]) });
       break;
     case "free": {
-      const end = d.line[d.line.length - 1];
-      if (!end || now[0] > end[0]) d.line.push(now);
+      if (d.line.length === 0) d.line.push(from);
+      d.line.push(now);
       draft({ points: addFree(d.points, d.line, 4 / view.peek().scale) });
       break;
     }
