@@ -15,7 +15,14 @@ import pytest
 from .conftest import DESK, PHONE, TERRAIN, Product
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page, ViewportSize, WebSocket, WebSocketRoute
+    from playwright.sync_api import (
+        FloatRect,
+        Locator,
+        Page,
+        ViewportSize,
+        WebSocket,
+        WebSocketRoute,
+    )
 
 pytestmark = [pytest.mark.browser]
 
@@ -338,6 +345,22 @@ def test_wheel_zooms_and_fit_returns(product: Product) -> None:
     product.page.wait_for_function("() => document.querySelector('.zoom').innerText !== '100 %'")
     product.page.get_by_role("button", name="Fit to view").click()
     assert zoom.inner_text() == "100 %"
+
+
+def test_fit_leaves_room_for_dimensions_and_end_corners(product: Product) -> None:
+    """Flat ground is as wide as the canvas: its numbers lay on the line, its ends half outside."""
+    product.choose_terrain("flat")
+
+    def box(found: Locator) -> FloatRect:
+        where = found.bounding_box()
+        assert where is not None
+        return where
+
+    canvas, label = box(product.page.locator(".ed")), box(product.page.locator(".dimbg"))
+    first, last = (box(product.vertex(i).locator("rect")) for i in (0, 1))
+    assert label["y"] > first["y"] + first["height"]
+    assert first["x"] > canvas["x"] + 40  # past the ruler
+    assert last["x"] + last["width"] < canvas["x"] + canvas["width"]
 
 
 def test_two_fingers_zoom_and_change_nothing(product: Product) -> None:

@@ -20,14 +20,15 @@ const GRIP = 12;
 const RIM = 8;
 const DIMENSIONS = 40;
 
-const around = ([x, y]: Vec2, by: number): Rect => ({
-  left: x - by,
-  top: y - by,
-  width: 2 * by,
-  height: 2 * by,
+/** `wide` and `tall` to either side of its middle. */
+export const around = ([x, y]: Vec2, wide: number, tall = wide): Rect => ({
+  left: x - wide,
+  top: y - tall,
+  width: 2 * wide,
+  height: 2 * tall,
 });
 
-const overlap = (a: Rect, b: Rect) =>
+export const overlap = (a: Rect, b: Rect) =>
   a.left < b.left + b.width &&
   b.left < a.left + a.width &&
   a.top < b.top + b.height &&

@@ -8,6 +8,7 @@ import { drawing, isEmpty, selection } from "../state/drawing";
 import { robot } from "../state/setup";
 import { layers } from "../state/view";
 import { editingDimension } from "./dimension-field";
+import { around, overlap, type Rect } from "./place";
 import { canvasBox, projection, view } from "./viewport";
 
 /** The drawn points and the ground's level ends beyond them. */
@@ -57,7 +58,25 @@ export function WheelPath() {
 /** Faces lower than this have no room for their number [px]. */
 const LEAST_RISE = 16;
 
-/** Runs along the lower rim, rises beside their faces, slopes on their stretch. */
+/** Half a label's width and height, of a run or rise and of a slope [px]. */
+const LABEL: Vec2 = [17, 7];
+const SLOPE: Vec2 = [40, 9];
+
+/** Tells whether a label still fits in between those that it was asked about before. */
+function room(): (middle: Vec2, half: Vec2) => boolean {
+  const taken: Rect[] = [];
+  return (middle, half) => {
+    const place = around(middle, ...half);
+    if (taken.some((other) => overlap(place, other))) return false;
+    taken.push(place);
+    return true;
+  };
+}
+
+/**
+ * Runs along the lower rim, rises beside their faces, slopes on their stretch. A number without
+ * room is left out.
+ */
 export function Dimensions() {
   if (!layers.value.has("dimensions")) return null;
   const points = shown();
@@ -65,6 +84,7 @@ export function Dimensions() {
   const { left, right, bottom } = canvasBox.value;
   const y = bottom - 26;
   const chosen = selection.value;
+  const fits = room();
   const segments = points.slice(0, -1).map((a, i) => ({ i, a, b: points[i + 1]! }));
   return (
     <g>
@@ -81,6 +101,7 @@ export function Dimensions() {
               a={a}
               b={b}
               selected={chosen.includes(i + 1) || chosen.includes(i)}
+              labelled={fits(riseLabel(a, b), LABEL)}
               edit={edit("rise")}
             />
           );
@@ -96,10 +117,8 @@ export function Dimensions() {
               class="dim"
               d={`M${x0} ${y}H${x1}M${px(a[0])} ${y - 4}v8M${px(b[0])} ${y - 4}v8`}
             />
-            {wide > 44 && (
+            {wide > 44 && fits([middle, y], LABEL) && (
               <Editable
-                x={middle}
-                y={y + 4}
                 label={`${end && kind === "flat" ? "flat, run" : "Run"} ${fixed(b[0] - a[0], 3)} m`}
                 edit={edit("run")}
               >
@@ -109,7 +128,7 @@ export function Dimensions() {
                 </text>
               </Editable>
             )}
-            {kind === "slope" && wide > 90 && (
+            {kind === "slope" && wide > 90 && fits(slopeLabel(a, b), SLOPE) && (
               <SlopeLabel
                 a={[px(a[0]), py(a[1])]}
                 b={[px(b[0]), py(b[1])]}
@@ -121,6 +140,18 @@ export function Dimensions() {
       })}
     </g>
   );
+}
+
+/** Below the middle of the stretch. */
+function slopeLabel(a: Vec2, b: Vec2): Vec2 {
+  const { px, py } = projection.value;
+  return [px((a[0] + b[0]) / 2), py((a[1] + b[1]) / 2) + 14];
+}
+
+/** Inside the ground, beside the middle of the face. */
+function riseLabel(a: Vec2, b: Vec2): Vec2 {
+  const { px, py } = projection.value;
+  return [px(a[0]) + (b[1] > a[1] ? 28 : -28), py((a[1] + b[1]) / 2)];
 }
 
 function SlopeLabel({ a, b, text }: { a: Vec2; b: Vec2; text: string }) {
@@ -143,36 +174,33 @@ interface RiseProps {
   a: Vec2;
   b: Vec2;
   selected: boolean;
+  labelled: boolean;
   edit: () => void;
 }
 
-function Rise({ a, b, selected, edit }: RiseProps) {
+function Rise({ a, b, selected, labelled, edit }: RiseProps) {
   const { px, py } = projection.value;
   const up = b[1] > a[1];
   const side = up ? 7 : -7;
   const x = px(a[0]) + side;
   const [y0, y1] = [py(a[1]), py(b[1])];
+  const middle = (y0 + y1) / 2;
   const label = fixed(Math.abs(b[1] - a[1]), 3);
   return (
     <g class={selected ? "rise sel" : "rise"}>
       <path d={`M${x} ${y0 + (up ? -3 : 3)}V${y1 + (up ? 4 : -4)}`} />
-      <Editable x={x} y={(y0 + y1) / 2} label={`Rise ${label} m`} edit={edit}>
-        <text
-          class="rl"
-          x={x + (up ? 6 : -6)}
-          y={(y0 + y1) / 2 + 4}
-          text-anchor={up ? "start" : "end"}
-        >
-          {label}
-        </text>
-      </Editable>
+      {labelled && (
+        <Editable label={`Rise ${label} m`} edit={edit}>
+          <text class="rl" x={x + (up ? 6 : -6)} y={middle + 4} text-anchor={up ? "start" : "end"}>
+            {label}
+          </text>
+        </Editable>
+      )}
     </g>
   );
 }
 
 interface EditableProps {
-  x: number;
-  y: number;
   label: string;
   edit: () => void;
   children: preact.ComponentChildren;

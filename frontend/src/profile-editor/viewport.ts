@@ -62,23 +62,26 @@ export function zoomAt(x: number, y: number, factor: number): void {
   view.value = { scale, x: wx - (x - box.left) / scale, z: wz - (box.bottom - y) / scale };
 }
 
+/** Room for the end corners at the rim, and for the dimensions below the ground [px]. */
+const SIDE = 16;
+const BELOW = 48;
+
 /** Show the part between the long flat ends, with room for the robot above it. */
 export function fit(points: Points): void {
   const box = canvasBox.peek();
-  const width = box.right - box.left;
-  const height = box.bottom - box.top;
+  const width = box.right - box.left - 2 * SIDE;
+  const height = box.bottom - box.top - BELOW;
   if (width <= 0) return;
   const inner = points.length > 2 ? points.slice(1, -1) : points;
   const all = points.length > 1 ? extent(points) : { x: [-0.75, 1.8] as Vec2, z: [0, 0] as Vec2 };
   const mid = points.length > 2 ? extent(inner) : all;
   const x0 = Math.max(all.x[0], mid.x[0] - 0.75);
   const x1 = Math.min(all.x[1], mid.x[1] + 0.7);
-  const z0 = all.z[0] - 0.13;
-  const z1 = all.z[1] + 0.52;
-  const scale = Math.min(MOST, Math.max(LEAST, Math.min(width / (x1 - x0), height / (z1 - z0))));
+  const tall = all.z[1] + 0.52 - all.z[0];
+  const scale = Math.min(MOST, Math.max(LEAST, Math.min(width / (x1 - x0), height / tall)));
   fitted.value = scale;
   const spare = width / scale - (x1 - x0);
-  view.value = { scale, x: x0 - spare * 0.4, z: z0 };
+  view.value = { scale, x: x0 - SIDE / scale - spare * 0.4, z: all.z[0] - BELOW / scale };
 }
 
 /** Bring a place to the middle without changing the zoom. */
