@@ -65,8 +65,12 @@ const tint = computed<Tint | null>(() => {
 });
 
 export function Plots() {
-  if (!source.value.plan && !source.value.run) {
-    return <div class="plots none">Tracking plots appear when there is a plan.</div>;
+  const { plan: shown, run: drive } = source.value;
+  if (!drive && !shown?.poses.length) {
+    const why = shown
+      ? "No pose was found, so there is nothing to plot."
+      : "Tracking plots appear when there is a plan.";
+    return <div class="plots none">{why}</div>;
   }
   const dim = run.value && !shownRun.value && !running.value;
   return (

@@ -2,17 +2,24 @@
 
 import { computed } from "@preact/signals";
 import type { Problem } from "../api/types";
-import { fixed } from "../geometry/format";
-import { canUndo, drawing, previous, undo } from "../state/drawing";
+import { degrees, fixed } from "../geometry/format";
+import { canUndo, undo } from "../state/drawing";
 import { plan, preview } from "../state/planning";
 import { isNarrow } from "../state/view";
 import { Icon } from "../ui/icon";
-import type { Rect } from "./place";
+import { lastEdit } from "./last-edit";
+import { around, overlap, type Rect } from "./place";
 import { canvasBox, centreOn, projection, size } from "./viewport";
 
 /** Needed amounts above this mean: no amount is enough. */
 const HOPELESS = 100;
 const LENGTHS = new Set(["clearance", "reach"]);
+
+const angle = (radians: number) => `${fixed(degrees(radians), 1)}°`;
+
+/** The service's sentence with the units of the numbers below it. */
+const inDegrees = (sentence: string) =>
+  sentence.replace(/(\d+(?:\.\d+)?) rad\b/g, (_, radians: string) => angle(Number(radians)));
 
 /** A limit in the problem's own unit; lengths below 1 m in mm. */
 function quantity({ limit, kind }: Problem, value: number): string {
@@ -21,35 +28,41 @@ function quantity({ limit, kind }: Problem, value: number): string {
   if (unit === "m" || (!unit && LENGTHS.has(kind))) {
     return Math.abs(value) < 0.1 ? `${fixed(value * 1000, 0)} mm` : `${fixed(value, 3)} m`;
   }
-  if (unit === "rad") return `${fixed((value * 180) / Math.PI, 1)}°`;
+  if (unit === "rad") return angle(value);
   if (unit === "Nm" || kind === "torque") return `${fixed(value, 1)} Nm`;
   return fixed(value, 2) + (unit && unit !== "1" ? ` ${unit}` : "");
-}
-
-/** What the last edit changed, if it made one face higher or lower. */
-function lastEdit(): string | null {
-  const before = previous.value?.points;
-  const after = drawing.value.points;
-  if (!before || before.length !== after.length) return null;
-  for (let i = 0; i + 1 < after.length; i++) {
-    const upright = Math.abs(after[i + 1]![0] - after[i]![0]) < 1e-6;
-    const old = before[i + 1]![1] - before[i]![1];
-    const now = after[i + 1]![1] - after[i]![1];
-    if (upright && Math.abs(now - old) > 1e-4) {
-      const verb = Math.abs(now) > Math.abs(old) ? "raised" : "lowered";
-      return `This edit ${verb} the riser from ${fixed(Math.abs(old), 3)} to ${fixed(Math.abs(now), 3)} m.`;
-    }
-  }
-  return null;
 }
 
 /** Poses that were found since are newer than the problem. */
 const problem = computed(() => (preview.value ? null : (plan.value?.problem ?? null)));
 
-/** Where the card lies; what else floats over the canvas keeps off it. */
-export const card = computed<Rect | null>(
-  () => problem.value && { left: 52, top: 56, width: isNarrow.value ? 292 : 340, height: 168 },
-);
+/** Of the ring around the spot [px]. */
+const RADIUS = 13;
+/** Of the card at its fullest; narrow pages show less on it [px]. */
+const WIDE = { width: 340, height: 190 };
+const NARROW = { width: 292, height: 144 };
+
+/**
+ * Where the card lies: upper left, or where it leaves the spot open. What else floats over the
+ * canvas keeps off it.
+ */
+export const card = computed<Rect | null>(() => {
+  const stop = problem.value;
+  if (!stop) return null;
+  const { left, right, top, bottom } = canvasBox.value;
+  const { px, py } = projection.value;
+  const ring = around([px(stop.at[0]), py(stop.at[1])], 2 * RADIUS);
+  const extent = isNarrow.value ? NARROW : WIDE;
+  const far = right - extent.width - 16;
+  const low = bottom - extent.height - 16;
+  const places = [
+    [left + 16, top + 36],
+    [far, top + 36],
+    [left + 16, low],
+    [far, low],
+  ].map(([x, y]) => ({ left: x!, top: y!, ...extent }));
+  return places.find((place) => !overlap(place, ring)) ?? places[0]!;
+});
 
 export function Obstruction() {
   const stop = problem.value;
@@ -61,14 +74,15 @@ export function Obstruction() {
   const visible = x > box.left && x < box.right && y > box.top && y < box.bottom;
   const edge = at.left + at.width;
   const bend = Math.max(edge + 24, x - 35);
+  const from = at.top + 54;
   const sentence = lastEdit();
   return (
     <>
       {visible && (
         <svg class="whyline" width={size.value.width} height={size.value.height} aria-hidden="true">
-          <circle cx={x} cy={y} r={13} />
+          <circle cx={x} cy={y} r={RADIUS} />
           {!isNarrow.value && x > edge + 20 && (
-            <path d={`M${edge} ${at.top + 54}H${bend}L${x} ${y - 13}`} />
+            <path d={`M${edge} ${from}H${bend}L${x} ${y < from ? y + RADIUS : y - RADIUS}`} />
           )}
         </svg>
       )}
@@ -79,7 +93,7 @@ export function Obstruction() {
       >
         <h4>
           <Icon name="warning" />
-          {stop.message.charAt(0).toUpperCase() + stop.message.slice(1)}
+          {inDegrees(stop.message.charAt(0).toUpperCase() + stop.message.slice(1))}
         </h4>
         <dl>
           <dt>where</dt>

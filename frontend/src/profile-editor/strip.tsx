@@ -1,10 +1,17 @@
 /** Four margins below the profile, on its x axis: a thin one lies under the spot that causes it. */
 
-import type { Plan } from "../api/types";
+import type { Plan, Problem } from "../api/types";
 import { poseTimes } from "../geometry/frames";
 import { plan, planKept, preview } from "../state/planning";
 import { frame, playing, seek } from "../state/playback";
-import { CLASS_NAMES, MARGINS, type MarginClass, marginClass, worst } from "./margins";
+import {
+  CLASS_NAMES,
+  MARGINS,
+  type MarginClass,
+  type MarginName,
+  marginClass,
+  worst,
+} from "./margins";
 import { canvasBox, projection, STRIP, size } from "./viewport";
 
 const LABELS = 147;
@@ -91,7 +98,12 @@ export function MarginStrip() {
                 <path key={c} class={`m${c}`} d={d} />
               ))}
               {stop !== null && (
-                <Beyond from={stop} to={right} y={y} bad={problemRow(shown!) === row} />
+                <Beyond
+                  from={stop}
+                  to={right}
+                  y={y}
+                  bad={problemMargin(shown!.problem!) === kind.name}
+                />
               )}
             </g>
             <KeyTicks row={row} y={y} left={left} right={right} />
@@ -161,18 +173,10 @@ function KeyTicks({
   );
 }
 
-/** Which row the problem belongs to. */
-function problemRow(shown: Plan): number {
-  const rows: Record<string, number> = {
-    clearance: 0,
-    start: 0,
-    goal: 0,
-    statics: 1,
-    reach: 0,
-    torque: 3,
-    joint_limit: 0,
-  };
-  return rows[shown.problem!.kind] ?? 0;
+/** The margin that the problem is about; none of them tells of reach, joint range or height. */
+function problemMargin({ kind, limit }: Problem): MarginName | null {
+  if (kind === "statics") return limit?.quantity.startsWith("friction") ? "friction" : "com";
+  return kind === "clearance" || kind === "torque" ? kind : null;
 }
 
 function Beyond({ from, to, y, bad }: { from: number; to: number; y: number; bad: boolean }) {
