@@ -3,7 +3,7 @@
 import { fixed, millimetres } from "./geometry/format";
 import { worst } from "./profile-editor/margins";
 import { connected, latency } from "./state/connection";
-import { plan } from "./state/planning";
+import { outdated, plan } from "./state/planning";
 
 const KEYS = [
   ["Arrows", "1 cm"],
@@ -26,7 +26,8 @@ export function Status() {
           {shown.problem && "up to the problem"}
         </span>
       )}
-      {shown && !shown.problem && <Certified />}
+      {shown && outdated.value && <span>of the drawing before the latest edit</span>}
+      {shown && !shown.problem && !outdated.value && <Certified />}
       <span class="keys">
         {KEYS.map(([key, does]) => (
           <span key={key}>

@@ -2,9 +2,8 @@
 
 import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Vec2 } from "../api/types";
-import { connected } from "../state/connection";
 import { drawing } from "../state/drawing";
-import { preview, slow } from "../state/planning";
+import { outdated, preview } from "../state/planning";
 import { tool } from "../state/view";
 import { DimensionField } from "./dimension-field";
 import { EmptyCanvas } from "./empty";
@@ -167,8 +166,8 @@ export function Editor() {
     <section
       class="edit"
       aria-label="Profile editor"
-      data-faded={slow.value && !preview.value && connected.value ? "" : undefined}
-      data-preview={preview.value ? "" : undefined}
+      data-faded={outdated.value ? "" : undefined}
+      data-preview={preview.value && !outdated.value ? "" : undefined}
     >
       <Toolbar />
       <div class="canvas" ref={holder}>

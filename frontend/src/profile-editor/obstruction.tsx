@@ -4,7 +4,7 @@ import { computed } from "@preact/signals";
 import type { Problem } from "../api/types";
 import { degrees, fixed } from "../geometry/format";
 import { canUndo, undo } from "../state/drawing";
-import { plan, preview } from "../state/planning";
+import { outdated, plan, preview } from "../state/planning";
 import { isNarrow } from "../state/view";
 import { Icon } from "../ui/icon";
 import { lastEdit } from "./last-edit";
@@ -75,7 +75,7 @@ export function Obstruction() {
   const edge = at.left + at.width;
   const bend = Math.max(edge + 24, x - 35);
   const from = at.top + 54;
-  const sentence = lastEdit();
+  const sentence = outdated.value ? null : lastEdit();
   return (
     <>
       {visible && (

@@ -57,6 +57,10 @@ const requestKey = computed(() => JSON.stringify(request.value));
 
 /** The shown plan answers an older question than the one on screen. */
 export const stale = computed(() => shownKey.value !== requestKey.value);
+/** It does so for longer than anyone would overlook: with a slow answer, or none for now. */
+export const outdated = computed(() =>
+  connected.value ? slow.value && !preview.value : stale.value,
+);
 
 function ask(by: Method, weights: PlanRequest["weights"]): PlanRequest {
   const state = drawing.value;
