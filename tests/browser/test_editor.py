@@ -276,6 +276,18 @@ def test_files_are_dropped_and_text_is_pasted(product: Product) -> None:
     assert product.has_corners(4).planned().corner(2) == (1.2, pytest.approx(0.1))
 
 
+def test_a_profile_and_a_plan_that_were_downloaded_open_again(product: Product) -> None:
+    for name in ("plan.json", "curb-015.json"):
+        product.choose_terrain("curb-015").page.get_by_role("button", name="Download").click()
+        schema = "plan" if name == "plan.json" else "terrain"
+        with product.page.expect_download() as saved:
+            product.page.get_by_role("menuitem", name=f"JSON stairwright/{schema}/1").click()
+        product.fresh("flat").has_corners(2)
+        product.drop(name, saved.value.path().read_text()).has_corners(4).planned()
+        assert product.corner(2) == (0.0, pytest.approx(0.15))
+    assert saved.value.suggested_filename == "curb-015.json"
+
+
 def test_a_mesh_is_cut_into_a_profile(product: Product) -> None:
     product.drop("kerb.stl", _box(0.0, 2.0, 0.12))
     dialog = product.page.get_by_role("dialog", name=re.compile("^Cut kerb.stl"))

@@ -1,6 +1,7 @@
-/** Every export of the plan and of the rollout. */
+/** Every export of the profile, of the plan and of the rollout. */
 
 import { exportUrl } from "../api/client";
+import { drawing, isEmpty, terrainDocument } from "../state/drawing";
 import { plan } from "../state/planning";
 import { run, runStale } from "../state/rollouts";
 import { isNarrow } from "../state/view";
@@ -43,10 +44,11 @@ export function DownloadMenu() {
       buttonClass={isNarrow.value ? "btn sq" : "btn"}
       panelClass="downloads"
       align="right"
-      disabled={!shown && !result}
+      disabled={isEmpty.value && !result}
     >
       {(close) => (
         <>
+          {!isEmpty.value && <Profile close={close} />}
           {shown && (
             <Exports title="Plan" kind="plans" id={shown.id} formats={PLAN} close={close} />
           )}
@@ -64,6 +66,28 @@ export function DownloadMenu() {
         </>
       )}
     </Menu>
+  );
+}
+
+/** The drawing itself: what is dropped here or given to the command line opens it again. */
+function Profile({ close }: { close: () => void }) {
+  const document = terrainDocument(drawing.value);
+  const text = encodeURIComponent(JSON.stringify(document, null, 2));
+  return (
+    <>
+      <div class="head">Profile</div>
+      <a
+        class="item"
+        role="menuitem"
+        tabIndex={-1}
+        href={`data:application/json,${text}`}
+        download={`${document.name}.json`}
+        onClick={() => setTimeout(close)}
+      >
+        <b>JSON</b>
+        <small>{document.schema}</small>
+      </a>
+    </>
   );
 }
 

@@ -28,13 +28,13 @@ export function ImportZone() {
       const file = event.dataTransfer?.files[0];
       if (!file) return;
       event.preventDefault();
-      takeFile(file);
+      void takeFile(file);
     };
     const paste = (event: ClipboardEvent) => {
       if (isField(event.target)) return;
       const file = event.clipboardData?.files[0];
       const text = event.clipboardData?.getData("text/plain") ?? "";
-      if (file) takeFile(file);
+      if (file) void takeFile(file);
       else if (text.trim()) takeText(text);
     };
     addEventListener("dragover", over);

@@ -76,9 +76,22 @@ export async function generate(parameters: Record<string, unknown>): Promise<boo
 const MESH = /\.(stl|obj)$/i;
 
 /** A dropped or chosen file; meshes ask for a plane first. */
-export function takeFile(file: File): void {
+export async function takeFile(file: File): Promise<void> {
   if (MESH.test(file.name)) meshToCut.value = file;
-  else void importFile(file, {});
+  else await importFile(await terrainIn(file), {});
+}
+
+/** A plan holds the terrain that it is for; any other file is taken as it is. */
+async function terrainIn(file: File): Promise<File> {
+  if (!/\.json$/i.test(file.name)) return file;
+  try {
+    const document = JSON.parse(await file.text());
+    if (!/^stairwright\/plan\//.test(document.schema) || !document.terrain) return file;
+    return new File([JSON.stringify(document.terrain)], file.name, { type: file.type });
+  } catch {
+    // What is wrong with it is for the service to say.
+    return file;
+  }
 }
 
 export async function importFile(file: File, fields: Record<string, string>): Promise<boolean> {
@@ -99,5 +112,5 @@ export function takeText(text: string): void {
     : /(^|\n)\s*points\s*:/.test(trimmed)
       ? "yaml"
       : "csv";
-  takeFile(new File([trimmed], `pasted.${ending}`, { type: "text/plain" }));
+  void takeFile(new File([trimmed], `pasted.${ending}`, { type: "text/plain" }));
 }

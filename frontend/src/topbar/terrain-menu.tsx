@@ -61,7 +61,7 @@ function TerrainPanel({ close }: { close: () => void }) {
           accept=".csv,.json,.yaml,.yml,.stl,.obj"
           onChange={(event) => {
             const chosen = event.currentTarget.files?.[0];
-            if (chosen) takeFile(chosen);
+            if (chosen) void takeFile(chosen);
             close();
           }}
         />
