@@ -79,7 +79,7 @@ function SnapMenu() {
     </>
   );
   return (
-    <Menu label="Snapping" named button={button} buttonClass="t">
+    <Menu label="Snapping" named button={button} buttonClass="t" panelClass="snaps">
       {(close) => (
         <>
           <div class="head">Grid (Alt suspends)</div>
