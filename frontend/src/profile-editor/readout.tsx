@@ -51,6 +51,7 @@ export function Readout() {
   };
   const field = (axis: 0 | 1) => (
     <NumberField
+      key={`${i} ${axis}`}
       label={axis === 0 ? "x of the corner in metres" : "z of the corner in metres"}
       value={p[axis]}
       min={-100}

@@ -32,6 +32,14 @@ export function NumberField(props: NumberFieldProps) {
   const shown = text ?? format(value);
   const parsed = text === null ? value : parseNumber(text);
   const valid = text === null || (Number.isFinite(parsed) && parsed >= min && parsed <= max);
+  const complaint = Number.isFinite(parsed)
+    ? `Between ${format(min)} and ${format(max)}`
+    : `Not a number: ${format(value)} stays`;
+
+  useEffect(() => {
+    // A value that was set elsewhere is newer than text that was left behind.
+    if (document.activeElement !== input.current) setText(null);
+  }, [value]);
 
   useEffect(() => {
     if (!props.focus) return;
@@ -45,12 +53,13 @@ export function NumberField(props: NumberFieldProps) {
     if (Number.isFinite(number) && number >= min && number <= max) props.onChange(number);
   };
   const finish = () => {
-    setText(null);
+    // What cannot be read stays, to be seen and mended; nothing at all is no entry.
+    if (valid || shown.trim() === "") setText(null);
     props.onDone?.();
   };
   const onKeyDown = (event: KeyboardEvent) => {
     event.stopPropagation();
-    if (event.key === "Enter") finish();
+    if (event.key === "Enter" && valid) finish();
     else if (event.key === "Escape") {
       setText(null);
       props.onCancel?.();
@@ -73,7 +82,7 @@ export function NumberField(props: NumberFieldProps) {
       class={`num ${props.class ?? ""}`}
       aria-label={label}
       aria-invalid={!valid}
-      title={valid ? undefined : `Between ${format(min)} and ${format(max)}`}
+      title={valid ? undefined : complaint}
       disabled={props.disabled}
       value={shown}
       autocomplete="off"
