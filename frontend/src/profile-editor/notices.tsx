@@ -96,7 +96,7 @@ export function FirstHint() {
   if (activity.value !== "idle" || run.value || !planKept.value) return null;
   const i = Math.min(
     points.length - 2,
-    points.findIndex((p, k) => k > 0 && p[1] > points[k - 1]![1]),
+    points.findLastIndex((p, k) => k > 0 && p[1] > points[k - 1]![1]),
   );
   const p = points[i];
   if (!p) return null;
