@@ -5,7 +5,7 @@ import { hasFailed } from "../api/types";
 import { live, livePlan } from "../state/live";
 import { plan } from "../state/planning";
 import { shownRun } from "../state/playback";
-import { activity, progress, run, runB, runPlan, showProgress } from "../state/rollouts";
+import { progress, run, runB, running, runPlan } from "../state/rollouts";
 import { compare, robot } from "../state/setup";
 import { isNarrow } from "../state/view";
 import type { Tint } from "./chart";
@@ -25,13 +25,13 @@ export const shownPanels = signal<readonly PanelId[]>([
 const MOST_NARROW = 4;
 
 /** While a rollout runs, its lines grow on the plan's bands. */
-const running = computed(() => activity.value === "running" && showProgress.value);
+const growing = computed(() => running.value === "a");
 
 const source = computed<Source>(() => {
   const limit = robot.value?.limit;
-  const result = running.value ? null : run.value;
-  const driven = running.value ? livePlan.value : runPlan.value;
-  const drive = running.value ? live.value : run.value;
+  const result = growing.value ? null : run.value;
+  const driven = growing.value ? livePlan.value : runPlan.value;
+  const drive = growing.value ? live.value : run.value;
   return {
     plan: (drive && driven) ?? plan.value,
     run: drive,
@@ -50,7 +50,7 @@ const panels = computed(() => {
 const tint = computed<Tint | null>(() => {
   const shown = source.value.plan;
   const total = shown?.timing.total ?? 0;
-  if (running.value) {
+  if (growing.value) {
     const times = live.value?.series.time;
     return { from: 0, to: times?.[times.length - 1] ?? progress.value * total, kind: "done" };
   }
@@ -72,7 +72,7 @@ export function Plots() {
       : "Tracking plots appear when there is a plan.";
     return <div class="plots none">{why}</div>;
   }
-  const dim = run.value && !shownRun.value && !running.value;
+  const dim = run.value && !shownRun.value && !growing.value;
   return (
     <div class={dim ? "plots older" : "plots"} style={{ "--count": panels.value.length }}>
       {panels.value.map((panel) => (

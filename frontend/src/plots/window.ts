@@ -4,12 +4,12 @@ import { computed, effect, signal } from "@preact/signals";
 import type { Drive } from "../api/types";
 import { live, livePlan } from "../state/live";
 import { plannedEnd } from "../state/playback";
-import { activity, run, runPlan } from "../state/rollouts";
+import { run, runPlan } from "../state/rollouts";
 
 const chosen = signal<[number, number] | null>(null);
 /** A rollout of the previous plan keeps its own axis. */
 const end = computed(() => {
-  if (activity.value === "running") return runningEnd();
+  if (livePlan.value) return runningEnd();
   const times = run.value?.series.time;
   if (!times) return plannedEnd.value;
   const planned = run.value?.outcome === "success" ? 0 : (runPlan.value?.timing.total ?? 0);

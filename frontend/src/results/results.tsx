@@ -3,7 +3,7 @@
 import type { Metrics, Outcome, Plan, Rollout } from "../api/types";
 import { degrees, fixed, took } from "../geometry/format";
 import { live, livePlan } from "../state/live";
-import { plan, planB } from "../state/planning";
+import { plan } from "../state/planning";
 import {
   activity,
   eta,
@@ -12,9 +12,10 @@ import {
   progress,
   run,
   runB,
+  running,
   runPlan,
+  runPlanB,
   runStale,
-  showProgress,
 } from "../state/rollouts";
 import { compare, robot } from "../state/setup";
 import { isNarrow } from "../state/view";
@@ -38,7 +39,7 @@ export function Results() {
 }
 
 function Content() {
-  if (activity.value === "running" && showProgress.value) return <Running />;
+  if (running.value === "a") return <Running />;
   if (activity.value === "failed" || activity.value === "cancelled") return <NotRun />;
   if (run.value) return isNarrow.value ? <Line result={run.value} /> : <Card result={run.value} />;
   if (plan.value?.problem) {
@@ -198,15 +199,22 @@ function Card({ result }: { result: Rollout }) {
                 {row.title} {row.unit && <small>{row.unit}</small>}
               </th>
               {cell(row, result, runPlan.value, "a")}
-              {other && cell(row, other, planB.value, "b")}
+              {other && cell(row, other, runPlanB.value, "b")}
             </tr>
           ))}
         </tbody>
       </table>
       {result.reason && result.outcome !== "success" && <p>{result.reason}</p>}
-      {compare.value && failureB.value && !other && <p>B has no rollout: {failureB.value}</p>}
+      <WithoutB />
     </div>
   );
+}
+
+/** Why A stands alone while two are compared. */
+function WithoutB() {
+  if (!compare.value || runB.value) return null;
+  if (running.value === "b") return <p>B is running, {fixed(progress.value * 100, 0)} %.</p>;
+  return failureB.value && <p>B has no rollout: {failureB.value}</p>;
 }
 
 /** On narrow pages the card is one line. */

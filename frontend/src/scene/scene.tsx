@@ -4,9 +4,9 @@ import { hasFailed } from "../api/types";
 import { fixed } from "../geometry/format";
 import { connected } from "../state/connection";
 import { isEmpty } from "../state/drawing";
+import { livePlan } from "../state/live";
 import { plan } from "../state/planning";
 import { duration, shownRun, shownTime } from "../state/playback";
-import { activity } from "../state/rollouts";
 import { swapped } from "../state/view";
 import { Icon } from "../ui/icon";
 import { Menu, MenuItem } from "../ui/menu";
@@ -112,7 +112,7 @@ function Tag() {
   }
   return (
     <div class="tag2">
-      {activity.value === "running" && <span class="live" />}
+      {livePlan.value && <span class="live" />}
       {rollout ? "rollout" : "plan"} · t {t} s
     </div>
   );

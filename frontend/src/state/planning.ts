@@ -201,14 +201,14 @@ function askForPath(before: Question, patient: boolean): void {
   queue.ask({ which: "a", request: meant, key: before.key, asked: before.asked });
 }
 
-function askForB(question: PlanRequest, key: string): void {
+/** The question of B: the same without pose optimisation. */
+export function unoptimised(question: PlanRequest): PlanRequest {
   const { weights: _, ...rest } = question;
-  queue.ask({
-    which: "b",
-    asked: performance.now(),
-    request: { ...rest, method: "nominal" },
-    key,
-  });
+  return { ...rest, method: "nominal" };
+}
+
+function askForB(question: PlanRequest, key: string): void {
+  queue.ask({ which: "b", asked: performance.now(), request: unoptimised(question), key });
 }
 
 function fail(error: unknown, question: Question, newest: boolean): void {

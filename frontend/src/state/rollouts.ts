@@ -10,10 +10,10 @@ import {
   postPlan,
   postRollout,
 } from "../api/client";
-import type { Job, Plan, Rollout } from "../api/types";
+import type { Job, Plan, PlanRequest, Rollout } from "../api/types";
 import { report } from "./connection";
-import { type Chunk, endLive, grow, startLive } from "./live";
-import { plan, planB, request, settled, stale } from "./planning";
+import { type Chunk, endLive, grow, livePlan, startLive } from "./live";
+import { plan, planB, request, settled, stale, unoptimised } from "./planning";
 import { compare, controller, seed } from "./setup";
 
 export type Activity = "idle" | "running" | "cancelled" | "failed";
@@ -22,6 +22,7 @@ export const run = signal<Rollout | null>(null);
 export const runB = signal<Rollout | null>(null);
 /** The plan that the shown rollout ran: it may be older than the shown plan. */
 export const runPlan = signal<Plan | null>(null);
+export const runPlanB = signal<Plan | null>(null);
 export const activity = signal<Activity>("idle");
 /** Why a rollout could not be run (not: how it ended). */
 export const failure = signal<string | null>(null);
@@ -31,6 +32,12 @@ export const progress = signal(0);
 export const eta = signal<number | null>(null);
 /** Progress shows only for runs that take longer than a blink. */
 export const showProgress = signal(false);
+
+/** Which of the two is under way, once that shows. */
+export const running = computed(() => {
+  if (activity.value !== "running" || !showProgress.value) return null;
+  return livePlan.value ? "a" : "b";
+});
 
 const BLINK = 300;
 const POLL = 400;
@@ -45,93 +52,106 @@ export const canRun = computed(
   () => plan.value?.status === "feasible" && activity.value !== "running",
 );
 
-let current: string | null = null;
-let cancelled = false;
+/** The job under way: A and, while comparing, B. Once given up it changes nothing any more. */
+let job = new AbortController();
+let blink: ReturnType<typeof setTimeout> | undefined;
 
 export async function startRollout(): Promise<void> {
-  if (!canRun.peek()) return;
   await settled();
   const chosen = plan.peek();
-  if (chosen?.status !== "feasible" || stale.peek()) return;
-  cancelled = false;
+  const question = request.peek();
+  if (!chosen || !question || stale.peek() || !canRun.peek()) return;
+  const { signal } = begin(chosen);
+  try {
+    const done = await runOne(chosen, signal, grow);
+    batch(() => {
+      forgetResults();
+      run.value = done;
+      runPlan.value = chosen;
+      endLive();
+    });
+    if (compare.peek()) await runOther(question, signal);
+    if (!signal.aborted) finish("idle");
+  } catch (error) {
+    if (signal.aborted) return;
+    report(error);
+    failure.value = sentence(error);
+    finish("failed");
+  }
+}
+
+function begin(chosen: Plan): AbortController {
+  job = new AbortController();
+  blink = setTimeout(() => {
+    showProgress.value = true;
+  }, BLINK);
   batch(() => {
     activity.value = "running";
     failure.value = null;
     progress.value = 0;
     eta.value = null;
-  });
-  const blink = setTimeout(() => {
-    showProgress.value = true;
-  }, BLINK);
-  try {
     startLive(chosen);
-    const done = await runOne(
-      chosen,
-      (value) => {
-        progress.value = value;
-      },
-      grow,
-    );
-    batch(() => {
-      endLive();
-      run.value = done;
-      runB.value = null;
-      runPlan.value = chosen;
-      activity.value = "idle";
-    });
-    await runOther();
-  } catch (error) {
-    report(error);
-    activity.value = cancelled ? "cancelled" : "failed";
-    if (!cancelled) failure.value = error instanceof Error ? error.message : String(error);
-  } finally {
-    endLive();
-    clearTimeout(blink);
+  });
+  return job;
+}
+
+function finish(how: Activity): void {
+  clearTimeout(blink);
+  batch(() => {
+    activity.value = how;
     showProgress.value = false;
-    current = null;
-  }
+    endLive();
+  });
 }
 
 /** B after A; that it cannot be run is a result too, and no failure of A. */
-async function runOther(): Promise<void> {
-  const other = planB.peek();
-  failureB.value = null;
-  if (!compare.peek() || !other) return;
-  if (other.problem && other.poses.length < 2) {
-    failureB.value = other.problem.message;
-    return;
-  }
+async function runOther(question: PlanRequest, signal: AbortSignal): Promise<void> {
   try {
-    runB.value = await runOne(other, () => undefined);
+    progress.value = 0;
+    const other = await postPlan(unoptimised(question), signal);
+    if (other.problem && other.poses.length < 2) throw new Error(other.problem.message);
+    const done = await runOne(other, signal);
+    batch(() => {
+      runB.value = done;
+      runPlanB.value = other;
+    });
   } catch (error) {
+    if (signal.aborted) return;
     report(error);
-    failureB.value = error instanceof Error ? error.message : String(error);
+    failureB.value = sentence(error);
   }
 }
 
-export async function cancelRollout(): Promise<void> {
-  cancelled = true;
-  if (current) await cancelJob(current).catch(report);
+/** Gives up what is under way: A with all of it, B alone where A has arrived. */
+export function cancelRollout(): void {
+  job.abort();
+  if (running.peek() === "b") {
+    failureB.value = "it was cancelled.";
+    finish("idle");
+  } else {
+    finish("cancelled");
+  }
 }
 
 async function runOne(
   which: Plan,
-  onProgress: (value: number) => void,
+  signal: AbortSignal,
   onSeries?: (chunk: Chunk) => void,
 ): Promise<Rollout> {
-  const job = await submit(which);
-  current = job.id;
-  if (cancelled) await cancelJob(job.id);
-  const onState = (state: Job) => {
-    onProgress(state.progress);
-    eta.value = state.eta;
-  };
-  const end = await follow(job, onState, onSeries);
-  if (end.state === "cancelled") cancelled = true;
-  if (end.state !== "done" || !end.result) {
-    throw new Error(end.error?.detail ?? end.error?.title ?? `The rollout was ${end.state}.`);
+  const { id } = await submit(which);
+  try {
+    signal.throwIfAborted();
+    const end = await follow(id, signal, onSeries);
+    if (end.state !== "done" || !end.result) {
+      throw new Error(end.error?.detail ?? end.error?.title ?? `The rollout was ${end.state}.`);
+    }
+    const done = await getRollout(end.result.split("/").pop()!);
+    signal.throwIfAborted();
+    return done;
+  } catch (error) {
+    if (signal.aborted) await cancelJob(id).catch(report);
+    throw error;
   }
-  return getRollout(end.result.split("/").pop()!);
 }
 
 async function submit(which: Plan): Promise<Job> {
@@ -151,16 +171,23 @@ async function submit(which: Plan): Promise<Job> {
   }
 }
 
+const sentence = (error: unknown) => (error instanceof Error ? error.message : String(error));
+
 const over = (job: Job) => job.state !== "queued" && job.state !== "running";
 
+function onState(state: Job): void {
+  progress.value = state.progress;
+  eta.value = state.eta;
+}
+
 /** Follow the job's events to its end; poll where the stream breaks. */
-function follow(
-  job: Job,
-  onState: (job: Job) => void,
-  onSeries?: (chunk: Chunk) => void,
-): Promise<Job> {
+function follow(id: string, signal: AbortSignal, onSeries?: (chunk: Chunk) => void): Promise<Job> {
   return new Promise((resolve, reject) => {
-    const events = jobEvents(job.id);
+    const events = jobEvents(id);
+    signal.addEventListener("abort", () => {
+      events.close();
+      reject(signal.reason);
+    });
     events.addEventListener("job", (event) => {
       const state = JSON.parse((event as MessageEvent<string>).data) as Job;
       onState(state);
@@ -175,14 +202,15 @@ function follow(
     }
     events.onerror = () => {
       events.close();
-      poll(job.id, onState).then(resolve, reject);
+      poll(id, signal).then(resolve, reject);
     };
   });
 }
 
-async function poll(id: string, onState: (job: Job) => void): Promise<Job> {
+async function poll(id: string, signal: AbortSignal): Promise<Job> {
   for (;;) {
     const state = await getJob(id);
+    signal.throwIfAborted();
     onState(state);
     if (over(state)) return state;
     await new Promise((wait) => setTimeout(wait, POLL));
@@ -196,15 +224,24 @@ export async function restoreRollout(id: string, id2: string | null): Promise<vo
     run.value = first;
     runB.value = second;
     runPlan.value = plan.peek();
+    runPlanB.value = planB.peek();
   });
 }
 
+function forgetResults(): void {
+  run.value = null;
+  runB.value = null;
+  runPlan.value = null;
+  runPlanB.value = null;
+  failureB.value = null;
+}
+
+/** Another terrain: neither what came of the last rollout nor one under way means anything to it. */
 export function forgetRollout(): void {
+  job.abort();
   batch(() => {
-    run.value = null;
-    runB.value = null;
-    runPlan.value = null;
-    activity.value = "idle";
+    forgetResults();
     failure.value = null;
+    finish("idle");
   });
 }

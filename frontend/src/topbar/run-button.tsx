@@ -1,19 +1,11 @@
 /** Run rollout; while it runs, the progress and the way out stand in its place. */
 
 import { connected } from "../state/connection";
-import {
-  activity,
-  cancelRollout,
-  canRun,
-  eta,
-  progress,
-  showProgress,
-  startRollout,
-} from "../state/rollouts";
+import { cancelRollout, canRun, eta, progress, running, startRollout } from "../state/rollouts";
 import { Icon } from "../ui/icon";
 
 export function RunButton() {
-  if (activity.value === "running" && showProgress.value) {
+  if (running.value) {
     const percent = Math.round(progress.value * 100);
     const left = eta.value !== null && eta.value > 1 ? `${Math.round(eta.value)} s left` : null;
     return (
@@ -28,9 +20,10 @@ export function RunButton() {
           style={{ width: `${percent}%` }}
         />
         <span>
-          Running {percent} %{left && <small>{left}</small>}
+          Running {running.value === "b" && "B "}
+          {percent} %{left && <small>{left}</small>}
         </span>
-        <button type="button" class="x" onClick={() => void cancelRollout()}>
+        <button type="button" class="x" onClick={() => cancelRollout()}>
           <Icon name="close" />
           Cancel
         </button>

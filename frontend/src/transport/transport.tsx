@@ -19,7 +19,7 @@ import {
   time,
   togglePlay,
 } from "../state/playback";
-import { activity, progress, showProgress } from "../state/rollouts";
+import { progress, running } from "../state/rollouts";
 import { Icon } from "../ui/icon";
 import { IconButton } from "../ui/icon-button";
 import { Menu, MenuItem } from "../ui/menu";
@@ -81,7 +81,7 @@ const LEAP = 1;
 function Timeline() {
   const end = plannedEnd.value;
   const share = (t: number) => `${end > 0 ? Math.min(100, (t / end) * 100) : 0}%`;
-  const running = activity.value === "running" && showProgress.value;
+  const growing = running.value === "a";
   const failed = hasFailed(shownRun.value);
   const at = (event: PointerEvent) => {
     const rect = (event.currentTarget as HTMLElement).getBoundingClientRect();
@@ -127,8 +127,8 @@ function Timeline() {
       onKeyDown={onKeyDown}
     >
       <s
-        class={running ? "buf" : failed ? "fell" : ""}
-        style={{ width: running ? share(progress.value * end) : share(shownTime.value) }}
+        class={growing ? "buf" : failed ? "fell" : ""}
+        style={{ width: growing ? share(progress.value * end) : share(shownTime.value) }}
       />
       {keyTimes.value.map((at, k) => (
         <i key={k} style={{ left: share(at) }} title={`Key pose ${k + 1}`} />
