@@ -107,6 +107,19 @@ def test_running_can_be_cancelled(shared: Product, server: Any) -> None:
     assert product.run() == "success"  # and again, to the end
 
 
+def test_a_cancelled_rollout_leaves_the_plan_on_screen(shared: Product) -> None:
+    product = shared.fresh("ramp-30deg-025")
+    product.run()
+    shown = product.page.locator(".tag2")
+    assert shown.inner_text().startswith("rollout")
+    product.page.route("**/rollouts", lambda _: None)
+    product.page.get_by_role("button", name="Run rollout").click()
+    product.page.get_by_role("button", name="Cancel").click()
+    product.page.get_by_text("The rollout was stopped").wait_for()
+    assert shown.inner_text().startswith("plan")
+    product.page.unroute("**/rollouts")
+
+
 def test_a_and_b_are_one_rollout_to_wait_for_and_to_cancel(shared: Product) -> None:
     product = shared.fresh("ramp-30deg-025")
     page = product.page

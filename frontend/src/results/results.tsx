@@ -101,7 +101,7 @@ function NotRun() {
       </h2>
       <p>
         {cancelled
-          ? "The rollout was stopped; nothing of it is kept. Run it again when you like."
+          ? "The rollout was stopped; nothing of it is kept. Timeline and plots show the plan. Run it again when you like."
           : failure.value}
       </p>
     </>

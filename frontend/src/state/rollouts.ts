@@ -95,12 +95,14 @@ function begin(chosen: Plan): AbortController {
   return job;
 }
 
+/** A run that did not get to its end leaves the plan on screen, not an older run. */
 function finish(how: Activity): void {
   clearTimeout(blink);
   batch(() => {
     activity.value = how;
     showProgress.value = false;
     endLive();
+    if (how !== "idle") forgetResults();
   });
 }
 
