@@ -71,8 +71,8 @@ function TerrainPanel({ close }: { close: () => void }) {
         {saved.map((terrain) => (
           <div class="row" key={terrain.name}>
             <button type="button" class="item" onClick={() => choose(terrain, close)}>
-              <span class="two">
-                {terrain.name}
+              <span class="two" title={terrain.name}>
+                <span class="name">{terrain.name}</span>
                 <small>{terrain.description}</small>
               </span>
             </button>

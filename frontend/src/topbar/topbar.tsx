@@ -24,7 +24,8 @@ export function TopBar() {
       <TerrainMenu
         button={
           <>
-            <small class="quiet">Terrain</small> <b>{drawing.value.name}</b>
+            <small class="quiet">Terrain</small>{" "}
+            <b title={drawing.value.name}>{drawing.value.name}</b>
             {isEdited.value && <span class="dot" title="Edited, not saved" />}
             <Icon name="down" />
           </>
