@@ -121,6 +121,24 @@ def test_results_of_an_edited_profile_are_called_previous(story: Story) -> None:
     assert "seed 0" in heading.inner_text()
 
 
+def test_results_of_another_seed_or_controller_are_called_previous(story: Story) -> None:
+    product = story.product
+    heading = product.page.locator(".res h2")
+    inspector = product.page.get_by_role("region", name="Inspector")
+    inspector.get_by_role("radio", name="Controller").click()
+    seed = inspector.get_by_label("Seed")
+    for value, words in (("7", "previous settings"), ("0", "seed 0")):
+        seed.fill(value)
+        seed.press("Enter")
+        heading.get_by_text(words).wait_for()
+    leash = inspector.get_by_role("slider", name="Leash")
+    leash.press("PageUp")
+    heading.get_by_text("previous settings").wait_for()
+    inspector.get_by_role("button", name="Reset Leash").click()
+    heading.get_by_text("seed 0").wait_for()
+    inspector.get_by_role("radio", name="Weights").click()
+
+
 def test_timeline_moves_robot_and_cursors_together(story: Story) -> None:
     product = story.product
     timeline = product.page.get_by_role("slider", name="Time")

@@ -102,7 +102,7 @@ export function importTerrain(file: File, fields: Record<string, string>) {
 export interface RolloutRequest {
   plan_id: string;
   friction: number;
-  controller?: SettingValues;
+  controller: SettingValues;
   seed: number;
 }
 

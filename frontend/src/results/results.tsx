@@ -13,6 +13,7 @@ import {
   run,
   runB,
   running,
+  runOf,
   runPlan,
   runPlanB,
   runStale,
@@ -159,7 +160,7 @@ function Heading({ result }: { result: Rollout }) {
       <Icon name={good ? "check" : "warning"} />
       {OUTCOMES[result.outcome]}
       {!good && ` at ${fixed(result.metrics.duration, 1)} s`}
-      <small>{runStale.value ? "previous plan" : `seed ${result.seed ?? 0}`}</small>
+      <small>{runOf.value ?? `seed ${result.seed ?? 0}`}</small>
     </h2>
   );
 }

@@ -9,6 +9,7 @@ import {
   jobEvents,
   postPlan,
   postRollout,
+  type RolloutRequest,
 } from "../api/client";
 import type { Job, Plan, PlanRequest, Rollout } from "../api/types";
 import { report } from "./connection";
@@ -42,12 +43,24 @@ export const running = computed(() => {
 const BLINK = 300;
 const POLL = 400;
 
-/** An edit came after the rollout: results and plots describe the previous plan. */
-export const runStale = computed(
-  () =>
-    run.value !== null &&
-    (stale.value || (run.value.plan_id ?? runPlan.value?.id) !== plan.value?.id),
-);
+/** What a rollout is asked besides its plan. */
+type Setup = Pick<RolloutRequest, "seed" | "controller">;
+const setup = computed<Setup>(() => ({ seed: seed.value, controller: controller.value }));
+const runSetup = signal<Setup>(setup.peek());
+
+const sameSetup = (a: Setup, b: Setup) =>
+  JSON.stringify([a.seed, Object.entries(a.controller).sort()]) ===
+  JSON.stringify([b.seed, Object.entries(b.controller).sort()]);
+
+/** A change came after the rollout: what results and plots describe is not what is set up now. */
+export const runOf = computed(() => {
+  if (!run.value) return null;
+  if (stale.value || (run.value.plan_id ?? runPlan.value?.id) !== plan.value?.id) {
+    return "previous plan";
+  }
+  return sameSetup(runSetup.value, setup.value) ? null : "previous settings";
+});
+export const runStale = computed(() => runOf.value !== null);
 export const canRun = computed(
   () => plan.value?.status === "feasible" && activity.value !== "running",
 );
@@ -61,16 +74,18 @@ export async function startRollout(): Promise<void> {
   const chosen = plan.peek();
   const question = request.peek();
   if (!chosen || !question || stale.peek() || !canRun.peek()) return;
+  const asked = setup.peek();
   const { signal } = begin(chosen);
   try {
-    const done = await runOne(chosen, signal, grow);
+    const done = await runOne(chosen, asked, signal, grow);
     batch(() => {
       forgetResults();
       run.value = done;
       runPlan.value = chosen;
+      runSetup.value = asked;
       endLive();
     });
-    if (compare.peek()) await runOther(question, signal);
+    if (compare.peek()) await runOther(question, asked, signal);
     if (!signal.aborted) finish("idle");
   } catch (error) {
     if (signal.aborted) return;
@@ -107,12 +122,12 @@ function finish(how: Activity): void {
 }
 
 /** B after A; that it cannot be run is a result too, and no failure of A. */
-async function runOther(question: PlanRequest, signal: AbortSignal): Promise<void> {
+async function runOther(question: PlanRequest, asked: Setup, signal: AbortSignal): Promise<void> {
   try {
     progress.value = 0;
     const other = await postPlan(unoptimised(question), signal);
     if (other.problem && other.poses.length < 2) throw new Error(other.problem.message);
-    const done = await runOne(other, signal);
+    const done = await runOne(other, asked, signal);
     batch(() => {
       runB.value = done;
       runPlanB.value = other;
@@ -137,10 +152,11 @@ export function cancelRollout(): void {
 
 async function runOne(
   which: Plan,
+  asked: Setup,
   signal: AbortSignal,
   onSeries?: (chunk: Chunk) => void,
 ): Promise<Rollout> {
-  const { id } = await submit(which);
+  const { id } = await submit(which, asked);
   try {
     signal.throwIfAborted();
     const end = await follow(id, signal, onSeries);
@@ -156,12 +172,8 @@ async function runOne(
   }
 }
 
-async function submit(which: Plan): Promise<Job> {
-  const body = {
-    friction: which.friction,
-    controller: controller.peek(),
-    seed: seed.peek(),
-  };
+async function submit(which: Plan, asked: Setup): Promise<Job> {
+  const body = { friction: which.friction, ...asked };
   try {
     return await postRollout({ plan_id: which.id, ...body });
   } catch (error) {
@@ -227,6 +239,7 @@ export async function restoreRollout(id: string, id2: string | null): Promise<vo
     runB.value = second;
     runPlan.value = plan.peek();
     runPlanB.value = planB.peek();
+    runSetup.value = setup.peek();
   });
 }
 

@@ -3,7 +3,7 @@
 import { exportUrl } from "../api/client";
 import { drawing, isEmpty, terrainDocument } from "../state/drawing";
 import { plan } from "../state/planning";
-import { run, runStale } from "../state/rollouts";
+import { run, runOf } from "../state/rollouts";
 import { isNarrow } from "../state/view";
 import { Icon } from "../ui/icon";
 import { Menu } from "../ui/menu";
@@ -54,7 +54,7 @@ export function DownloadMenu() {
           )}
           {result ? (
             <Exports
-              title={runStale.value ? "Rollout of the previous plan" : "Rollout"}
+              title={runOf.value ? `Rollout of the ${runOf.value}` : "Rollout"}
               kind="rollouts"
               id={result.id}
               formats={ROLLOUT}
