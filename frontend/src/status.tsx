@@ -51,6 +51,13 @@ function Certified() {
   const shown = plan.value!;
   const certificate = shown.certificate as { passed?: boolean; scope?: string } | null | undefined;
   const clearance = millimetres(worst(shown.poses, "clearance"));
+  if (shown.certificate?.motion) {
+    return (
+      <span class="warn">
+        Poses checked, motion between them not; smallest clearance {clearance}
+      </span>
+    );
+  }
   if (!certificate?.passed) return <span>smallest clearance {clearance}</span>;
   return (
     <span>

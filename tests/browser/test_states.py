@@ -85,7 +85,11 @@ def test_poses_without_a_motion_between_them_are_not_called_feasible(product: Pr
     pill.wait_for(timeout=PATIENCE)
     assert "Poses only" in pill.inner_text()
     results = product.page.get_by_role("region", name="Results")
-    results.get_by_text("only the poses are certified").wait_for()
+    explained = results.get_by_text("only the poses are certified")
+    explained.wait_for()
+    product.page.get_by_text("Poses checked, motion between them not").wait_for()
+    product.run()
+    explained.wait_for()
 
 
 def test_running_can_be_cancelled(shared: Product, server: Any) -> None:

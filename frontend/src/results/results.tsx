@@ -153,6 +153,18 @@ function rows(): Row[] {
   ];
 }
 
+/** What a figure cannot say: why it failed, what was known before, why B is missing. */
+function Explanation({ result }: { result: Rollout }) {
+  const motion = runPlan.value?.certificate?.motion;
+  return (
+    <>
+      {result.reason && result.outcome !== "success" && <p>{result.reason}</p>}
+      {motion && <p class="warn">{motion.message}</p>}
+      <WithoutB />
+    </>
+  );
+}
+
 function Heading({ result }: { result: Rollout }) {
   const good = result.outcome === "success";
   return (
@@ -181,6 +193,7 @@ function Card({ result }: { result: Rollout }) {
   return (
     <div class={runStale.value ? "older" : ""}>
       <Heading result={result} />
+      <Explanation result={result} />
       <table class={other ? "two" : ""}>
         {other && (
           <thead>
@@ -205,8 +218,6 @@ function Card({ result }: { result: Rollout }) {
           ))}
         </tbody>
       </table>
-      {result.reason && result.outcome !== "success" && <p>{result.reason}</p>}
-      <WithoutB />
     </div>
   );
 }

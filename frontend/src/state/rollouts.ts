@@ -5,6 +5,7 @@ import {
   ApiError,
   cancelJob,
   getJob,
+  getPlan,
   getRollout,
   jobEvents,
   postPlan,
@@ -14,7 +15,7 @@ import {
 import type { Job, Plan, PlanRequest, Rollout } from "../api/types";
 import { report } from "./connection";
 import { type Chunk, endLive, grow, livePlan, startLive } from "./live";
-import { plan, planB, request, settled, stale, unoptimised } from "./planning";
+import { plan, request, settled, stale, unoptimised } from "./planning";
 import { compare, controller, seed } from "./setup";
 
 export type Activity = "idle" | "running" | "cancelled" | "failed";
@@ -231,14 +232,18 @@ async function poll(id: string, signal: AbortSignal): Promise<Job> {
   }
 }
 
+/** Null where the service no longer has it. */
+const planOf = (rollout: Rollout | null): Promise<Plan | null> | null =>
+  rollout?.plan_id ? getPlan(rollout.plan_id).catch(() => null) : null;
+
 /** Show a stored rollout again, as a shared link asks for. */
 export async function restoreRollout(id: string, id2: string | null): Promise<void> {
   const [first, second] = await Promise.all([getRollout(id), id2 ? getRollout(id2) : null]);
+  const plans = await Promise.all([planOf(first), planOf(second)]);
   batch(() => {
     run.value = first;
     runB.value = second;
-    runPlan.value = plan.peek();
-    runPlanB.value = planB.peek();
+    [runPlan.value, runPlanB.value] = plans;
     runSetup.value = setup.peek();
   });
 }
