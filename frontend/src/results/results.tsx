@@ -1,6 +1,6 @@
 /** What came of the rollout, A beside B. */
 
-import type { Metrics, Outcome, Plan, Rollout } from "../api/types";
+import { hasFailed, type Metrics, type Outcome, type Plan, type Rollout } from "../api/types";
 import { degrees, fixed, took } from "../geometry/format";
 import { live, livePlan } from "../state/live";
 import { plan } from "../state/planning";
@@ -113,21 +113,25 @@ interface Row {
   title: string;
   unit?: string;
   of: (m: Metrics, r: Rollout, p: Plan | null) => string;
-  bad?: (m: Metrics) => boolean;
+  bad?: (m: Metrics, r: Rollout) => boolean;
 }
 
 /** More than this, and the robot was not tracking any more [rad]. */
 const LOST = (10 * Math.PI) / 180;
 
-function rows(): Row[] {
+function rows(results: Rollout[]): Row[] {
   const limit = robot.value?.limit.leg;
+  const outcome: Row = {
+    title: "Outcome",
+    of: (_m, r) => OUTCOMES[r.outcome],
+    bad: (_m, r) => hasFailed(r),
+  };
   return [
+    ...(results.length > 1 ? [outcome] : []),
     {
-      title: "Duration",
-      of: (m, r) =>
-        r.outcome === "success"
-          ? `${fixed(m.duration, 1)} s`
-          : `${r.outcome} ${fixed(m.duration, 1)}`,
+      title: results.some(hasFailed) ? "Ended at" : "Duration",
+      of: (m) => `${fixed(m.duration, 1)} s`,
+      bad: (_m, r) => hasFailed(r),
     },
     {
       title: "Pitch error",
@@ -167,11 +171,13 @@ function Explanation({ result }: { result: Rollout }) {
 
 function Heading({ result }: { result: Rollout }) {
   const good = result.outcome === "success";
+  // A collision is judged at the end; the sentence below says when it happened.
+  const dated = !good && result.outcome !== "collided";
   return (
     <h2 class={good ? "" : "bad"}>
       <Icon name={good ? "check" : "warning"} />
       {OUTCOMES[result.outcome]}
-      {!good && ` at ${fixed(result.metrics.duration, 1)} s`}
+      {dated && ` at ${fixed(result.metrics.duration, 1)} s`}
       <small>{runOf.value ?? `seed ${result.seed ?? 0}`}</small>
     </h2>
   );
@@ -180,15 +186,7 @@ function Heading({ result }: { result: Rollout }) {
 function Card({ result }: { result: Rollout }) {
   const other = compare.value ? runB.value : null;
   const cell = (row: Row, r: Rollout, p: Plan | null, cls: string) => (
-    <td
-      class={
-        row.bad?.(r.metrics) || (row.title === "Duration" && r.outcome !== "success")
-          ? `${cls} x`
-          : cls
-      }
-    >
-      {row.of(r.metrics, r, p)}
-    </td>
+    <td class={row.bad?.(r.metrics, r) ? `${cls} x` : cls}>{row.of(r.metrics, r, p)}</td>
   );
   return (
     <div class={runStale.value ? "older" : ""}>
@@ -207,7 +205,7 @@ function Card({ result }: { result: Rollout }) {
           </thead>
         )}
         <tbody>
-          {rows().map((row) => (
+          {rows(other ? [result, other] : [result]).map((row) => (
             <tr key={row.title}>
               <th scope="row">
                 {row.title} {row.unit && <small>{row.unit}</small>}
