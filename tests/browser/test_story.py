@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import httpx
 import pytest
 
-from .conftest import PATIENCE
+from .conftest import DESK, PATIENCE
 
 if TYPE_CHECKING:
     from .conftest import Product
@@ -182,5 +183,10 @@ def test_compare_puts_b_beside_a(shared: Product) -> None:
     product.page.get_by_role("button", name="Pitch, nose-up as a table").click()
     product.page.get_by_role("columnheader", name="B actual").wait_for()
     product.page.keyboard.press("Escape")
+    # A narrow page tells B's outcome too, and what settings are measured in.
+    product.page.set_viewport_size({"width": 1024, "height": 768})
+    product.page.locator(".res").get_by_text(re.compile("^B: ")).wait_for()
+    product.page.locator(".insp .un", has_text="m/s").wait_for()
+    product.page.set_viewport_size(DESK)
     switch.click()
     product.page.locator(".rb.cmp").wait_for(state="detached")

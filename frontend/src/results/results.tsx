@@ -42,7 +42,7 @@ export function Results() {
 function Content() {
   if (running.value === "a") return <Running />;
   if (activity.value === "failed" || activity.value === "cancelled") return <NotRun />;
-  if (run.value) return isNarrow.value ? <Line result={run.value} /> : <Card result={run.value} />;
+  if (run.value) return isNarrow.value ? <Lines result={run.value} /> : <Card result={run.value} />;
   if (plan.value?.problem) {
     return (
       <>
@@ -227,12 +227,30 @@ function WithoutB() {
   return failureB.value && <p>B has no rollout: {failureB.value}</p>;
 }
 
-/** On narrow pages the card is one line. */
-function Line({ result }: { result: Rollout }) {
-  const m = result.metrics;
+/** On narrow pages the card is a line of figures, B's below it, and the sentences. */
+function Lines({ result }: { result: Rollout }) {
+  const other = compare.value ? runB.value : null;
+  return (
+    <div class={runStale.value ? "lines older" : "lines"}>
+      <div>
+        <Heading result={result} />
+        <Figures of={result} />
+      </div>
+      {other && (
+        <div>
+          <b class={hasFailed(other) ? "x" : ""}>B: {OUTCOMES[other.outcome]}</b>
+          <Figures of={other} />
+        </div>
+      )}
+      <Explanation result={result} />
+    </div>
+  );
+}
+
+function Figures({ of }: { of: Rollout }) {
+  const m = of.metrics;
   return (
     <>
-      <Heading result={result} />
       <span>{fixed(m.duration, 1)} s</span>
       <span>
         pitch error {fixed(degrees(m.pitch_error_max), 1)}° max,{" "}
