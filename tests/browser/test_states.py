@@ -309,5 +309,17 @@ def test_narrow_pages_have_tabs(shared: Product) -> None:
         page.get_by_role("button", name=re.compile("^Robot")).click()
         assert page.evaluate(UNCOVERED, ".robots .item:last-child"), "menus are not cut off"
         page.keyboard.press("Escape")
+        page.set_viewport_size({"width": 390, "height": 844})
+        page.get_by_role("button", name="Download").click()
+        assert page.evaluate(UNCOVERED, ".downloads .item"), "nor on a phone"
+        page.keyboard.press("Escape")
+        # The clock is at hand beside the profile, and wide enough for a finger beside the results.
+        timeline = page.get_by_role("slider", name="Time")
+        assert timeline.is_visible()
+        tabs.get_by_role("button", name="Results").click()
+        box = timeline.bounding_box()
+        assert box is not None
+        assert box["width"] > 300
+        tabs.get_by_role("button", name="Profile").click()
     finally:
         page.set_viewport_size(DESK)
