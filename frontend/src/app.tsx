@@ -17,6 +17,7 @@ import { Status } from "./status";
 import { ImportZone } from "./topbar/import-zone";
 import { TopBar } from "./topbar/topbar";
 import { Transport } from "./transport/transport";
+import { Toast } from "./ui/toast";
 
 const TABS: [Tab, string][] = [
   ["editor", "Profile"],
@@ -79,6 +80,7 @@ export function App() {
       </main>
       <Status />
       <ImportZone />
+      <Toast />
       <div class="sr" aria-live="polite">
         {polite.value}
       </div>

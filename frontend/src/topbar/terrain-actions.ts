@@ -14,6 +14,7 @@ import { report } from "../state/connection";
 import { committed, drawing, open, origin, terrainDocument } from "../state/drawing";
 import { forgetRollout } from "../state/rollouts";
 import { terrains } from "../state/setup";
+import { toast } from "../state/toast";
 import { tool } from "../state/view";
 
 /** What went wrong with a file or a name; shown where it happened. */
@@ -53,11 +54,24 @@ export async function saveAs(name: string): Promise<boolean> {
   }
 }
 
-export async function removeStored(name: string): Promise<void> {
+export async function removeStored(terrain: TerrainDocument): Promise<void> {
+  const { name } = terrain;
   try {
     await deleteTerrain(name);
     terrains.value = await getTerrains();
-    if (origin.peek()?.name === name) origin.value = null;
+    const opened = origin.peek()?.name === name;
+    if (opened) origin.value = null;
+    toast.value = { text: `${name} is deleted.`, undo: () => void putBack(terrain, opened) };
+  } catch (error) {
+    fail(error);
+  }
+}
+
+async function putBack(terrain: TerrainDocument, opened: boolean): Promise<void> {
+  try {
+    await putTerrain(terrain);
+    terrains.value = await getTerrains();
+    if (opened && drawing.peek().name === terrain.name) origin.value = terrain;
   } catch (error) {
     fail(error);
   }

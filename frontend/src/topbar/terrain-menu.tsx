@@ -81,7 +81,7 @@ function TerrainPanel({ close }: { close: () => void }) {
               class="t ico"
               aria-label={`Delete ${terrain.name}`}
               title={`Delete ${terrain.name}`}
-              onClick={() => void removeStored(terrain.name)}
+              onClick={() => void removeStored(terrain)}
             >
               <Icon name="trash" />
             </button>
