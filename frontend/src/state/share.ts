@@ -5,6 +5,7 @@ import type { Method, SettingValues, TerrainDocument, Vec2 } from "../api/types"
 import { committed, isEmpty, open, origin, terrainDocument } from "./drawing";
 import { run, runB, runStale } from "./rollouts";
 import { compare, controller, method, robotName, seed, terrains, weights } from "./setup";
+import { toast } from "./toast";
 
 /** Short keys: the whole of this stands in the link. */
 interface Shared {
@@ -59,15 +60,16 @@ export interface Restored {
   rolloutB: string | null;
 }
 
-/** Take the state out of the address. Null where there is none, or it is not one of ours. */
+/** Take the state out of the address. Null where there is none, or none that can be read. */
 export function restoreFromAddress(): Restored | null {
   const text = new URLSearchParams(location.hash.slice(1)).get("s");
   if (!text) return null;
   let state: Shared;
   try {
     state = decode(text);
-    if (!Array.isArray(state.t.points)) return null;
+    if (!Array.isArray(state.t.points)) throw new TypeError("no points");
   } catch {
+    toast.value = { text: "This link could not be read; the sample is shown instead." };
     return null;
   }
   const points = state.t.points.filter(
