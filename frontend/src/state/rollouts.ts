@@ -8,6 +8,7 @@ import {
   getPlan,
   getRollout,
   jobEvents,
+  Offline,
   postPlan,
   postRollout,
   type RolloutRequest,
@@ -186,7 +187,13 @@ async function submit(which: Plan, asked: Setup): Promise<Job> {
   }
 }
 
-const sentence = (error: unknown) => (error instanceof Error ? error.message : String(error));
+/** True long after, too: when the service is back, the run is not. */
+const LOST = "The connection to the service broke and the run is lost. It can be started again.";
+
+function sentence(error: unknown): string {
+  if (error instanceof Offline) return LOST;
+  return error instanceof Error ? error.message : String(error);
+}
 
 const over = (job: Job) => job.state !== "queued" && job.state !== "running";
 
