@@ -133,8 +133,8 @@ function SaveForm({ close }: { close: () => void }) {
           value={name}
           maxLength={100}
           required
-          pattern="[\w .+\-]+"
-          title="Letters, digits, space, and . + - _"
+          pattern="[\w .+\-]*\w[\w .+\-]*"
+          title="A letter or digit at least; besides those space and . + - _"
           onInput={(event) => setName(event.currentTarget.value)}
         />
       </label>
