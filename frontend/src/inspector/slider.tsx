@@ -63,7 +63,9 @@ function SliderRow({ name, schema, value, onChange }: SettingProps) {
   const shareOf = (v: number) => (Number.isNaN(v) ? 0.5 : Math.min(1, Math.max(0, scale.to(v))));
   const share = shareOf(now);
   const base = shareOf(initial);
-  const words = unset ? "auto" : `${setting(now)} ${schema.unit ?? ""}`;
+  /** A ratio is a number without a unit. */
+  const unit = schema.unit && schema.unit !== "1" ? schema.unit : "";
+  const words = unset ? "auto" : `${setting(now)} ${unit}`.trim();
   const label = schema.title ?? name;
   const percent = (s: number) => `${(s * 100).toFixed(2)}%`;
 
@@ -130,7 +132,9 @@ function SliderRow({ name, schema, value, onChange }: SettingProps) {
         format={(v) => (Number.isNaN(v) ? "auto" : setting(v))}
         onChange={(v) => onChange(whole ? Math.round(v) : v)}
       />
-      <span class="un">{schema.unit === "1" ? "" : schema.unit}</span>
+      <span class="un" title={unit}>
+        {unit}
+      </span>
       <Reset label={label} shown={changed} onReset={() => onChange(null)} />
     </div>
   );

@@ -13,8 +13,8 @@ export interface Line {
   values: Float64Array;
   /** What header and table tell where the line is drawn in percent. */
   raw?: Float64Array;
-  /** Shown as a number in the header: its short name and digits. */
-  read?: { name: string; digits: number };
+  /** Shown as a number in the header: its short name, digits, and unit where not the panel's. */
+  read?: { name: string; digits: number; unit?: string };
 }
 
 export interface Panel {

@@ -173,17 +173,17 @@ function torquePanel(source: Source, time: Float64Array): Panel {
   };
 }
 
-/** Name, letter, colour, and the unit that the header tells it in: factor and digits. */
-const MARGIN_LINES: [MarginName, string, Color, number, number][] = [
-  ["clearance", "clr", "tx", 1000, 0],
-  ["com", "CoM", "third", 1000, 0],
-  ["friction", "μ", "fourth", 1, 2],
+/** Name, letter, colour, and the unit that the header tells it in: factor, digits, name. */
+const MARGIN_LINES: [MarginName, string, Color, number, number, string][] = [
+  ["clearance", "clr", "tx", 1000, 0, "mm"],
+  ["com", "CoM", "third", 1000, 0, "mm"],
+  ["friction", "μ", "fourth", 1, 2, ""],
 ];
 
 /** Margins in percent of what is plenty, at the progress the robot had at each time. */
 function marginPanel(source: Source, time: Float64Array): Panel {
   const { plan, run } = source;
-  const lines = MARGIN_LINES.map(([name, label, color, factor, digits]): Line => {
+  const lines = MARGIN_LINES.map(([name, label, color, factor, digits, unit]): Line => {
     const full = MARGINS.find((m) => m.name === name)!.full;
     const values = plan ? marginValues(time, plan, run, name) : time.map(() => Number.NaN);
     return {
@@ -192,7 +192,7 @@ function marginPanel(source: Source, time: Float64Array): Panel {
       kind: "line",
       values: values.map((v) => Math.min(1, Math.max(0, v / full)) * 100),
       raw: values.map((v) => v * factor),
-      read: { name: label, digits },
+      read: { name: label, digits, unit },
     };
   });
   return {

@@ -80,6 +80,7 @@ function Values({ panel }: { panel: Panel }) {
             <i />
             {line.read!.name}
             <b>{fixed(value, line.read!.digits)}</b>
+            {line.read!.unit}
           </span>
         );
       })}
@@ -201,7 +202,7 @@ function TableMenu({ panel }: { panel: Panel }) {
                   <th scope="col">s</th>
                   {lines.map((line) => (
                     <th key={line.label} scope="col">
-                      {line.label}
+                      {line.label} {line.read?.unit ?? panel.unit}
                     </th>
                   ))}
                 </tr>

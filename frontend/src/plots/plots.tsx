@@ -9,7 +9,7 @@ import { progress, run, runB, running, runPlan } from "../state/rollouts";
 import { compare, robot } from "../state/setup";
 import { isNarrow } from "../state/view";
 import type { Tint } from "./chart";
-import { type PanelId, type Source, timeAxis } from "./lines";
+import { type Panel, type PanelId, type Source, timeAxis } from "./lines";
 import { buildPanel } from "./panels";
 import { Plot } from "./plot";
 
@@ -64,6 +64,10 @@ const tint = computed<Tint | null>(() => {
   return null;
 });
 
+/** The margins tell more in their heading than the others. */
+const columns = (shown: readonly Panel[]) =>
+  shown.map((panel) => `minmax(0, ${panel.id === "margins" ? 1.3 : 1}fr)`).join(" ");
+
 export function Plots() {
   const { plan: shown, run: drive } = source.value;
   if (!drive && !shown?.poses.length) {
@@ -74,7 +78,7 @@ export function Plots() {
   }
   const dim = run.value && !shownRun.value && !growing.value;
   return (
-    <div class={dim ? "plots older" : "plots"} style={{ "--count": panels.value.length }}>
+    <div class={dim ? "plots older" : "plots"} style={{ "--columns": columns(panels.value) }}>
       {panels.value.map((panel) => (
         <Plot key={panel.id} panel={panel} tint={tint.value} />
       ))}
