@@ -8,7 +8,7 @@ import { fit } from "./profile-editor/viewport";
 import { renewSession, startScene } from "./scene/drive";
 import { startAnnouncing } from "./state/announce";
 import { report, watchConnection } from "./state/connection";
-import { drawing, open } from "./state/drawing";
+import { drawing, open, startHistory } from "./state/drawing";
 import { plan, startPlanning } from "./state/planning";
 import { duration, seek, startClock } from "./state/playback";
 import { restoreRollout } from "./state/rollouts";
@@ -56,6 +56,7 @@ async function begin(): Promise<void> {
     showMiddle();
   }
   fit(drawing.peek().points);
+  startHistory();
   startSharing();
   if (restored?.rollout) await restoreRollout(restored.rollout, restored.rolloutB).catch(report);
 }

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import httpx
 import pytest
 
-from .conftest import DESK, PATIENCE, Product
+from .conftest import DESK, PATIENCE, TERRAIN, Product
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Route
@@ -151,6 +151,33 @@ def test_a_and_b_are_one_rollout_to_wait_for_and_to_cancel(shared: Product) -> N
     page.locator(".app[data-run=success]").wait_for()
     page.unroute("**/rollouts")
     page.get_by_role("switch", name="Compare A with B").click()
+
+
+def test_undo_brings_back_settings_and_deleted_terrains(shared: Product) -> None:
+    page = shared.fresh("ramp-30deg-025").page
+    speed = page.get_by_role("slider", name="Speed")
+    before = speed.get_attribute("aria-valuetext")
+    corner = shared.corner(2)
+    speed.press("PageUp")
+    changed = speed.get_attribute("aria-valuetext")
+    assert changed != before
+    page.keyboard.press("Control+z")
+    assert speed.get_attribute("aria-valuetext") == before
+    page.keyboard.press("Control+Shift+z")
+    assert speed.get_attribute("aria-valuetext") == changed
+    page.keyboard.press("Control+z")
+    assert shared.corner(2) == corner
+
+    page.get_by_role("button", name=TERRAIN).click()
+    page.get_by_label("Save as").fill("kept")
+    page.get_by_role("button", name="Save", exact=True).click()
+    page.get_by_role("dialog").wait_for(state="detached")
+    page.get_by_role("button", name=TERRAIN).click()
+    page.get_by_role("button", name="Delete kept").click()
+    page.locator(".toast").get_by_role("button", name="Undo").click()
+    page.get_by_role("button", name=TERRAIN).click()
+    page.get_by_role("button", name="Delete kept").wait_for()
+    page.keyboard.press("Escape")
 
 
 # Whether the address tells of a rollout.

@@ -1,8 +1,9 @@
-/** The document of the page: the drawn profile with its name and friction, and its history. */
+/** The document of the page: the drawn profile with its name and friction; and the history. */
 
-import { computed, signal } from "@preact/signals";
+import { computed, effect, signal } from "@preact/signals";
 import type { TerrainDocument, Vec2 } from "../api/types";
 import { type Points, samePoints } from "../geometry/profile";
+import { type Choices, choices, choose } from "./setup";
 
 export interface Drawing {
   name: string;
@@ -33,8 +34,16 @@ export const origin = signal<TerrainDocument | null>(null);
 /** Selected vertices, ascending. */
 export const selection = signal<readonly number[]>([]);
 
-const past = signal<readonly Drawing[]>([]);
-const future = signal<readonly Drawing[]>([]);
+/** Where undo leads: a drawing and what was set beside it. */
+interface Step {
+  drawing: Drawing;
+  choices: Choices;
+}
+
+const past = signal<readonly Step[]>([]);
+const future = signal<readonly Step[]>([]);
+/** What was set when the last step was made. */
+let chosen = choices.peek();
 
 export const canUndo = computed(() => past.value.length > 0);
 export const canRedo = computed(() => future.value.length > 0);
@@ -48,7 +57,7 @@ export const isEdited = computed(() => {
 });
 
 /** The profile as it was one edit ago, for sentences such as "this edit raised the riser". */
-export const previous = computed(() => past.value[past.value.length - 1] ?? null);
+export const previous = computed(() => past.value[past.value.length - 1]?.drawing ?? null);
 
 /** Change what is on the canvas without a step in the history (during a drag). */
 export function draft(change: Partial<Drawing>): void {
@@ -61,9 +70,37 @@ export function commit(change: Partial<Drawing> = {}): void {
   const before = committed.peek();
   drawing.value = next;
   if (before.friction === next.friction && samePoints(before.points, next.points)) return;
-  past.value = [...past.value.slice(-LONGEST_HISTORY), before];
-  future.value = [];
+  commitChoices();
+  remember();
   committed.value = next;
+}
+
+const now = (): Step => ({ drawing: committed.peek(), choices: chosen });
+
+function remember(): void {
+  past.value = [...past.value.slice(-LONGEST_HISTORY), now()];
+  future.value = [];
+}
+
+/** Finish a change of settings: one step, however far a slider went. */
+function commitChoices(): void {
+  if (JSON.stringify(choices.peek()) === JSON.stringify(chosen)) return;
+  remember();
+  chosen = choices.peek();
+}
+
+/** A slider at rest is a finished change [ms]. */
+const REST = 500;
+
+/** Settings take part in the history from now on. */
+export function startHistory(): void {
+  chosen = choices.peek();
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  effect(() => {
+    choices.value;
+    clearTimeout(timer);
+    timer = setTimeout(commitChoices, REST);
+  });
 }
 
 /** Give up a drag. */
@@ -72,10 +109,11 @@ export function revert(): void {
 }
 
 export function undo(): void {
+  commitChoices();
   const before = past.value[past.value.length - 1];
   if (!before) return;
   past.value = past.value.slice(0, -1);
-  future.value = [committed.peek(), ...future.value];
+  future.value = [now(), ...future.value];
   restore(before);
 }
 
@@ -83,14 +121,17 @@ export function redo(): void {
   const next = future.value[0];
   if (!next) return;
   future.value = future.value.slice(1);
-  past.value = [...past.value, committed.peek()];
+  past.value = [...past.value, now()];
   restore(next);
 }
 
-function restore(state: Drawing): void {
+function restore(step: Step): void {
+  const state = step.drawing;
   drawing.value = state;
   committed.value = state;
   selection.value = selection.peek().filter((i) => i < state.points.length);
+  chosen = step.choices;
+  choose(chosen);
 }
 
 /** Open another terrain: undo leads back to the one before. */
@@ -103,8 +144,10 @@ export function open(terrain: TerrainDocument, stored: TerrainDocument | null): 
     start: terrain.start ?? null,
     goal: terrain.goal ?? null,
   };
-  const before = committed.peek();
-  if (before.points.length > 0) past.value = [...past.value.slice(-LONGEST_HISTORY), before];
+  if (committed.peek().points.length > 0) {
+    commitChoices();
+    remember();
+  }
   future.value = [];
   origin.value = stored;
   selection.value = [];

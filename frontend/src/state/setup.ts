@@ -1,6 +1,6 @@
 /** What the drawing is planned with: robot, method, weights, controller; and what there is. */
 
-import { computed, signal } from "@preact/signals";
+import { batch, computed, signal } from "@preact/signals";
 import type {
   Method,
   RobotDocument,
@@ -57,6 +57,26 @@ export function setWeight(name: string, value: SettingChange): void {
 
 export function setController(name: string, value: SettingChange): void {
   controller.value = withValue(controller.peek(), controllerSchema.peek()[name], name, value);
+}
+
+/** All that undo brings back besides the drawing. */
+export const choices = computed(() => ({
+  robotName: robotName.value,
+  method: method.value,
+  seed: seed.value,
+  weights: weights.value,
+  controller: controller.value,
+}));
+export type Choices = typeof choices.value;
+
+export function choose(again: Choices): void {
+  batch(() => {
+    robotName.value = again.robotName;
+    method.value = again.method;
+    seed.value = again.seed;
+    weights.value = again.weights;
+    controller.value = again.controller;
+  });
 }
 
 export function resetAll(): void {
