@@ -251,7 +251,10 @@ function Figures({ of }: { of: Rollout }) {
   const m = of.metrics;
   return (
     <>
-      <span>{fixed(m.duration, 1)} s</span>
+      <span>
+        {hasFailed(of) && "ended at "}
+        {fixed(m.duration, 1)} s
+      </span>
       <span>
         pitch error {fixed(degrees(m.pitch_error_max), 1)}° max,{" "}
         {fixed(degrees(m.pitch_error_rms), 1)}° rms
