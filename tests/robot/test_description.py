@@ -4,6 +4,7 @@ import pytest
 
 from stairwright.errors import InputError
 from stairwright.library import load_robot, robots
+from stairwright.robot.mujoco_model import build_model
 
 
 def test_table_one():
@@ -36,6 +37,13 @@ def test_knees():
         (("nominal_height",), 0.5, "nominal_height"),
         (("thigh", "mass"), -1, "thigh.mass"),
         (("wheel", "radius"), "big", "wheel.radius"),
+        (("thigh", "length"), 1e-20, "thigh.length"),
+        (("thigh", "mass"), 1e-16, "thigh.mass"),
+        (("wheel", "mass"), 1e-17, "wheel.mass"),
+        (("trunk", "inertia"), [1.0, 1.0, 100.0], "trunk.inertia"),
+        (("calf", "inertia"), [0.1, 0.001, 0.001], "calf.inertia"),
+        (("wheel", "inertia"), [1.0, 1e-9, 1e-9], "wheel.inertia"),
+        (("trunk", "inertia"), [1e-16, 1e-16, 1e-16], "trunk.inertia.0"),
     ],
 )
 def test_bad_robot_is_refused_at_its_field(where, value, path):
@@ -47,3 +55,14 @@ def test_bad_robot_is_refused_at_its_field(where, value, path):
     with pytest.raises(InputError) as caught:
         load_robot(data)
     assert caught.value.path == path
+
+
+def test_the_simulator_takes_the_lightest_robot():
+    """What validation accepts at its bounds, MuJoCo does too."""
+    data = load_robot("a1_wheeled").model_dump(mode="json")
+    for part in ("trunk", "thigh", "calf", "wheel"):
+        data[part] |= {"mass": 1e-6, "inertia": [1e-12, 1e-12, 2e-12]}
+    data["thigh"]["length"] = 1e-3
+    data["nominal_height"] = 0.2
+    model = build_model(load_robot(data))
+    assert model.body("trunk").mass == pytest.approx(1e-6)

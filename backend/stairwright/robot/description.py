@@ -11,7 +11,7 @@ import math
 from functools import cached_property
 from typing import Annotated, Literal, NamedTuple
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from stairwright.documents import Model, content_hash
 from stairwright.errors import InputError
@@ -21,18 +21,34 @@ JOINTS = tuple(f"{leg}_{part}" for leg in LEGS for part in ("thigh", "calf", "wh
 PLANAR_JOINTS = ("front_thigh", "front_calf", "rear_thigh", "rear_calf")
 
 Positive = Annotated[float, Field(gt=0.0, le=1000.0)]
-Inertia = tuple[Positive, Positive, Positive]
+# The least are far below any robot's and far above what the simulator takes for nothing.
+Mass = Annotated[float, Field(ge=1e-6, le=1000.0)]
+Moment = Annotated[float, Field(ge=1e-12, le=1000.0)]
 Range = tuple[
     Annotated[float, Field(ge=-2 * math.pi, le=2 * math.pi)],
     Annotated[float, Field(ge=-2 * math.pi, le=2 * math.pi)],
 ]
 
 
+def _possible(moments: tuple[float, float, float]) -> tuple[float, float, float]:
+    """Principal moments that some distribution of mass has."""
+    a, b, c = sorted(moments)
+    if a + b < c:
+        raise InputError(
+            f"no body has these moments: the largest, {c}, must be at most the sum of the other "
+            f"two, {a + b}"
+        )
+    return moments
+
+
+Inertia = Annotated[tuple[Moment, Moment, Moment], AfterValidator(_possible)]
+
+
 class Trunk(Model):
     """The body box; its centre is the trunk point (x_c, z_c)."""
 
     size: tuple[Positive, Positive, Positive] = Field(description="length, width, height [m]")
-    mass: Positive = Field(description="[kg]")
+    mass: Mass = Field(description="[kg]")
     inertia: Inertia = Field(description="Ixx, Iyy, Izz about the centre [kg m^2]")
 
 
@@ -47,9 +63,9 @@ class Hips(Model):
 class Link(Model):
     """A thigh or a calf: a capsule from its upper joint to its lower one."""
 
-    length: Positive = Field(description="[m]")
+    length: float = Field(ge=1e-3, le=1000.0, description="[m]")
     radius: Positive = Field(description="of the capsule [m]")
-    mass: Positive = Field(description="[kg]")
+    mass: Mass = Field(description="[kg]")
     com: float = Field(ge=0.0, le=1.0, description="mass centre as a fraction of the length")
     inertia: Inertia = Field(description="Ixx, Iyy, Izz about the mass centre [kg m^2]")
 
@@ -59,7 +75,7 @@ class Wheel(Model):
 
     radius: Positive = Field(description="[m]")
     width: Positive = Field(description="[m]")
-    mass: Positive = Field(description="[kg]")
+    mass: Mass = Field(description="[kg]")
     inertia: Inertia = Field(description="Ixx, Iyy, Izz about the centre [kg m^2]")
 
 
