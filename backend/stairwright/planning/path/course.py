@@ -27,6 +27,7 @@ _LEVEL = 0.01  # m; a stretch whose wheel centre stays within this height is lev
 _SLOPE = 0.2  # rad; and nowhere steeper than this
 _SHIFTS = 30  # rounds in which wheels are moved until the trunk is where it was asked to be
 _EXACT = 1e-9  # m; then it is there
+_AHEAD = 1e-5  # m; least way of each wheel, for plans need two poses that can be told apart
 
 
 class NoStand(Exception):
@@ -105,7 +106,7 @@ def find_stands(terrain: Terrain, robot: Robot, path: WheelPath) -> tuple[Stand,
     """Start and goal of `terrain`.
 
     Raises:
-        NoStand: If a stretch is too short for the robot, or start does not lie before goal.
+        NoStand: If a stretch is too short for the robot, or the goal is not ahead of the start.
     """
     first, last = stretches(path)
     gap = robot.hips.front[0] - robot.hips.rear[0]
@@ -135,10 +136,10 @@ def find_stands(terrain: Terrain, robot: Robot, path: WheelPath) -> tuple[Stand,
         if front - rear < least:
             raise NoStand("goal", last, least, room, "the last flat stretch is too short")
         end = stand(path, robot, front, rear)
-    if end.wheels[0] <= begin.wheels[0] or end.wheels[1] <= begin.wheels[1]:
-        raise NoStand(
-            "goal", end.wheels[0], begin.wheels[0], end.wheels[0], "the goal is not ahead"
-        )
+    way = min(b - a for a, b in zip(begin.wheels, end.wheels, strict=True))
+    if way < _AHEAD:
+        message = "the goal is not ahead of the start"
+        raise NoStand("goal", end.wheels[0], _AHEAD, way, message, "way from start to goal")
     return begin, end
 
 
