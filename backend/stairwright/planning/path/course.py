@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.arguments import MOST_FRICTION
 from stairwright.planning.plan import Limit
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -25,6 +26,7 @@ CORNER = 0.15  # rad; concave corners with a smaller kink need no samples of the
 _EDGE = 0.0015  # m; samples this near to a corner touch both faces
 _LEVEL = 0.01  # m; a stretch whose wheel centre stays within this height is level
 _SLOPE = 0.2  # rad; and nowhere steeper than this
+_FACE = math.atan(MOST_FRICTION)  # rad; no friction holds a wheel on what is steeper
 _SHIFTS = 30  # rounds in which wheels are moved until the trunk is where it was asked to be
 _EXACT = 1e-9  # m; then it is there
 _AHEAD = 1e-5  # m; least way of each wheel, for plans need two poses that can be told apart
@@ -55,13 +57,18 @@ def scale(robot: Robot) -> float:
     return (robot.thigh.length + robot.calf.length) / 0.4
 
 
-def stretches(path: WheelPath) -> tuple[float, float]:
-    """End of the first and begin of the last level stretch, as arc lengths [m]."""
-    s = np.unique(np.concatenate([path.pieces[:, 1], [path.length]]))
+def stretches(path: WheelPath) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Begin and end of the first and of the last level stretch, as arc lengths [m].
+
+    A face at an end of the profile is no ground to stand on: the first stretch begins behind it,
+    the last one ends before it.
+    """
+    low, high = _between_faces(path)
+    begins = path.pieces[:, 1]
+    s = np.unique([low, *begins[(begins > low) & (begins < high)], high])
     inner = np.concatenate([s[:-1] + 1e-7, s[1:] - 1e-7])
     inner.sort()
-    z, n = path.centres(inner)[:, 1], path.normals(inner)
-    steep = np.abs(np.arctan2(n[:, 0], n[:, 1]))
+    z, steep = path.centres(inner)[:, 1], _steepness(path, inner)
 
     def run(order: Ints) -> float:
         level = (np.abs(z[order] - z[order[0]]) <= _LEVEL) & (steep[order] <= _SLOPE)
@@ -71,7 +78,24 @@ def stretches(path: WheelPath) -> tuple[float, float]:
         return float(inner[order[stop - 1]])
 
     count = np.arange(len(inner))
-    return run(count), run(count[::-1])
+    return (low, run(count)), (run(count[::-1]), high)
+
+
+def _between_faces(path: WheelPath) -> tuple[float, float]:
+    """Arc lengths between which the curve lies without faces, and edges round them, at its ends."""
+    begins, lengths = path.pieces[:, 1], path.pieces[:, 2]
+    first = np.flatnonzero(_steepness(path, begins + 1e-7) < _FACE)
+    last = np.flatnonzero(_steepness(path, begins + lengths - 1e-7) < _FACE)
+    if len(first) == 0 or len(last) == 0 or last[-1] < first[0]:
+        return 0.0, path.length  # faces alone
+    return float(begins[first[0]]), float(begins[last[-1]] + lengths[last[-1]])
+
+
+def _steepness(path: WheelPath, s: Floats) -> Floats:
+    """Slope (n,) of the ground below the wheel at arc lengths `s` (n,), either way [rad]."""
+    n = path.normals(s)
+    steep: Floats = np.abs(np.arctan2(n[:, 0], n[:, 1]))
+    return steep
 
 
 def rolled(s: Floats) -> Floats:
@@ -108,39 +132,62 @@ def find_stands(terrain: Terrain, robot: Robot, path: WheelPath) -> tuple[Stand,
     Raises:
         NoStand: If a stretch is too short for the robot, or the goal is not ahead of the start.
     """
-    first, last = stretches(path)
+    (low, first), (last, high) = stretches(path)
     gap = robot.hips.front[0] - robot.hips.rear[0]
-    least = max(2 * robot.wheel.radius + 0.01, 0.6 * gap)
-    lead, tail = 0.25 * scale(robot), 0.15 * scale(robot)
-    edge = min(robot.wheel.radius, 0.05)
-    flat = first >= path.length - 1e-6
+    behind, ahead = _edge(path, robot, low), _edge(path, robot, high)
+    flat = first >= high - 1e-6
 
     if terrain.start is not None:
         begin = _at(path, robot, terrain.start, "start")
+    elif flat:
+        begin = stand(path, robot, low + behind + gap, low + behind)
     else:
-        front = edge + gap if flat else max(first - lead, min(first - 0.02, edge + gap))
-        rear = max(front - gap, min(edge, 0.5 * (first - least)))
-        if front - rear < least:
-            raise NoStand("start", first, least, first, "the first flat stretch is too short")
-        begin = stand(path, robot, front, rear)
+        near, far = _settle(robot, "start", first, first - low, 0.25 * scale(robot), behind)
+        begin = stand(path, robot, first - near, first - far)
     if terrain.goal is not None:
         end = _at(path, robot, terrain.goal, "goal")
+    elif flat:
+        end = stand(path, robot, high - ahead, high - ahead - gap)
     else:
-        room = path.length - last
-        rear = (
-            path.length - edge - gap
-            if flat
-            else min(last + tail, max(last + 0.02, path.length - edge - gap))
-        )
-        front = min(rear + gap, max(path.length - edge, path.length - 0.5 * (room - least)))
-        if front - rear < least:
-            raise NoStand("goal", last, least, room, "the last flat stretch is too short")
-        end = stand(path, robot, front, rear)
+        near, far = _settle(robot, "goal", last, high - last, 0.15 * scale(robot), ahead)
+        end = stand(path, robot, last + far, last + near)
     way = min(b - a for a, b in zip(begin.wheels, end.wheels, strict=True))
     if way < _AHEAD:
         message = "the goal is not ahead of the start"
         raise NoStand("goal", end.wheels[0], _AHEAD, way, message, "way from start to goal")
     return begin, end
+
+
+def _edge(path: WheelPath, robot: Robot, s: float) -> float:
+    """Distance of a wheel from where the ground ends at arc length `s`, with room for it [m]."""
+    wall = bool((np.abs(path.corners - s) < 1e-6).any())  # knees need room in front of it
+    return 0.15 * scale(robot) if wall else min(robot.wheel.radius, 0.05)
+
+
+def _settle(
+    robot: Robot, kind: End, s: float, room: float, lead: float, edge: float
+) -> tuple[float, float]:
+    """Distances of both wheels, the nearer first, from where a level stretch meets what follows.
+
+    Args:
+        robot: Its hips are as far apart as the wheels would be.
+        kind: Which end of the course it is.
+        s: Arc length where the stretch meets what follows [m].
+        room: Length of the stretch [m].
+        lead: Distance of the nearer wheel where there is room for it [m].
+        edge: Distance of the farther wheel from the stretch's other end, likewise [m].
+
+    Raises:
+        NoStand: If the stretch is too short.
+    """
+    gap = robot.hips.front[0] - robot.hips.rear[0]
+    least = max(2 * robot.wheel.radius + 0.01, 0.6 * gap)
+    near = min(lead, max(0.02, room - edge - gap))
+    far = min(near + gap, max(room - edge, room - 0.5 * (room - least)))
+    if far - near < least:
+        which = "first" if kind == "start" else "last"
+        raise NoStand(kind, s, least, room, f"the {which} flat stretch is too short")
+    return near, far
 
 
 def _at(path: WheelPath, robot: Robot, x: float, kind: End) -> Stand:
