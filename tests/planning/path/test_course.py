@@ -51,3 +51,41 @@ def test_a_ledge_at_the_start_is_no_flat_stretch():
     plan = sw.plan({"points": [[0, 0], [0, 0.4], [0.02, 0.4], [0.02, 0], [3, 0]]})
     assert plan.problem.kind == "start"
     assert plan.problem.limit.available == pytest.approx(0.02, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        lambda length: [[0, 0], [length, 0]],
+        lambda length: [[0, 0], [length, 0], [length, 0.1], [length + 2, 0.1]],
+        lambda length: [[0, 0], [length, 0], [length, -0.1], [length + 2, -0.1]],
+        lambda length: [[-2, 0], [0, 0], [0, 0.1], [length, 0.1]],
+        lambda length: [[-2, 0], [0, 0], [0, 0.1], [length, 0.1], [length, 0.4]],
+    ],
+)
+def test_the_length_that_is_needed_is_enough(points):
+    for short in (0.12, 0.16):
+        limit = sw.plan({"points": points(short)}).problem.limit
+        assert limit.quantity == "length"
+        assert limit.available == pytest.approx(short)
+        enough = sw.plan({"points": points(limit.needed)}, method="nominal").problem
+        assert enough is None or enough.kind not in ("start", "goal")
+        less = sw.plan({"points": points(limit.needed - 1e-4)}, method="nominal").problem
+        assert less.kind in ("start", "goal")
+
+
+@pytest.mark.parametrize("end", ["start", "goal"])
+def test_a_trunk_that_cannot_stand_there_is_told_where_it_can(end):
+    refused = sw.plan({"points": STAIR, end: 0.0}, method="nominal").problem
+    assert refused.kind == end
+    assert refused.limit.available == 0.0
+    moved = sw.plan({"points": STAIR, end: refused.limit.needed}, method="nominal")
+    assert moved.problem is None or moved.problem.kind != end
+
+
+def test_wheels_too_large_for_the_hips_are_told_so():
+    robot = sw.load_robot("a1_wheeled").model_dump(mode="json")
+    robot["hips"] |= {"front": [0.04, 0.0], "rear": [-0.04, 0.0]}
+    limit = sw.plan({"points": STAIR}, robot).problem.limit
+    assert (limit.needed, limit.available) == pytest.approx((0.11, 0.08))
+    assert limit.quantity == "distance of the hips"

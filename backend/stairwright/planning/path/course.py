@@ -27,20 +27,28 @@ _EDGE = 0.0015  # m; samples this near to a corner touch both faces
 _LEVEL = 0.01  # m; a stretch whose wheel centre stays within this height is level
 _SLOPE = 0.2  # rad; and nowhere steeper than this
 _FACE = math.atan(MOST_FRICTION)  # rad; no friction holds a wheel on what is steeper
+_NEAR = 0.02  # m; least distance of a standing wheel from an obstacle
+_TRY, _TRIES = 0.01, 200  # m; where else the trunk is tried, and how often either way
 _SHIFTS = 30  # rounds in which wheels are moved until the trunk is where it was asked to be
 _EXACT = 1e-9  # m; then it is there
 _AHEAD = 1e-5  # m; least way of each wheel, for plans need two poses that can be told apart
 
 
 class NoStand(Exception):
-    """There is no place to stand: `kind` is start or goal, `needed` and `available` lengths [m]."""
+    """There is no place to stand: `kind` is start or goal, `needed` and `available` lengths [m].
+
+    Where no value of the quantity would do, `needed` is None.
+    """
 
     def __init__(
-        self, kind: End, s: float, needed: float, available: float, message: str,
+        self, kind: End, s: float, needed: float | None, available: float, message: str,
         quantity: str = "length",
     ) -> None:  # fmt: skip
         super().__init__(message)
-        self.limit = Limit(needed=needed, available=available, quantity=quantity, unit="m")
+        self.limit = (
+            None if needed is None
+            else Limit(needed=needed, available=available, quantity=quantity, unit="m")
+        )  # fmt: skip
         self.kind, self.s = kind, s
 
 
@@ -137,19 +145,24 @@ def find_stands(terrain: Terrain, robot: Robot, path: WheelPath) -> tuple[Stand,
     behind, ahead = _edge(path, robot, low), _edge(path, robot, high)
     flat = first >= high - 1e-6
 
+    if flat and terrain.start is None and terrain.goal is None:
+        missing = behind + gap + ahead + 2 * _AHEAD - (high - low)
+        if missing > 0.0:
+            message = "the flat ground is too short for a start and a goal"
+            raise _too_short("goal", path, (low, high), missing, message)
     if terrain.start is not None:
         begin = _at(path, robot, terrain.start, "start")
     elif flat:
         begin = stand(path, robot, low + behind + gap, low + behind)
     else:
-        near, far = _settle(robot, "start", first, first - low, 0.25 * scale(robot), behind)
+        near, far = _settle(path, robot, "start", (low, first), behind)
         begin = stand(path, robot, first - near, first - far)
     if terrain.goal is not None:
         end = _at(path, robot, terrain.goal, "goal")
     elif flat:
         end = stand(path, robot, high - ahead, high - ahead - gap)
     else:
-        near, far = _settle(robot, "goal", last, high - last, 0.15 * scale(robot), ahead)
+        near, far = _settle(path, robot, "goal", (last, high), ahead)
         end = stand(path, robot, last + far, last + near)
     way = min(b - a for a, b in zip(begin.wheels, end.wheels, strict=True))
     if way < _AHEAD:
@@ -165,29 +178,51 @@ def _edge(path: WheelPath, robot: Robot, s: float) -> float:
 
 
 def _settle(
-    robot: Robot, kind: End, s: float, room: float, lead: float, edge: float
+    path: WheelPath, robot: Robot, kind: End, stretch: tuple[float, float], edge: float
 ) -> tuple[float, float]:
     """Distances of both wheels, the nearer first, from where a level stretch meets what follows.
 
     Args:
+        path: The curve of wheel centres.
         robot: Its hips are as far apart as the wheels would be.
         kind: Which end of the course it is.
-        s: Arc length where the stretch meets what follows [m].
-        room: Length of the stretch [m].
-        lead: Distance of the nearer wheel where there is room for it [m].
-        edge: Distance of the farther wheel from the stretch's other end, likewise [m].
+        stretch: Arc lengths where it begins and ends [m].
+        edge: Distance of the farther wheel from its outer end where there is room for it [m].
 
     Raises:
-        NoStand: If the stretch is too short.
+        NoStand: If the stretch is too short, or the wheels are too large.
     """
+    s, which = (stretch[1], "first") if kind == "start" else (stretch[0], "last")
+    room = stretch[1] - stretch[0]
+    lead = (0.25 if kind == "start" else 0.15) * scale(robot)
     gap = robot.hips.front[0] - robot.hips.rear[0]
     least = max(2 * robot.wheel.radius + 0.01, 0.6 * gap)
-    near = min(lead, max(0.02, room - edge - gap))
+    if gap < least:
+        message = "the wheels would touch each other below hips that are so close"
+        raise NoStand(kind, s, least, gap, message, "distance of the hips")
+    near = min(lead, max(_NEAR, room - edge - gap))
     far = min(near + gap, max(room - edge, room - 0.5 * (room - least)))
     if far - near < least:
-        which = "first" if kind == "start" else "last"
-        raise NoStand(kind, s, least, room, f"the {which} flat stretch is too short")
+        close = min(lead, _NEAR)
+        missing = least + close + min(edge, close) - room
+        message = f"the {which} flat stretch is too short"
+        raise _too_short(kind, path, stretch, missing, message)
     return near, far
+
+
+def _too_short(
+    kind: End, path: WheelPath, stretch: tuple[float, float], missing: float, message: str
+) -> NoStand:
+    """What is said where `missing` m more of a stretch would do: the ground's length, not the way
+    of the wheels, which do not reach into its corners.
+    """
+    x = path.contacts(np.array([stretch[0] + 1e-6, stretch[1] - 1e-6]))[:, 0]
+    corners = path.vertices
+    begin = max(0, int(np.searchsorted(corners[:, 0], x[0], side="right")) - 1)
+    end = min(len(corners) - 1, int(np.searchsorted(corners[:, 0], x[1], side="left")))
+    length = math.dist(corners[begin], corners[end])
+    s = stretch[1] if kind == "start" else stretch[0]
+    return NoStand(kind, s, length + missing + _AHEAD, length, message)
 
 
 def _at(path: WheelPath, robot: Robot, x: float, kind: End) -> Stand:
@@ -200,18 +235,30 @@ def _at(path: WheelPath, robot: Robot, x: float, kind: End) -> Stand:
         raise NoStand(
             kind, path.at_x(min(max(x, x0), x1)), gap, gap - side, "a wheel leaves the profile"
         )
+    found = _resting(path, robot, x)
+    if found is None:
+        tries = (x + side * k * _TRY for k in range(1, _TRIES) for side in (-1.0, 1.0))
+        on = (one for one in tries if x0 - robot.hips.rear[0] < one < x1 - robot.hips.front[0])
+        near = next((one for one in on if _resting(path, robot, one) is not None), None)
+        message = "the robot cannot stand with its trunk there: the ground is too steep or uneven"
+        raise NoStand(kind, path.at_x(x), near, x, message, "x of the trunk")
+    return found
+
+
+def _resting(path: WheelPath, robot: Robot, x: float) -> Stand | None:
+    """The stand whose trunk is at `x`, wheels on the profile, if it is found."""
+    x0, x1 = path.centres(np.array([0.0, path.length]))[:, 0]
     # On a slope the trunk leans off the wheels' middle: move the wheels until it is where asked.
     shift = 0.0
     for _ in range(_SHIFTS):
-        s = np.clip([ahead + shift, behind + shift], x0, x1)
+        ahead, behind = x + robot.hips.front[0] + shift, x + robot.hips.rear[0] + shift
+        s = np.clip([ahead, behind], x0, x1)
         found = stand(path, robot, path.at_x(s[0]), path.at_x(s[1]))
         missing = x - float(found.body[0])
         if abs(missing) < _EXACT:
             return found
         shift += missing
-    message = "the robot cannot stand with its trunk there: the ground is too steep or too uneven"
-    at = float(found.body[0])
-    raise NoStand(kind, path.at_x(x), x, at, message, "x of the trunk")
+    return None
 
 
 def sample_course(path: WheelPath, begin: Stand, end: Stand, step: float, size: float) -> Floats:
