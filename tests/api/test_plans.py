@@ -10,6 +10,7 @@ import httpx
 import numpy as np
 import pytest
 
+import stairwright as sw
 from stairwright.client import Client, ServiceError
 from stairwright.terrain.profile import Terrain
 from tests.conftest import Server
@@ -65,6 +66,30 @@ def test_a_plan_is_solved_stored_and_found_again(api: httpx.Client) -> None:
     same = api.get(f"/plans/{plan['id']}", headers={"if-none-match": tag})
     assert same.status_code == 304
     assert plan["id"] in [each["id"] for each in api.get("/plans").json()]
+
+
+def test_plans_of_documents_that_differ_in_texts_are_kept_apart(api: httpx.Client) -> None:
+    robot = sw.load_robot("a1_wheeled").model_dump(mode="json")
+    questions = [
+        {"terrain": CURB | {"name": "Alice"}, "robot": robot},
+        {"terrain": CURB | {"name": "Bob"}, "robot": robot},
+        {"terrain": CURB | {"name": "Bob", "description": "a curb"}, "robot": robot},
+        {"terrain": CURB | {"name": "Bob"}, "robot": robot | {"description": "mine"}},
+    ]
+    plans = [api.post("/plans", json=question).json() for question in questions]
+    assert len({plan["id"] for plan in plans}) == len(plans)
+    assert len({plan["terrain_hash"] for plan in plans}) == 1  # of what planning depends on
+    assert len({plan["robot_hash"] for plan in plans}) == 1
+    for plan in plans:
+        assert api.get(f"/plans/{plan['id']}").json() == plan
+
+
+def test_robots_that_cannot_be_simulated_are_refused(api: httpx.Client) -> None:
+    robot = sw.load_robot("a1_wheeled").model_dump(mode="json")
+    robot["trunk"]["inertia"] = [1.0, 1.0, 100.0]
+    answer = api.post("/plans", json={"terrain": CURB, "robot": robot})
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["field"] == "robot.trunk.inertia"
 
 
 def test_compressed_or_not_it_is_the_same_plan(api: httpx.Client) -> None:

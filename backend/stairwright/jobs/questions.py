@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from stairwright.documents import content_hash
-from stairwright.planning.plan import Method, Plan, plan_id
+from stairwright.planning.plan import Method, Plan
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -58,11 +58,6 @@ class PlanQuestion:
     def key(self) -> str:
         """Hash of the whole question, names and texts included."""
         return content_hash(self.data)
-
-    @property
-    def plan_id(self) -> str:
-        """The id that the plan will have."""
-        return plan_id(self.terrain, self.robot, self.friction, self.method, dict(self.weights))
 
 
 @dataclass(frozen=True)

@@ -157,6 +157,10 @@ class Plan(Model):
 def plan_id(
     terrain: Terrain, robot: Robot, friction: float, method: Method, weights: dict[str, Any]
 ) -> str:
-    """Content hash that names a plan: the same question has the same id."""
-    key = [terrain.hash, robot.hash, friction, method, weights]
+    """Content hash that names a plan: the same question has the same id.
+
+    Names and descriptions belong to the question, for the plan repeats them.
+    """
+    texts = [terrain.name, terrain.description, robot.name, robot.description]
+    key = [terrain.hash, robot.hash, *texts, friction, method, weights]
     return "p-" + content_hash(key).removeprefix("sha256:")
