@@ -68,6 +68,27 @@ def test_rear_contact_stays_behind_the_rear_hip(robot):
         assert pose.contacts[1][0] <= hip[0] + 1e-6
 
 
+@pytest.mark.parametrize("robot", sw.robots())
+@pytest.mark.parametrize(
+    "terrain",
+    [
+        {"points": [[-2, -0.2], [2, 0.2]]},
+        {"points": [[-2, 0.2], [2, -0.2]]},
+        {"points": [[-2, -0.2], [0, 0], [2, 0]]},
+        {"points": [[-2, 0.4], [0, 0], [2, 0.4]]},
+        {"points": [[-1, 0], [0, 0], [2, 0.6], [4, 0.6]], "start": 1.0, "goal": 3.4},
+    ],
+)
+def test_a_robot_that_starts_on_a_slope_goes_on(terrain, robot):
+    """The front wheel never goes back to the foot of the slope on which it stands."""
+    plan = sw.plan(terrain, robot, method="critical", friction=0.6)
+    assert plan.feasible, plan.problem
+    assert plan.certificate.passed
+    assert plan.certificate.motion is None
+    assert_sound(plan)
+    assert np.all(np.diff([pose.wheel_progress[0] for pose in plan.poses]) >= 0.0)
+
+
 def test_poses_repeat_on_a_uniform_flight():
     plan = sw.plan(stair(0.18, 0.28, 6), method="critical")
     shift = np.array([0.28, 0.18])

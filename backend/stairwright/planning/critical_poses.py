@@ -122,7 +122,7 @@ def _solve(
     rear = begin.wheels[1]
     before = _variables(_standing(search, begin))
     pairs: list[tuple[_Knot, _Knot]] = []
-    fronts = front_places(obstacles, search.path.radius, end.wheels[0])
+    fronts = front_places(obstacles, search.path.radius, begin.wheels[0], end.wheels[0])
     for k, (obstacle, (first, second)) in enumerate(zip(obstacles, fronts, strict=True)):
         rest = _rest(search, obstacles, k)
         following = end if k + 1 == len(obstacles) else rest

@@ -160,15 +160,24 @@ def _obstacle(
     return s[a], s[b], height, abs(height) / max(steepest, 1e-3), place
 
 
-def front_places(obstacles: list[Obstacle], radius: float, end: float) -> list[tuple[float, float]]:
+def front_places(
+    obstacles: list[Obstacle], radius: float, begin: float, end: float
+) -> list[tuple[float, float]]:
     """Arc lengths of the front wheel at the two poses of each obstacle.
 
-    The first: at the face. The second, as eq 26 has it: a face and a wheel radius further, at
-    least over the edge, but never past the next face or `end`.
+    The first: at the face, or where the wheel stands on it already. The second, as eq 26 has it: a
+    face and a wheel radius further, at least over the edge, but never past the next face or `end`.
+
+    Args:
+        obstacles: In order.
+        radius: Of the wheels [m].
+        begin: Where the front wheel starts [m].
+        end: Where it comes to rest [m].
     """
     places = []
     for k, obstacle in enumerate(obstacles):
         following = obstacles[k + 1].begin if k + 1 < len(obstacles) else end
+        first = max(obstacle.begin, begin)
         second = max(obstacle.end, obstacle.begin + obstacle.face + radius)
-        places.append((obstacle.begin, max(min(second, following), obstacle.begin + 1e-4)))
+        places.append((first, max(min(second, following), first + 1e-4)))
     return places
