@@ -15,6 +15,7 @@ from functools import cache, partial
 
 import numpy as np
 
+from .path.record import Motor
 from .path.solve import QUICK, Blocked, Course, Rung
 from .plan import Limit, Pose, Problem
 from .relaxation import (
@@ -24,7 +25,7 @@ from .relaxation import (
     Candidate,
     bold_candidates,
     candidates_of,
-    leg_torque,
+    motor_torque,
 )
 from .threads import race, search_threads
 
@@ -54,8 +55,8 @@ def explain(course: Course, blocked: Blocked) -> tuple[Problem, Way]:
 def _name(
     course: Course, blocked: Blocked, pool: Executor, meanwhile: Callable[[], object]
 ) -> Problem:
-    if blocked.torque:
-        torque = _torque(course, blocked)
+    if blocked.weak:
+        torque = _torque(course, blocked, blocked.weak)
         if torque is not None:
             return torque
     candidates = candidates_of(course)
@@ -191,13 +192,17 @@ def _confirmed(
     return candidate, ratio
 
 
-def _torque(course: Course, blocked: Blocked) -> Problem | None:
-    """The problem if joint torque alone stands in the way."""
-    candidate = leg_torque(course.robot)
+def _torque(course: Course, blocked: Blocked, motor: Motor) -> Problem | None:
+    """The problem if the torque of one kind of motors alone stands in the way."""
+    candidate = motor_torque(course.robot, motor)
     strong = candidate.change(course, candidate.limit).quick()
     if strong is None:
         return None
-    used = max(candidate.limit - pose.margins.torque for pose in strong.poses)
+    if motor == "leg":
+        used = max(candidate.limit - pose.margins.torque for pose in strong.poses)
+    else:
+        forces = np.array([pose.forces for pose in strong.poses])  # of pairs of wheels
+        used = 0.5 * float(np.abs(forces[:, :, 0]).max()) * course.robot.wheel.radius
     ratio = 1.001 * used / candidate.available
     if ratio <= 1.0 or not candidate.solves(course, ratio):
         return None

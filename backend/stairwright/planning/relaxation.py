@@ -13,11 +13,13 @@ from stairwright.terrain.profile import Terrain
 
 from .path.course import NoStand
 from .path.lattice import BOLD
+from .path.record import Motor
 from .path.solve import QUICK, Course, Rung, pose_course
 
 Kind = Literal["reach", "clearance", "statics", "torque", "joint_limit"]
 
 LONGEST = 3.0  # times the legs' length; no engineer would build more
+STRONGEST = 1000.0  # Nm; the most that a motor is described with
 AMPLE = 1.5  # friction that leaves nothing to wish for
 CLOSE = 0.02  # relative precision of the value that searches tell
 _FLAT = 0.02  # of a profile's height
@@ -89,12 +91,11 @@ def candidates_of(course: Course) -> list[Candidate]:
     ]  # fmt: skip
 
 
-def leg_torque(robot: Robot) -> Candidate:
-    """The torque of the legs' motors; asked where whole plans break no other bound."""
-    available = robot.actuators.leg.torque
+def motor_torque(robot: Robot, motor: Motor) -> Candidate:
+    """The torque of the legs' or wheels' motors; asked where whole plans break no other bound."""
     return Candidate(
-        "torque", "leg torque", "Nm", available, 10 * available,
-        lambda c, v: _with_robot(c, _stronger(robot, v)),
+        "torque", f"{motor} torque", "Nm", getattr(robot.actuators, motor).torque, STRONGEST,
+        lambda c, v: _with_robot(c, _stronger(robot, motor, v)),
     )  # fmt: skip
 
 
@@ -170,6 +171,6 @@ def _wider(robot: Robot, part: str, extra: float) -> Robot:
     return _changed(robot, {"joints": legs})
 
 
-def _stronger(robot: Robot, torque: float) -> Robot:
-    leg = robot.actuators.leg.model_dump() | {"torque": torque}
-    return _changed(robot, {"actuators": {"leg": leg}})
+def _stronger(robot: Robot, motor: Motor, torque: float) -> Robot:
+    stronger = getattr(robot.actuators, motor).model_dump() | {"torque": torque}
+    return _changed(robot, {"actuators": {motor: stronger}})

@@ -268,3 +268,16 @@ def test_same_question_same_answer():
     first, second = (sw.plan(terrain(STAIR), friction=0.6) for _ in range(2))
     assert first.id == second.id
     assert first.poses == second.poses
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize(("motor", "share"), [("leg", 0.5), ("leg", 0.05), ("wheel", 0.02)])
+def test_a_weak_motor_is_named_with_the_torque_that_is_enough(motor, share, robot):
+    data = sw.load_robot(robot).model_dump()
+    data["actuators"][motor]["torque"] = 10.0 * share
+    problem = sw.plan("single-stair-036", data).problem
+    assert problem.kind == "torque"
+    assert (problem.limit.quantity, problem.limit.unit) == (f"{motor} torque", "Nm")
+    assert problem.limit.available == pytest.approx(10.0 * share)
+    data["actuators"][motor]["torque"] = problem.limit.needed
+    assert sw.plan("single-stair-036", data).feasible

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numba as nb
 import numpy as np
@@ -22,6 +22,7 @@ from .legs import COM_X, LEGS, LEGS_GAP, LINKS, RECORD, SLACK, TRUNK, Leg, evalu
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Motor = Literal["leg", "wheel"]
 
 LEAST_CLEARANCE = 0.0005  # m; the best controller strays that far
 LEAST_COM = 0.001  # m; no robot's centre of mass is known better
@@ -92,9 +93,10 @@ class Record:
         return least
 
     @property
-    def only_torque(self) -> bool:
-        """Whether the legs' torque is the one bound that is violated."""
-        return bool(self._rooms[:-1].min() >= 0.0 > self._rooms[-1].min())
+    def weak(self) -> Motor | None:
+        """The motors whose torque is the one bound that is violated."""
+        broken = np.flatnonzero(self._rooms.min(axis=1) < 0.0) - len(self._rooms)
+        return _LAST_ROOMS.get(int(broken[0])) if len(broken) == 1 else None
 
     @property
     def worst(self) -> float:
@@ -107,6 +109,7 @@ class Record:
         return np.flatnonzero(self.room < _SPARE)
 
 
+_LAST_ROOMS: dict[int, Motor] = {-2: "wheel", -1: "leg"}
 _OF_NODES = ("poses", "com", "firm", "need", "forces", "torque", "wheel_torque")
 
 

@@ -24,6 +24,7 @@ from .ground import make_ground
 from .lattice import BOLD, HOPE, KEEN, STRICT, Finding
 from .mend import STAGES, mend
 from .question import Question
+from .record import Motor
 from .refine import Refined, refine
 from .tables import Bounds
 from .windows import Searches, find_path
@@ -85,12 +86,12 @@ class Blocked:
     Attributes:
         reached: Arc lengths where the way ends, or where a found way breaks a bound worst.
         opened: Whether a search came through at all.
-        torque: Whether a found way broke the bound of joint torque alone.
+        weak: Motors whose torque was the one bound that a found way broke.
     """
 
     reached: tuple[float, float] | None
     opened: bool
-    torque: bool = False
+    weak: Motor | None = None
 
 
 def pose_course(terrain: Terrain, robot: Robot, friction: float, weights: PathWeights) -> Course:
@@ -148,7 +149,8 @@ class Course(Question):
         found = [one for one in ends if one.opened] or ends  # rather where a way breaks a bound
         return Blocked(
             max((one.reached for one in found if one.reached), key=sum, default=None),
-            any(one.opened for one in blocked), any(one.torque for one in blocked),
+            any(one.opened for one in blocked),
+            next((one.weak for one in blocked if one.weak), None),
         )  # fmt: skip
 
     def quick(self, rungs: Sequence[Rung] = QUICK) -> Solved | None:
@@ -198,7 +200,7 @@ class Course(Question):
             if stage is not None:
                 found = mend(self, found, bad, stage)
         worst = found.s[int(found.record.room.argmin())]
-        return Blocked((float(worst[0]), float(worst[1])), True, found.record.only_torque)
+        return Blocked((float(worst[0]), float(worst[1])), True, found.record.weak)
 
     def _certified(self, found: Refined) -> Solved:
         """The path as a document with its certificate, passed or not."""
