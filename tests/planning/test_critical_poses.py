@@ -69,6 +69,24 @@ def test_rear_contact_stays_behind_the_rear_hip(robot):
 
 
 @pytest.mark.parametrize("robot", sw.robots())
+@pytest.mark.parametrize("tilt", [0.02, 0.0, -0.02])
+def test_treads_need_not_be_level(tilt, robot):
+    """Two poses for each stair of a flight, the same two again where what lies before repeats."""
+    points, run, rise = [[-1.5, 0.0]], 0.3, 0.16
+    for k in range(5):
+        foot = k * (rise + tilt)
+        points += [[k * run, foot], [k * run, foot + rise]]
+    plan = sw.plan({"points": [*points, [3.2, points[-1][1]]]}, robot, method="critical")
+    assert plan.feasible
+    assert len(plan.poses) == 12
+    assert plan.certificate.motion is None
+    for before, after in zip(plan.poses[5:7], plan.poses[7:9], strict=True):
+        shift = np.subtract(after.wheels, before.wheels)
+        assert np.allclose(shift, [run, rise + tilt], atol=1e-6)
+        assert np.allclose(after.q, before.q, atol=1e-6)
+
+
+@pytest.mark.parametrize("robot", sw.robots())
 @pytest.mark.parametrize(
     "terrain",
     [

@@ -4,7 +4,8 @@ On the paper's terrain an obstacle is a stair or a ramp. On any profile it is wh
 climbs or descends between two treads: a tread is a stretch of the wheel-centre curve at least
 `TREAD` long whose slope stays below `LEVEL`; between two treads every rise or descent of at least
 `LOW` (smaller ups and downs within it ignored) is an obstacle. One that goes up and down again is
-two. A flight whose treads are too short for a tread is one obstacle.
+two. A flight whose treads are not level is one obstacle for each of its faces; one whose treads are
+too short for a tread is one obstacle.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ Ints = NDArray[np.int64]
 
 TREAD = 0.10  # m
 LEVEL = math.radians(3.0)
+SLOPE = 0.2  # rad; ground between two faces of a flight that is no steeper is a tread too
 LOW = 0.02  # m
 _STEP = 0.005  # m, sampling of arcs and long lines
 
@@ -66,13 +68,20 @@ def _obstacles(pieces: Floats, radius: float, low: float, high: float) -> Floats
     """Rows with the numbers of an `Obstacle`."""
     s, ends = _samples(pieces[:, 1], low, high)
     z = sample(pieces, radius, s)[:, 1].copy()
-    gentle = np.abs(np.diff(z)) <= math.sin(LEVEL) * np.diff(s) + 1e-12
+    rises, ways = np.abs(np.diff(z)), np.diff(s)
+    gentle = rises <= math.sin(LEVEL) * ways + 1e-12
+    sloping = rises <= math.sin(SLOPE) * ways + 1e-12
     found = np.empty((len(s), 5))
     count = 0
     for first, last in _rough_stretches(s, gentle):
-        for a, b in _monotone_runs(z[first : last + 1]):
-            found[count] = _obstacle(pieces, radius, s, z, ends, first + a, first + b)
-            count += 1
+        faces = _rough_stretches(s[first : last + 1], sloping[first:last])
+        if len(faces) < 2:  # no flight
+            faces = [(0, last - first)]
+        for begin, end in faces:
+            low, high = first + begin, first + end
+            for a, b in _monotone_runs(z[low : high + 1]):
+                found[count] = _obstacle(pieces, radius, s, z, ends, low + a, low + b)
+                count += 1
     return found[:count].copy()
 
 
