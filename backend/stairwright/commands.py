@@ -106,6 +106,9 @@ def certify_command(given: Arguments) -> str | None:
     plan = load_plan(given.plan)
     certificate = certify(plan)
     print(summary.of_certificate(certificate))
+    obstacle = _obstacle(plan)  # the poses before it may well pass
+    if obstacle:
+        return f"the plan is infeasible: {obstacle}"
     failed = [check.name for check in certificate.checks if not check.passed]
     if failed:
         return f"not passed: {', '.join(failed)}"
@@ -118,10 +121,12 @@ def bench_command(given: Arguments) -> str | None:
 
     if given.repeat < 1:
         raise InputError("must be at least 1", ("repeat",))
+    grounds = [_terrain(name) for name in given.terrains or terrains()]
+    machines = [load_robot(name) for name in given.robot or robots()]
     print(summary.bench_head())
-    for terrain in given.terrains or terrains():
-        for robot in given.robot or robots():
-            figures = measure(_terrain(terrain), load_robot(robot), given.method, given.repeat)
+    for terrain in grounds:
+        for robot in machines:
+            figures = measure(terrain, robot, given.method, given.repeat)
             print(summary.bench_line(figures), flush=True)
     return None
 

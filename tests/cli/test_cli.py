@@ -106,6 +106,11 @@ def test_what_cannot_be_done_is_status_1(tmp_path: Path) -> None:
     run("plan", wall, "-o", out, status=1)
     assert json.loads(out.read_text())["status"] == "infeasible"
     run("rollout", wall, status=1)
+    assert "FAILED" not in run("certify", out, status=1)  # as far as it goes it is sound
+    told = io.StringIO()
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(told):
+        main(["certify", str(out)])
+    assert told.getvalue().startswith("stairwright: the plan is infeasible: ")
 
 
 @pytest.mark.parametrize(
@@ -133,10 +138,12 @@ def test_what_cannot_be_done_is_status_1(tmp_path: Path) -> None:
         ("serve", "--host", "0.0.0.0"),
         ("serve", "--port", "99999"),
         ("bench", "--repeat", "0"),
+        ("bench", "nope"),
+        ("bench", "flat", "--robot", "nobody"),
     ],
 )
 def test_bad_input_is_status_2_and_one_line(arguments: tuple[str, ...]) -> None:
-    run(*arguments, status=2)
+    assert run(*arguments, status=2) == ""
 
 
 def test_a_plan_that_is_made_already_takes_no_weights(plan: Path) -> None:
