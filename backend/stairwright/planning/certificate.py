@@ -25,6 +25,7 @@ from .equilibrium import balanced
 from .plan import Certificate, Check, Plan
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 WHEEL_GAP = 0.002  # m; a wheel this near to the ground touches it
 WHEEL_SINK = 0.001  # m
@@ -215,11 +216,27 @@ class _Checker:
         return self._least(name, clearances - self.slack, 0.0, "m")
 
     def _legs_gap(self) -> Floats:
-        """Least distance between the links and wheels of the front and the rear leg (n,)."""
+        """Distance between the links and wheels of the front and the rear leg (n,), or a bound.
+
+        It is exact wherever the legs may be nearer to each other than at the least bound.
+        """
+        f, robot = self.frames, self.robot
+        joints = np.stack([f.hips, f.knees, f.wheels], axis=2)  # (n, leg, joint, 2)
+        low, high = joints.min(axis=2), joints.max(axis=2)
+        radius = max(robot.thigh.radius, robot.calf.radius, robot.wheel.radius)
+        between = np.maximum(low[:, 0] - high[:, 1], low[:, 1] - high[:, 0])
+        gap: Floats = np.hypot(*np.maximum(between, 0.0).T) - 2 * radius
+        first = np.array([np.argmin(gap)])
+        near = np.flatnonzero(gap <= self._exact_gap(first)[0])
+        gap[near] = self._exact_gap(near)
+        return gap
+
+    def _exact_gap(self, samples: Ints) -> Floats:
+        """Least distance between the links and wheels of both legs at some samples (n,)."""
         f, robot = self.frames, self.robot
         parts = []
         for leg in range(2):
-            hip, knee, wheel = f.hips[:, leg], f.knees[:, leg], f.wheels[:, leg]
+            hip, knee, wheel = (one[samples, leg] for one in (f.hips, f.knees, f.wheels))
             parts.append(
                 [
                     (shapely.linestrings(np.stack([hip, knee], axis=1)), robot.thigh.radius),

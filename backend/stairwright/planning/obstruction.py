@@ -11,13 +11,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from concurrent.futures import Executor
+from dataclasses import dataclass
 from functools import cache, partial
 
 import numpy as np
 
+from .path.pieces import pieces
 from .path.record import Motor
-from .path.solve import QUICK, Blocked, Course, Rung
-from .plan import Limit, Pose, Problem
+from .path.search import Place
+from .path.solve import Blocked, Course, Solved, Way
+from .plan import Limit, Problem
 from .relaxation import (
     AMPLE,
     CLOSE,
@@ -25,11 +28,13 @@ from .relaxation import (
     Candidate,
     bold_candidates,
     candidates_of,
+    leads_past,
     motor_torque,
 )
 from .threads import race, search_threads
 
-Way = tuple[list[Pose], list[int], float]  # poses, key poses, duration [s]
+Cause = tuple[Candidate, float]  # what opens the way, and by which factor
+Ranked = list[Cause]
 
 _ROUGH = 1.3  # relative precision of a factor before other quantities were asked
 _MORE = (1.005, 1.05, 1.15, 1.3, 1.7, 2.5, 4.0)  # on the least factor: planning is tried there
@@ -48,47 +53,78 @@ def explain(course: Course, blocked: Blocked) -> tuple[Problem, Way]:
     pool = search_threads()
     # As far as it goes: found beside the first plan that is tried, where a thread is at leisure.
     partial_way = cache(lambda: pool.submit(course.partial))
-    problem = _name(course, blocked, pool, partial_way)
-    return problem, partial_way().result()
+    cause = _cause(course, blocked, pool, partial_way)
+    way, ended = partial_way().result()
+    reached = blocked.reached if blocked.opened or not ended else ended
+    return _problem(course, reached, cause), way
 
 
-def _name(
+def _cause(
     course: Course, blocked: Blocked, pool: Executor, meanwhile: Callable[[], object]
-) -> Problem:
-    if blocked.weak:
-        torque = _torque(course, blocked, blocked.weak)
-        if torque is not None:
-            return torque
+) -> Cause | None:
+    """The single change that opens the way, if one does."""
+    torque = _torque(course, blocked.weak) if blocked.weak else None
+    if torque is not None:
+        return torque
     candidates = candidates_of(course)
+    places = list(blocked.stops)
+    if not _whole(course, places) and leads_past(course, places):
+        places.clear()  # some poses there lead on, but no way leads to them
     for _ in range(_ASKED):
-        ranked = _ranked(course, candidates, pool)
-        meanwhile()
-        answer = _confirmed(course, ranked, pool)
+        ranked, answer = _answered(course, candidates, places, pool, meanwhile)
         if answer is not None:
-            return _problem(course, blocked, *answer)
+            return answer
         tried = [candidate for candidate, _ in ranked]
         candidates = [one for one in candidates if one not in tried]
         if not tried or not candidates:
             break
-    return _hopeless(course, blocked, pool)
+    for bold in bold_candidates(course):  # where no single change of grip or robot is enough
+        _, answer = _answered(course, [bold], places, pool, meanwhile)
+        if answer is not None:
+            return answer
+    return None
+
+
+def _answered(
+    course: Course,
+    candidates: list[Candidate],
+    places: list[Place],
+    pool: Executor,
+    meanwhile: Callable[[], object],
+) -> tuple[Ranked, Cause | None]:
+    """Candidates in their order, and the one that opens the way with its least factor.
+
+    Candidates are asked whether they lead past `places`; where one does that stops elsewhere, that
+    place is added and all are asked again. Without places all of the course is asked.
+    """
+    while True:
+        ranked = _ranked(course, candidates, places, pool)
+        meanwhile()
+        answer = _confirmed(course, ranked, places, pool)
+        if not isinstance(answer, Beyond):
+            return ranked, answer
+        if any(piece.has(course, answer.place) for piece in pieces(course, places)):
+            places.clear()  # what happens there depends on more than was asked
+        else:
+            places.append(answer.place)
 
 
 def _ranked(
-    course: Course, candidates: list[Candidate], pool: Executor
-) -> list[tuple[Candidate, float]]:
-    """Candidates that open the way, least factor first.
+    course: Course, candidates: list[Candidate], places: list[Place], pool: Executor
+) -> Ranked:
+    """Candidates that open the way past `places`, least factor first.
 
     The least factor is told precisely; the others are factors that do.
     """
     first, *others = candidates
-    least = _least(course, first, math.inf, _ROUGH, pool)
+    least = _least(course, first, places, math.inf, _ROUGH, pool)
     low, ratio = least or (1.0, math.inf)
     ranked = [(first, ratio)] if least else []
     asked = [(one, one.highest(ratio)) for one in others if one.highest(ratio) > 1.0]
-    opened = list(pool.map(lambda one: one[0].opens(course, one[1]), asked))
+    opened = list(pool.map(lambda one: one[0].opens(course, places, one[1]), asked))
     able = [one for one, opens in zip(asked, opened, strict=True) if opens]
     for candidate, high in sorted(able, key=lambda one: one[1]):
-        found = _least(course, candidate, ratio, 1.0 + CLOSE, pool, high)
+        found = _least(course, candidate, places, ratio, 1.0 + CLOSE, pool, high)
         if found is not None:
             ratio = found[1]
             ranked.insert(0, (candidate, ratio))
@@ -98,8 +134,9 @@ def _ranked(
     if least is not None:
         leads = ranked[0][0] is first
         high = ratio if leads else first.highest(ratio)
-        if high > low and (leads or first.opens(course, high)):
-            ratio = _narrow(partial(first.opens, course), low, high, 1.0 + CLOSE, pool)[1]
+        if high > low and (leads or first.opens(course, places, high)):
+            opens = partial(first.opens, course, places)
+            ratio = _narrow(opens, low, high, 1.0 + CLOSE, pool)[1]
             ranked = [(first, ratio), *(one for one in ranked if one[0] is not first)]
     return ranked
 
@@ -107,6 +144,7 @@ def _ranked(
 def _least(
     course: Course,
     candidate: Candidate,
+    places: list[Place],
     below: float,
     close: float,
     pool: Executor,
@@ -115,7 +153,7 @@ def _least(
     """Factors of which the larger opens the way, if less than `below`, and the smaller does not.
 
     Args:
-        course, candidate, pool: Who asks about what.
+        course, candidate, places, pool: Who asks about what.
         below: The factor is of interest if it is less.
         close: Largest quotient of the factors.
         known: A factor that opens the way.
@@ -123,7 +161,7 @@ def _least(
     high = candidate.highest(below)
     if high <= 1.0:
         return None
-    opens = partial(candidate.opens, course)
+    opens = partial(candidate.opens, course, places)
     if known <= high:
         return _narrow(opens, 1.0, known, close, pool)
     middle = math.sqrt(high)
@@ -155,35 +193,49 @@ def _narrow(
     return low, high
 
 
+def _whole(course: Course, places: list[Place]) -> bool:
+    """Whether questions about `places` are asked of all of the course."""
+    return pieces(course, places)[0].whole
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """Where a way ends that was thought open."""
+
+    place: Place
+
+
 def _confirmed(
-    course: Course, ranked: list[tuple[Candidate, float]], pool: Executor
-) -> tuple[Candidate, float] | None:
+    course: Course, ranked: Ranked, places: list[Place], pool: Executor
+) -> Cause | Beyond | None:
     """The least factor with which a certified plan exists, and on which of the `ranked`.
 
-    Factors from those told on are tried, the least first, two attempts at once.
+    Factors from those told on are tried, the least first, two at once.
 
     Args:
         course: The question.
         ranked: Candidates and factors.
+        places: What the factors are known to lead past.
         pool: Who tries.
     """
     tries = sorted(
         {(min(ratio * more, one.most), k)
          for k, (one, ratio) in enumerate(ranked[:_RIVALS]) for more in _MORE}
     )  # fmt: skip
-    attempts = [(ratio, k, rung) for ratio, k in tries for rung in QUICK]
+    whole = _whole(course, places)
     low: dict[int, float] = {}
 
-    def leads(attempt: tuple[float, int, Rung]) -> bool:
-        ratio, k, rung = attempt
-        return ranked[k][0].solves(course, ratio, (rung,))
+    def lead(one: tuple[float, int]) -> Solved | Blocked:
+        ratio, k = one
+        return ranked[k][0].attempt(course, ratio)
 
-    with race(pool, leads, attempts) as ends:
-        for (ratio, k, rung), enough in zip(attempts, ends, strict=True):
-            if enough:
+    with race(pool, lead, tries) as ends:
+        for (ratio, k), end in zip(tries, ends, strict=True):
+            if isinstance(end, Solved):
                 break
-            if rung is QUICK[-1]:
-                low[k] = ratio
+            if not (whole or low or end.opened):
+                return Beyond(end.reached or course.stands[0].wheels)
+            low[k] = ratio
         else:
             return None
     candidate = ranked[k][0]
@@ -192,11 +244,11 @@ def _confirmed(
     return candidate, ratio
 
 
-def _torque(course: Course, blocked: Blocked, motor: Motor) -> Problem | None:
-    """The problem if the torque of one kind of motors alone stands in the way."""
+def _torque(course: Course, motor: Motor) -> Cause | None:
+    """The torque of one kind of motors, if that alone stands in the way."""
     candidate = motor_torque(course.robot, motor)
     strong = candidate.change(course, candidate.limit).quick()
-    if strong is None:
+    if isinstance(strong, Blocked):
         return None
     if motor == "leg":
         used = max(candidate.limit - pose.margins.torque for pose in strong.poses)
@@ -204,49 +256,34 @@ def _torque(course: Course, blocked: Blocked, motor: Motor) -> Problem | None:
         forces = np.array([pose.forces for pose in strong.poses])  # of pairs of wheels
         used = 0.5 * float(np.abs(forces[:, :, 0]).max()) * course.robot.wheel.radius
     ratio = 1.001 * used / candidate.available
-    if ratio <= 1.0 or not candidate.solves(course, ratio):
-        return None
-    return _problem(course, blocked, candidate, ratio)
+    return (candidate, ratio) if ratio > 1.0 and candidate.solves(course, ratio) else None
 
 
-def _place(course: Course, blocked: Blocked) -> tuple[tuple[float, float], float, str]:
-    """Contact point, progress and name of the wheel that is stopped."""
+def _problem(course: Course, reached: Place | None, cause: Cause | None) -> Problem:
+    """In words: what stops the wheels where they end, and what would be enough."""
     begin, end = course.stands
-    front, rear = blocked.reached or begin.wheels
-    stopped, name = (rear, "rear") if front >= end.wheels[0] - 1e-6 else (front, "front")
-    at = course.path.contacts(np.array([stopped]))[0]
-    progress = 0.5 * (front + rear - sum(begin.wheels))
-    return (float(at[0]), float(at[1])), max(0.0, float(progress)), name
-
-
-def _problem(course: Course, blocked: Blocked, candidate: Candidate, ratio: float) -> Problem:
+    front, rear = reached or begin.wheels
+    stopped, wheel = (rear, "rear") if front >= end.wheels[0] - 1e-6 else (front, "front")
+    x, z = course.path.contacts(np.array([stopped]))[0].tolist()
+    progress = max(0.0, 0.5 * (front + rear - sum(begin.wheels)))
+    stop = f"the {wheel} wheels stop at x = {x:.2f} m, z = {z:.2f} m"
+    if cause is None:
+        message = (
+            f"{stop}, and neither legs of {LONGEST:g} times the length with friction {AMPLE:g} nor "
+            "a profile of a fiftieth of the height would change that"
+        )
+        return Problem(kind="reach", at=(x, z), progress=progress, message=message)
+    candidate, ratio = cause
     value = candidate.at(ratio)
-    at, progress, wheel = _place(course, blocked)
     unit = "" if candidate.unit == "1" else f" {candidate.unit}"
     message = (
         f"needs {candidate.quantity} {value:.3g}{unit}{candidate.given}, "
-        f"has {candidate.available:.3g}{unit}: "
-        f"the {wheel} wheels stop at x = {at[0]:.2f} m, z = {at[1]:.2f} m"
+        f"has {candidate.available:.3g}{unit}: {stop}"
     )
     return Problem(
-        kind=candidate.kind, at=at, progress=progress, message=message,
+        kind=candidate.kind, at=(x, z), progress=progress, message=message,
         limit=Limit(
             needed=value, available=candidate.available,
             quantity=candidate.quantity + candidate.given, unit=candidate.unit,
         ),
     )  # fmt: skip
-
-
-def _hopeless(course: Course, blocked: Blocked, pool: Executor) -> Problem:
-    """The problem where no single change of grip or robot is enough."""
-    for bold in bold_candidates(course):
-        answer = _confirmed(course, _ranked(course, [bold], pool), pool)
-        if answer is not None:
-            return _problem(course, blocked, *answer)
-    at, progress, wheel = _place(course, blocked)
-    message = (
-        f"the {wheel} wheels stop at x = {at[0]:.2f} m, z = {at[1]:.2f} m, and neither legs of "
-        f"{LONGEST:g} times the length with friction {AMPLE:g} nor a profile of a fiftieth of the "
-        "height would change that"
-    )
-    return Problem(kind="reach", at=at, progress=progress, message=message)

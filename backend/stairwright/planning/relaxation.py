@@ -13,8 +13,10 @@ from stairwright.terrain.profile import Terrain
 
 from .path.course import NoStand
 from .path.lattice import BOLD
+from .path.pieces import pieces
 from .path.record import Motor
-from .path.solve import QUICK, Course, Rung, pose_course
+from .path.search import Place
+from .path.solve import Blocked, Course, Solved, pose_course
 
 Kind = Literal["reach", "clearance", "statics", "torque", "joint_limit"]
 
@@ -51,21 +53,33 @@ class Candidate:
         """The largest factor worth asking about where one of `below` is known to do."""
         return min(self.most, below / (1.0 + CLOSE))
 
-    def opens(self, course: Course, ratio: float) -> bool:
-        """Whether a quick, forgiving search comes through with the quantity changed so."""
-        try:
-            changed = self.change(course, self.at(ratio))
-        except NoStand:
-            return False
-        return changed.find(_FINE, BOLD, cheap=False).quality > 0
+    def opens(self, course: Course, places: Sequence[Place], ratio: float) -> bool:
+        """Whether a quick, forgiving search comes past `places` with the quantity changed so.
 
-    def solves(self, course: Course, ratio: float, rungs: Sequence[Rung] = QUICK) -> bool:
-        """Whether one of `rungs` leads to a certified plan with the quantity changed so."""
+        Of another profile all is asked.
+        """
         try:
             changed = self.change(course, self.at(ratio))
         except NoStand:
             return False
-        return changed.quick(rungs) is not None
+        return leads_past(changed, places if changed.terrain is course.terrain else ())
+
+    def attempt(self, course: Course, ratio: float) -> Solved | Blocked:
+        """What comes of a quick attempt at a plan with the quantity changed so."""
+        try:
+            changed = self.change(course, self.at(ratio))
+        except NoStand:
+            return Blocked(None, False)
+        return changed.quick()
+
+    def solves(self, course: Course, ratio: float) -> bool:
+        """Whether that leads to a certified plan."""
+        return isinstance(self.attempt(course, ratio), Solved)
+
+
+def leads_past(course: Course, places: Sequence[Place]) -> bool:
+    """Whether a quick, forgiving search leads through the pieces round `places`."""
+    return all(course.passes(piece, _FINE, BOLD) for piece in pieces(course, places))
 
 
 def candidates_of(course: Course) -> list[Candidate]:

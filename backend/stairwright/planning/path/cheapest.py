@@ -11,7 +11,7 @@ from stairwright.compiled import leaf, vector_leaf
 from .cells import FORWARD, MOVES, Cells, World, row_start, table_rows, volume_size
 from .kernels import convolve, gather_cost, reach
 from .tables import INF, Floats32, moments
-from .volumes import Volumes, offset
+from .volumes import Costs, Volumes, offset
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -107,6 +107,7 @@ def cheapest(
     w: World,
     cells: Cells,
     v: Volumes,
+    costs: Costs,
     source: int,
     seed: Ints,
     moves: int,
@@ -119,7 +120,8 @@ def cheapest(
     Args:
         w: The problem.
         cells: Its cells.
-        v: Their volumes: `value` is filled.
+        v: Their volumes.
+        costs: What is filled.
         source: Start cell.
         seed: (3,) lattice pose round which it is entered.
         moves: How many of `MOVES` are allowed.
@@ -141,22 +143,23 @@ def cheapest(
         lo, hi = size, 0
         for m in range(moves):
             p = cells.origin[c, m]
-            if p >= 0 and v.low[p] < v.high[p]:
+            if p >= 0 and costs.low[p] < costs.high[p]:
                 by = offset(cells, lat, c, p)
-                lo, hi = min(lo, v.low[p] - by), max(hi, v.high[p] - by)
+                lo, hi = min(lo, costs.low[p] - by), max(hi, costs.high[p] - by)
         if c == source:
             lo, hi = 0, size
         lo, hi = max(0, lo - margin), min(size, hi + margin)
-        if max(lo, v.first[c]) >= min(hi, v.last[c]):
+        if max(lo, costs.first[c]) >= min(hi, costs.last[c]):
             continue
         a, b = max(0, lo - margin), min(size, hi + margin)
         pad[a:b] = INF
         result[a:b] = INF
         for m in range(moves):
             p = cells.origin[c, m]
-            if p >= 0 and v.low[p] < v.high[p]:
-                by, cost = offset(cells, lat, c, p), step_cost(w, cells, c, m)
-                gather_cost(v.value[v.slot[p]], v.low[p], v.high[p], by, cost, pad)
+            if p >= 0 and costs.low[p] < costs.high[p]:
+                by, at = offset(cells, lat, c, p), costs.base[p]
+                cost, low, high = step_cost(w, cells, c, m), at + costs.low[p], at + costs.high[p]
+                gather_cost(costs.value, low, high, at + by, cost, pad)
         convolve(pad, result, lo, hi, lat, smooth)
         if c == source:
             for t in range(max(0, seed[0] - 2), min(lat.nt, seed[0] + 3)):
@@ -164,19 +167,49 @@ def cheapest(
                     for x in range(max(0, seed[2] - 2), min(lat.nx, seed[2] + 3)):
                         far = abs(t - seed[0]) + abs(z - seed[1]) + abs(x - seed[2])
                         result[row_start(lat, t, z) + x] = np.float32(far)
-        slot = v.slot[c]
-        width, value = v.width[slot], v.value[slot]
-        if v.low[c] >= v.high[c]:
-            value[:] = INF
-        lo, hi = max(lo, v.first[c]), min(hi, v.last[c])
+        lo, hi = max(lo, costs.first[c]), min(hi, costs.last[c])
+        width = v.width[v.slot[c]]
         pose_costs(w, cells, c, pulls, width, least, lo, hi, result)
-        p, r, u = width[lo:hi], result[lo:hi], value[lo:hi]
+        _only_wide(width[lo:hi], least, result[lo:hi])  # the rim between rows holds scratch
+        if _keep(costs, c, lo, hi, result):
+            changed = True
+    return changed
+
+
+@vector_leaf
+def _only_wide(width: Bytes, least: np.uint8, out: Floats32) -> None:
+    """INF where `width` (n,) is less than `least`, in `out` (n,)."""
+    one = np.float32(1.0)
+    for k in range(len(out)):
+        out[k] = out[k] if width[k] >= least else one * INF
+
+
+@leaf
+def _keep(costs: Costs, c: int, lo: int, hi: int, result: Floats32) -> bool:
+    """Take over what of `result` in [lo, hi) is cheaper than what cell `c` has; True if any is."""
+    while lo < hi and result[lo] >= INF:
+        lo += 1
+    while lo < hi and result[hi - 1] >= INF:
+        hi -= 1
+    if lo >= hi:
+        return False
+    value, at, low, high = costs.value, costs.base[c], costs.low[c], costs.high[c]
+    if low >= high:
+        new, room = result[lo:hi], value[at + lo : at + hi]
         for k in range(hi - lo):
-            if p[k] >= least and r[k] < u[k] - np.float32(1e-4) and r[k] < INF:
-                u[k] = r[k]
-                v.low[c] = min(v.low[c], lo + k)
-                v.high[c] = max(v.high[c], lo + k + 1)
-                changed = True
+            room[k] = new[k]
+        costs.low[c], costs.high[c] = lo, hi
+        return True
+    for k in range(lo, low):
+        value[at + k] = INF
+    for k in range(high, hi):
+        value[at + k] = INF
+    costs.low[c], costs.high[c] = min(lo, low), max(hi, high)
+    changed = False
+    for k in range(lo, hi):
+        if result[k] < value[at + k] - np.float32(1e-4):
+            value[at + k] = result[k]
+            changed = True
     return changed
 
 
@@ -184,7 +217,7 @@ def cheapest(
 def trace(
     w: World,
     cells: Cells,
-    v: Volumes,
+    costs: Costs,
     source: int,
     goal: int,
     pose: Ints,
@@ -208,9 +241,9 @@ def trace(
         best, bc, bt, bz, bx = 1e8, -1, 0, 0, 0
         for m in range(moves):
             p = cells.origin[c, m]
-            if p < 0 or v.low[p] >= v.high[p]:
+            if p < 0 or costs.low[p] >= costs.high[p]:
                 continue
-            value, cost = v.value[v.slot[p]], step_cost(w, cells, c, m)
+            at, cost = costs.base[p], step_cost(w, cells, c, m)
             ot, oz = cells.t0[c] - cells.t0[p], cells.z0[c] - cells.z0[p]
             ox = cells.x0[c] - cells.x0[p]
             for dt in range(-2, 3):
@@ -223,7 +256,10 @@ def trace(
                         xx = x + dx + ox
                         if xx < 0 or xx >= lat.nx:
                             continue
-                        u = value[row_start(lat, tt, zz) + xx] + cost
+                        k = row_start(lat, tt, zz) + xx
+                        if k < costs.low[p] or k >= costs.high[p]:
+                            continue
+                        u = costs.value[at + k] + cost
                         u += price[dt + 2] + price[dz + 2] + price[dx + 2]
                         if u < best:
                             best, bc, bt, bz, bx = u, p, tt, zz, xx

@@ -29,15 +29,15 @@ Flags = NDArray[np.bool_]
 
 
 @nb.njit(cache=True, nogil=True)
-def flood(w: World, cells: Cells, v: Volumes, source: int, seed: Ints, moves: int) -> bool:
-    """One sweep of the widest path from cell `source` over all cells; True if anything changed.
+def flood(w: World, cells: Cells, v: Volumes, entry: Flags, seed: Ints, moves: int) -> bool:
+    """One sweep of the widest path from the cells of entry over all cells; True if any changed.
 
     Args:
         w: The problem.
         cells: Its cells.
         v: Their volumes: `width` is filled.
-        source: Start cell.
-        seed: (3,) lattice pose (t, z, x, window indices) round which the source is entered.
+        entry: (n,) whether ways begin in a cell.
+        seed: (3, 2) their first poses: range of lattice poses (t, z, x, window indices).
         moves: How many of `MOVES` are allowed.
     """
     lat = w.lat
@@ -52,7 +52,7 @@ def flood(w: World, cells: Cells, v: Volumes, source: int, seed: Ints, moves: in
             if p >= 0 and v.first[p] < v.last[p]:
                 by = offset(cells, lat, c, p)
                 lo, hi = min(lo, v.first[p] - by), max(hi, v.last[p] - by)
-        if c == source:
+        if entry[c]:
             lo, hi = 0, size
         lo, hi = max(0, lo - margin), min(size, hi + margin)
         if lo >= hi:
@@ -66,11 +66,11 @@ def flood(w: World, cells: Cells, v: Volumes, source: int, seed: Ints, moves: in
                 by = offset(cells, lat, c, p)
                 gather(v.width[v.slot[p]], v.first[p], v.last[p], by, pad)
         dilate(pad, result, lo, hi, lat)
-        if c == source:
-            for t in range(max(0, seed[0] - 2), min(lat.nt, seed[0] + 3)):
-                for z in range(max(0, seed[1] - 2), min(lat.nz, seed[1] + 3)):
-                    for x in range(max(0, seed[2] - 2), min(lat.nx, seed[2] + 3)):
-                        result[row_start(lat, t, z) + x] = 255
+        if entry[c]:
+            for t in range(seed[0, 0], seed[0, 1]):
+                for z in range(seed[1, 0], seed[1, 1]):
+                    k = row_start(lat, t, z)
+                    result[k + seed[2, 0] : k + seed[2, 1]] = 255
         k = v.slot[c]
         if k < 0:
             k = v.used[0]

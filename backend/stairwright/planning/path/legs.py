@@ -73,6 +73,13 @@ def make_legs(p: Planar) -> tuple[Leg, Leg]:
     )
 
 
+def farthest_apart(legs: tuple[Leg, Leg]) -> float:
+    """Distance of the wheels' centres that no pose of the trunk exceeds [m]."""
+    front, rear = legs
+    hips = math.hypot(front.hip_x - rear.hip_x, front.hip_z - rear.hip_z)
+    return 2 * max(leg.reach_max for leg in legs) + hips
+
+
 def _past_hip(p: Planar, dx: float, dz: float, low: float, high: float) -> tuple[float, float]:
     """The part of a thigh's range, with the leg straight down, that the other hip leaves it.
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.planning.threads import still_wanted
 from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
@@ -107,11 +108,13 @@ def refine(
     spans = _intervals(path, nodes_s, changes, q.friction, q.reserve)
     wheels = np.concatenate([path.centres(nodes_s[:, k]) for k in range(2)], axis=1)
     share = hop / 0.015
+    still_wanted()
     po.polish(
         q.ground, p, *q.legs, nodes_body, wheels, spans, _wishes(robot, weights, share),
         20.0 * weights.smoothness / share, 600.0 * grain.soft * weights.smoothness / share**3,
         0.25 * size, fixed, 40,
     )  # fmt: skip
+    still_wanted()
     dense_s, dense_body = densify(path.pieces, p, q.legs, nodes_s, nodes_body, changes)
     record = evaluate_path(path, q.ground, robot, q.legs, dense_s, dense_body, q.friction)
     return Refined(dense_s, dense_body, record)

@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .cells import FORWARD, MOVES, Cells, World, build_cells, lag_spans, pitch_ranges, wheel_pairs
+from stairwright.planning.threads import still_wanted
+
+from .cells import (
+    FORWARD,
+    MOVES,
+    Cells,
+    World,
+    build_cells,
+    lag_spans,
+    pitch_ranges,
+    volume_size,
+    wheel_pairs,
+)
 from .cheapest import cheapest, trace
 from .course import Stand, sample_course, scale, stand_height
 from .flood import flood
 from .lattice import LAG, Finding
-from .legs import LEGS_GAP, Leg
+from .legs import LEGS_GAP, Leg, farthest_apart
 from .question import Question
 from .tables import (
+    INF,
     Bounds,
     Floats32,
     Lattice,
@@ -26,10 +38,13 @@ from .tables import (
     on_lattice,
 )
 from .trunk import trunk_table
-from .volumes import Volumes, make_volumes
+from .volumes import Costs, Volumes, make_costs, make_volumes
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
+Longs = NDArray[np.int64]
+Place = tuple[float, float]  # arc lengths of front and rear wheel [m]
+Flags = NDArray[np.bool_]
 
 HipGrid = tuple[Floats32, Floats32, Floats32]
 
@@ -56,13 +71,9 @@ class Search:
             weights.com_margin, weights.clearance, weights.torque, weights.smoothness, weights.pitch
         )
         front, rear = self.legs
-        far = 2 * max(leg.reach_max for leg in self.legs) + math.hypot(
-            front.hip_x - rear.hip_x, front.hip_z - rear.hip_z
-        )
         near = 2 * p.wheel_radius + LEGS_GAP + _APART
-        self.pairs = wheel_pairs(
-            self.centres, near, far, self._index(begin)[0], self._index(end)[1]
-        )
+        far, ends = farthest_apart(self.legs), (self._index(begin)[0], self._index(end)[1])
+        self.pairs = wheel_pairs(self.centres, near, far, *ends)
         widest = max(leg.reach_max for leg in self.legs) + 0.2 * (p.thigh + p.calf)
         kept, like = alike(path.vertices, self.centres, widest)
         pitches = pitch_ranges(self.centres, self.pairs, lattice)
@@ -93,6 +104,7 @@ class Search:
             self.front_table = table(front, hips(front, self.pairs[0]))
             self.rear_table = table(rear, hips(rear, self.pairs[1]))
         self.ground = ground
+        still_wanted()
         self.trunk = trunk_table(ground, p, lattice, self.pulls, bounds, self.centres, self.pairs)
 
     def find(
@@ -102,6 +114,7 @@ class Search:
         com: float,
         cheap: bool = True,
         roll_back: bool = False,
+        open_start: bool = False,
         open_end: bool = False,
         partial: bool = False,
     ) -> Finding:
@@ -112,39 +125,34 @@ class Search:
             reserve: Lower friction that is kept where the terrain allows it.
             com: Least CoM margin [m].
             cheap: Also trace the smoothest way; otherwise only the verdict is given.
+            roll_back: Let wheels roll back where there is no way forward only.
+            open_start: Any pose with the rear wheels at the first sample will do; not with `cheap`.
             open_end: Any pose with the front wheels at the last sample will do.
             partial: Where there is no way to the goal, trace the one that gets farthest.
-            roll_back: Let wheels roll back where there is no way forward only.
         """
-        p, lat = self.planar, self.lattice
-        i0, j0 = self._index(self.begin)
-        i1, j1 = self._index(self.end)
-        cells = build_cells(
-            self.path.pieces, self.path.corners, p.wheel_radius, self.s, self.centres, self.pairs,
-            lat, friction, reserve, com,
-        )  # fmt: skip
-        source, goal = int(cells.number[i0, j0]), int(cells.number[i1, j1])
-        exits = np.flatnonzero(cells.front == len(self.s) - 1)
-        goal = int(exits[0]) if open_end and len(exits) else goal
-        if source < 0 or goal < 0:
+        lat = self.lattice
+        cells = self._cells(friction, reserve, com)
+        entries = cells.rear == 0 if open_start else self._only(cells, self.begin)
+        goals, target = self._goals(cells, open_end)
+        if not entries.any() or not len(goals):
             return Finding(None, None, 0, None)
+        still_wanted()
         w = self._world(com)
-        seed: Ints = self._seed(cells, source, self.begin)
-        target: Ints = self._seed(cells, goal, self.end)
+        source = int(np.argmax(entries))
+        seed = self._seed(cells, source, self.begin)
+        first = self._around(seed)
+        if open_start:
+            first = self._anywhere()
         v = make_volumes(len(cells.front), lat)
         moves = FORWARD
-        flood(w, cells, v, source, seed, moves)
-        if open_end:
-            goal = int(exits[int(np.argmax(v.best[exits]))])
-            if v.best[goal] > 0:
-                target = self._widest(v, goal)
-        best, pose = self._best(v, goal, target)
+        flood(w, cells, v, entries, first, moves)
+        best, goal, pose = self._arrival(v, goals, target)
         if best == 0 and roll_back:
             moves = len(MOVES)
             for k in range(_SWEEPS):
-                if not flood(w, cells, v, source, seed, moves):
+                if not flood(w, cells, v, entries, first, moves):
                     break
-                best, pose = self._best(v, goal, target)
+                best, goal, pose = self._arrival(v, goals, target)
                 if best > 0 and k > 1:
                     break
         reached = None if best > 0 else self._farthest(cells, v)
@@ -155,35 +163,79 @@ class Search:
         if best == 0:
             goal = int(cells.number[self._index(Stand(reached or (0.0, 0.0), self.end.body))])
             pose = self._widest(v, goal)
+        still_wanted()
         wide = best or int(v.best[goal])
         level = max(1, min(wide, 150) if wide > 100 else int(0.7 * wide))
-        pulls = np.array(
-            [
-                self.weights.com_margin,
-                self.weights.pitch,
-                stand_height(self.robot),
-                0.09 * scale(self.robot),
-            ]
-        )
-        smooth = 0.25 * self.weights.smoothness
         lag_spans(
-            cells, v.best >= level, self.path.pieces, self.path.corners, p.wheel_radius, self.s,
-            friction, LAG,
+            cells, v.best >= level, self.path.pieces, self.path.corners, self.planar.wheel_radius,
+            self.s, friction, LAG,
         )  # fmt: skip
-        for _ in range(1 if moves == FORWARD else 2 * _SWEEPS):
-            if not cheapest(w, cells, v, source, seed, moves, smooth, pulls, level):
-                break
-        rows = np.empty((4 * len(self.s) + 400, 5), np.int32)
-        last = self._cheapest_pose(self._window(v.value[v.slot[goal]]), pose)
-        count = trace(w, cells, v, source, goal, last, moves, smooth, rows)
-        if count < 0:
+        rows = self._smoothest(w, cells, v, source, seed, goal, pose, moves, level)
+        if rows is None:
             return Finding(None, None, 0, self._farthest(cells, v))
-        rows = rows[:count][::-1]
         s = np.stack([self.s[rows[:, 0]], self.s[rows[:, 1]]], axis=1)
         body = np.stack(
             [rows[:, 4] * lat.step, rows[:, 3] * lat.step, rows[:, 2] * lat.turn], axis=1
         )
         return Finding(s, body, best, (float(s[-1, 0]), float(s[-1, 1])), moves > FORWARD)
+
+    def stops(self, friction: float, reserve: float, com: float, open_end: bool) -> list[Place]:
+        """Where ways end that begin at any pose with the rear wheels at the first sample, and so on
+        from where the front wheels ended; see `find`.
+
+        Returns:
+            Arc lengths of front and rear wheel, in order; empty where a way leads to the end.
+        """
+        cells, w = self._cells(friction, reserve, com), self._world(com)
+        goals, target = self._goals(cells, open_end)
+        out: list[Place] = []
+        row = 0
+        while len(goals) and row <= cells.rear[goals].max():
+            v = make_volumes(len(cells.front), self.lattice)
+            flood(w, cells, v, cells.rear == row, self._anywhere(), FORWARD)
+            end = self._farthest(cells, v)
+            if end is None:
+                row += 1
+                continue
+            if self._arrival(v, goals, target)[0] > 0:
+                break
+            out.append(end)
+            row = self._index(Stand(end, self.end.body))[0]
+        return out
+
+    def _goals(self, cells: Cells, open_end: bool) -> tuple[Longs, Ints | None]:
+        """Cells in which ways end, and their pose unless any will do."""
+        if open_end:
+            return np.flatnonzero(cells.front == len(self.s) - 1), None
+        goals = np.flatnonzero(self._only(cells, self.end))
+        return goals, self._seed(cells, int(goals[0]), self.end) if len(goals) else None
+
+    def _cells(self, friction: float, reserve: float, com: float) -> Cells:
+        return build_cells(
+            self.path.pieces, self.path.corners, self.planar.wheel_radius, self.s, self.centres,
+            self.pairs, self.lattice, friction, reserve, com,
+        )  # fmt: skip
+
+    def _smoothest(
+        self, w: World, cells: Cells, v: Volumes, source: int, seed: Ints, goal: int, pose: Ints,
+        moves: int, level: int,
+    ) -> Ints | None:  # fmt: skip
+        """Cheapest way at least `level` wide from cell `source` to `goal`: see `cheapest`, `trace`.
+
+        Returns:
+            (n, 5) its front and rear samples and lattice poses (pitch, z, x), if it ends.
+        """
+        height, wish = stand_height(self.robot), 0.09 * scale(self.robot)
+        pulls = np.array([self.weights.com_margin, self.weights.pitch, height, wish])
+        smooth = 0.25 * self.weights.smoothness
+        costs = make_costs(v, level)
+        for _ in range(1 if moves == FORWARD else 2 * _SWEEPS):
+            if not cheapest(w, cells, v, costs, source, seed, moves, smooth, pulls, level):
+                break
+        rows = np.empty((4 * len(self.s) + 400, 5), np.int32)
+        last = self._cheapest_pose(costs, goal, pose)
+        count = trace(w, cells, costs, source, goal, last, moves, smooth, rows)
+        return rows[:count][::-1] if count >= 0 else None
 
     def _world(self, com: float) -> World:
         return World(
@@ -191,6 +243,14 @@ class Search:
             self.front_table, self.rear_table, self.trunk,
             self.bounds.legs, com,
         )  # fmt: skip
+
+    def _only(self, cells: Cells, where: Stand) -> Flags:
+        """Flags (n,) of the one cell of the stand `where`, if it has one."""
+        out: Flags = np.zeros(len(cells.front), np.bool_)
+        c = int(cells.number[self._index(where)])
+        if c >= 0:
+            out[c] = True
+        return out
 
     def _index(self, where: Stand) -> tuple[int, int]:
         return (
@@ -216,21 +276,39 @@ class Search:
         full = volume.reshape(lat.nt + 4, lat.nz + 4, lat.row)
         return full[2:-2, 2:-2, 2 : 2 + lat.nx]
 
-    @staticmethod
-    def _near(pose: Ints) -> tuple[slice, ...]:
-        return tuple(slice(max(0, int(v) - 2), int(v) + 3) for v in pose)
+    def _anywhere(self) -> Ints:
+        """Range (3, 2) of all window indices."""
+        lat = self.lattice
+        return np.array([[0, lat.nt], [0, lat.nz], [0, lat.nx]], np.int32)
 
-    def _best(self, v: Volumes, goal: int, target: Ints) -> tuple[int, Ints]:
-        """Best quality near the resting pose `target` at the goal, and that pose."""
+    def _around(self, pose: Ints) -> Ints:
+        """Range (3, 2) of window indices within two of `pose` (3,)."""
+        lat = self.lattice
+        sizes = np.array([lat.nt, lat.nz, lat.nx], np.int32)
+        both = np.stack([np.maximum(pose - 2, 0), np.minimum(pose + 3, sizes)], axis=1)
+        return both.astype(np.int32)
+
+    def _near(self, pose: Ints) -> tuple[slice, ...]:
+        return tuple(slice(int(a), int(b)) for a, b in self._around(pose))
+
+    def _arrival(self, v: Volumes, goals: Longs, target: Ints | None) -> tuple[int, int, Ints]:
+        """Best quality at one of the `goals`, near the resting pose `target` if there is one.
+
+        Returns:
+            The quality (0: none is reached), the goal, and its pose.
+        """
+        goal = int(goals[int(np.argmax(v.best[goals]))])
         if v.best[goal] == 0:
-            return 0, target
+            return 0, goal, np.zeros(3, np.int32)
+        if target is None:
+            return int(v.best[goal]), goal, self._widest(v, goal)
         part = self._near(target)
         near = self._window(v.width[v.slot[goal]])[part]
-        if near.size == 0 or near.max() == 0:
-            return 0, target
+        if near.max() == 0:
+            return 0, goal, target
         at = np.unravel_index(int(near.argmax()), near.shape)
         pose = [int(k) + part[m].start for m, k in enumerate(at)]
-        return int(near.max()), np.array(pose, np.int32)
+        return int(near.max()), goal, np.array(pose, np.int32)
 
     def _widest(self, v: Volumes, c: int) -> Ints:
         """The pose of cell `c` with the widest way to it."""
@@ -238,8 +316,12 @@ class Search:
         at = np.unravel_index(int(inside.argmax()), inside.shape)
         return np.array([int(k) for k in at], np.int32)
 
-    def _cheapest_pose(self, volume: NDArray[np.float32], pose: Ints) -> Ints:
-        part = self._near(pose)
+    def _cheapest_pose(self, costs: Costs, c: int, pose: Ints) -> Ints:
+        """The cheapest pose of cell `c` near `pose`."""
+        flat = np.full(volume_size(self.lattice), INF, np.float32)
+        low, high, at = costs.low[c], costs.high[c], costs.base[c]
+        flat[low:high] = costs.value[at + low : at + high]
+        volume, part = self._window(flat), self._near(pose)
         at = np.unravel_index(int(volume[part].argmin()), volume[part].shape)
         return np.array([int(k) + part[m].start for m, k in enumerate(at)], np.int32)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 
@@ -23,13 +22,16 @@ from .course import Stand, find_stands
 from .ground import make_ground
 from .lattice import BOLD, HOPE, KEEN, STRICT, Finding
 from .mend import STAGES, mend
+from .pieces import Piece, passes, pieces, stops
 from .question import Question
 from .record import Motor
 from .refine import Refined, refine
+from .search import Place
 from .tables import Bounds
 from .windows import Searches, find_path
 
 Ints = NDArray[np.int64]
+Way = tuple[list[Pose], list[int], float]  # poses, key poses, duration [s]
 
 
 @dataclass(frozen=True)
@@ -49,10 +51,8 @@ class Rung:
 LADDER = (  # rungs of one step are tried together; the first path is taken
     (Rung(2.0, STRICT),),
     (Rung(1.7, BOLD), Rung(1.7, HOPE, roll_back=True, probe=True)),
-    (Rung(1.7, HOPE), Rung(1.7, BOLD, roll_back=True)),
-    (Rung(1.4, KEEN),),
+    (Rung(1.7, HOPE), Rung(1.7, BOLD, roll_back=True), Rung(1.4, KEEN)),
 )
-QUICK = (Rung(1.7, BOLD), Rung(1.7, HOPE))  # enough to confirm that a changed problem has a plan
 _COARSE = 2  # steps of the ladder that are compared where a path is thin
 _THIN = 0.01  # m; CoM margin
 
@@ -85,13 +85,15 @@ class Blocked:
 
     Attributes:
         reached: Arc lengths where the way ends, or where a found way breaks a bound worst.
+        stops: Where bold searches end: the place from the start, and others farther on.
         opened: Whether a search came through at all.
         weak: Motors whose torque was the one bound that a found way broke.
     """
 
-    reached: tuple[float, float] | None
+    reached: Place | None
     opened: bool
     weak: Motor | None = None
+    stops: tuple[Place, ...] = ()
 
 
 def pose_course(terrain: Terrain, robot: Robot, friction: float, weights: PathWeights) -> Course:
@@ -123,6 +125,10 @@ class Course(Question):
         """Search once; see `Search.find`."""
         return find_path(self, bounds, fine, cheap, roll_back, partial, self.searches)
 
+    def passes(self, piece: Piece, fine: float, bounds: Bounds, roll_back: bool = False) -> bool:
+        """Whether a search leads through a piece of the course; see `pieces.passes`."""
+        return passes(self, piece, bounds, fine, roll_back, self.searches)
+
     def solve(self, pool: Executor) -> Solved | Blocked:
         """Climb the ladder until a path passes the certificate and is not needlessly thin.
 
@@ -131,6 +137,7 @@ class Course(Question):
         """
         best: Solved | None = None
         blocked: list[Blocked] = []
+        ends: tuple[Place, ...] = ()
         for height, rungs in enumerate(LADDER, 1):
             tried = [rung for rung in rungs if best is None or not rung.probe]
             with race(pool, self.attempt, tried) as answers:
@@ -143,20 +150,54 @@ class Course(Question):
                         break
             if best is not None and (height >= _COARSE or best.margin > _THIN):
                 return best
+            if height == 1 and best is None:
+                ends, hopeless = self._ahead(blocked[0], pool)
+                if hopeless:
+                    return Blocked(ends[0], False, stops=ends)
             if any(rung.probe for rung in tried) and not any(one.opened for one in blocked):
                 break
-        ends = [one for one in blocked if one.reached]
-        found = [one for one in ends if one.opened] or ends  # rather where a way breaks a bound
+        bold = blocked[1].reached  # of the second step's first rung
+        reached = [one for one in blocked if one.reached]
+        found = [one for one in reached if one.opened] or reached  # rather where a bound is broken
         return Blocked(
             max((one.reached for one in found if one.reached), key=sum, default=None),
             any(one.opened for one in blocked),
             next((one.weak for one in blocked if one.weak), None),
+            ends or ((bold,) if bold else ()),
         )  # fmt: skip
 
-    def quick(self, rungs: Sequence[Rung] = QUICK) -> Solved | None:
-        """The first path that a few rungs lead to."""
-        answers = (self.attempt(rung) for rung in rungs)
-        return next((one for one in answers if isinstance(one, Solved)), None)
+    def _ahead(self, blocked: Blocked, pool: Executor) -> tuple[tuple[Place, ...], bool]:
+        """What stops bold ways from where a strict search ended; and whether no way leads past it.
+
+        On a long course that is sooner told than by searches from start to goal.
+        """
+        if blocked.opened or blocked.reached is None:
+            return (), False
+        here = pieces(self, [blocked.reached])[0]
+        if here.whole:
+            return (), False
+        bold = pool.submit(stops, self, blocked.reached, BOLD, 1.7, self.searches)
+        hopeful = self._hopeful(here)
+        ends = bold.result()
+        if len(ends) < 2 or not hopeful:
+            return ends, bool(ends) and not hopeful
+        with race(pool, self._hopeful, pieces(self, ends[1:])) as answers:
+            return ends, not all(answers)
+
+    def _hopeful(self, piece: Piece) -> bool:
+        """Whether the most forgiving search leads through `piece`."""
+        return self.passes(piece, 1.7, HOPE, roll_back=True)
+
+    def quick(self) -> Solved | Blocked:
+        """What a few rungs lead to: enough to confirm that a changed problem has a plan.
+
+        Where a search comes through and no path follows, a more forgiving one seldom does better.
+        """
+        bold = self.attempt(Rung(1.7, BOLD))
+        if isinstance(bold, Solved) or bold.opened:
+            return bold
+        hope = self.attempt(Rung(1.7, HOPE))
+        return hope if isinstance(hope, Solved) or hope.opened else bold
 
     def attempt(self, rung: Rung) -> Solved | Blocked:
         """What comes of one rung."""
@@ -166,11 +207,11 @@ class Course(Question):
             return Blocked(None, finding.quality > 0)
         return Blocked(finding.reached, False) if finding.s is None else self.finish(finding)
 
-    def partial(self) -> tuple[list[Pose], list[int], float]:
-        """Poses of the way as far as it goes, key poses and duration; nothing without a way."""
+    def partial(self) -> tuple[Way, Place | None]:
+        """The way as far as it goes, and where wheels end: nothing where they cannot even start."""
         finding = self.find(1.7, BOLD, partial=True)
         if finding.s is None or finding.body is None or len(finding.s) < 2:
-            return [], [], 0.0
+            return ([], [], 0.0), finding.reached
         last = Stand((float(finding.s[-1, 0]), float(finding.s[-1, 1])), finding.body[-1])
         found = refine(self, (self.stands[0], last), finding.s, finding.body)
         found = mend(self, found, found.record.bad, STAGES[0])
@@ -178,8 +219,8 @@ class Course(Question):
         if len(bad):
             found = found.part(0, int(bad[0]))
         if len(found.s) < 2:
-            return [], [], 0.0
-        return make_poses(self.path, self.robot, found, self.weights)
+            return ([], [], 0.0), finding.reached
+        return make_poses(self.path, self.robot, found, self.weights), finding.reached
 
     def finish(self, finding: Finding) -> Solved | Blocked:
         """Polish, mend and certify; where that fails, the arc lengths at the worst place."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from typing import Any, NamedTuple
 
+import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,6 +16,7 @@ from .kernels import shift
 from .tables import Floats32, Lattice
 
 Ints = NDArray[np.int32]
+Longs = NDArray[np.int64]
 Bytes = NDArray[np.uint8]
 
 _KEPT = 64_000_000  # bytes of an array that is kept for the next search of this thread
@@ -36,19 +38,32 @@ class Volumes(NamedTuple):
         used: (1,) rows used.
         width: (rows, volume) least quality (see `cells.quality`) on the best way to a pose, 0 where
             there is none.
-        value: (rows, volume) cost of the cheapest way.
         first, last: (n,) range of positions in `width` that are reached; first >= last: none are.
         best: (n,) largest width of a cell.
-        low, high: (n,) the same range for `value`.
     """
 
     slot: Ints
     used: Ints
     width: Bytes
-    value: Floats32
     first: Ints
     last: Ints
     best: Bytes
+
+
+class Costs(NamedTuple):
+    """Costs of the cheapest ways to poses that are wide enough, of all cells one after the other.
+
+    Attributes:
+        value: Flat; position k of cell c is at `base[c]` + k.
+        base: (n,).
+        first, last: (n,) range of positions for which there is room; first >= last: none are.
+        low, high: (n,) range of those that have a value.
+    """
+
+    value: Floats32
+    base: Longs
+    first: Ints
+    last: Ints
     low: Ints
     high: Ints
 
@@ -74,7 +89,31 @@ def make_volumes(n: int, lat: Lattice) -> Volumes:
     return Volumes(
         np.full(n, -1, np.int32), np.zeros(1, np.int32),
         _array("width", n, size, np.uint8),
-        _array("value", n, size, np.float32),
         np.full(n, size, np.int32), np.zeros(n, np.int32), np.zeros(n, np.uint8),
-        np.full(n, size, np.int32), np.zeros(n, np.int32),
     )  # fmt: skip
+
+
+def make_costs(v: Volumes, level: int) -> Costs:
+    """No costs yet, with room for poses at least `level` wide."""
+    first, last = _wide(v, np.uint8(level))
+    room = np.maximum(last - first, 0).astype(np.int64)
+    base = np.cumsum(room) - room - first
+    value = _array("value", 1, int(room.sum()), np.float32)[0]
+    return Costs(value, base, first, last, np.zeros_like(first), np.zeros_like(last))
+
+
+@nb.njit(cache=True, nogil=True)
+def _wide(v: Volumes, level: np.uint8) -> tuple[Ints, Ints]:
+    """Range (n,), (n,) of positions of each cell that are at least `level` wide."""
+    n = len(v.best)
+    first, last = np.zeros(n, np.int32), np.zeros(n, np.int32)
+    for c in range(n):
+        if v.best[c] < level:
+            continue
+        width, a, b = v.width[v.slot[c]], v.first[c], v.last[c]
+        while width[a] < level:
+            a += 1
+        while width[b - 1] < level:
+            b -= 1
+        first[c], last[c] = a, b
+    return first, last

@@ -16,7 +16,7 @@ from .question import Question
 from .search import Search
 from .tables import Bounds
 
-_WINDOW = 5.0  # m, for legs of 0.4 m
+WINDOW = 5.0  # m, for legs of 0.4 m
 _AHEAD = 1.8  # m of a window that are searched again by the next
 
 
@@ -38,24 +38,18 @@ def find_path(
 
     With `partial` it is the way as far as it goes where there is none to the end.
     """
-    kept: Searches = {} if searches is None else searches
-    lattice = make_lattice(q.robot, fine)
     begin, end = q.stands
     size = scale(q.robot)
     rows_s, rows_body, quality, back = [], [], 255, False
     while True:
-        stop = begin.wheels[0] + _WINDOW * size
+        stop = begin.wheels[0] + WINDOW * size
         last = stop > end.wheels[0] - 0.5 * size
         until = end if last else Stand((stop, stop - 0.2 * size), end.body)
-        key = (id(q.robot), fine, bounds, begin.wheels, until.wheels, tuple(begin.body.tolist()))
-        search = kept.get(key)
-        if search is None:
-            search = Search(q, begin, until, lattice, bounds)
-            if len(kept) < _KEPT and fine > 1.0:
-                kept[key] = search
+        search = search_between(q, begin, until, bounds, fine, searches)
         found = search.find(
-            q.friction, q.reserve, bounds.com, cheap or not last, roll_back, not last, partial
-        )
+            q.friction, q.reserve, bounds.com, cheap or not last, roll_back, open_end=not last,
+            partial=partial,
+        )  # fmt: skip
         quality, back = min(quality, found.quality), back or found.back
         if found.quality == 0 and (not partial or found.s is None):
             return found
@@ -73,3 +67,17 @@ def find_path(
         begin = Stand((float(found.s[keep, 0]), float(found.s[keep, 1])), found.body[keep])
     s, body = np.concatenate(rows_s), np.concatenate(rows_body)
     return Finding(s, body, quality, (float(s[-1, 0]), float(s[-1, 1])), back)
+
+
+def search_between(
+    q: Question, begin: Stand, end: Stand, bounds: Bounds, fine: float, searches: Searches | None
+) -> Search:
+    """A search between two stands; one of `searches` if it is there."""
+    kept: Searches = {} if searches is None else searches
+    key = (id(q.robot), fine, bounds, begin.wheels, end.wheels, tuple(begin.body.tolist()))
+    search = kept.get(key)
+    if search is None:
+        search = Search(q, begin, end, make_lattice(q.robot, fine), bounds)
+        if len(kept) < _KEPT and fine > 1.0:
+            kept[key] = search
+    return search
