@@ -17,14 +17,14 @@ def problem(random: np.random.Generator, paired: bool, limit: float = 150.0):
     levers = random.uniform(-0.4, 0.4, (4, 2))
     if paired:
         angle[[1, 3]], levers[[1, 3]] = angle[[0, 2]], levers[[0, 2]]
-    settings = ControllerSettings(force_limit=limit)
+    settings = ControllerSettings()
     normals = np.column_stack([-np.sin(angle), np.cos(angle)])
     A = rigid_body.force_map(rigid_body.contact_frames(normals), levers)
     desired = np.array([0.0, 116.0, 0.0]) + random.normal(0.0, [40.0, 80.0, 10.0])
     resting = random.normal(0, 20, 8) + np.tile([0.0, 25.0], 4)
     previous = random.normal(0, 20, 8)
     H, g = balance.force_cost(settings, A, desired, resting, previous)
-    return H, g, *balance.force_limits(settings, random.uniform(0.05, 1.2, 4))
+    return H, g, *balance.force_limits(limit, random.uniform(0.05, 1.2, 4))
 
 
 @pytest.mark.parametrize("solver", [s for s in get_args(Solver) if s != "clarabel"])
@@ -58,8 +58,7 @@ def test_native_is_exact() -> None:
 
 def test_forces_stay_in_the_cones() -> None:
     random = np.random.default_rng(5)
-    settings = ControllerSettings(force_limit=60.0)
-    C, d = balance.force_limits(settings, np.full(4, 0.4))
+    C, d = balance.force_limits(60.0, np.full(4, 0.4))
     for _ in range(100):
         H, g, _, _ = problem(random, paired=False)
         force = qp.solve("native", H, g, C, d, np.zeros(8)).reshape(4, 2)

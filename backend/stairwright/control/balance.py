@@ -21,6 +21,8 @@ MAX_LEARNT = 15.0  # rad/s^2 that the pitch integral may add
 # Weight of the difference between left and right forces: where grip runs out the QP would rather
 # carry all with one wheel of a pair, and nothing else keeps the robot from rolling over.
 EVEN = 0.02
+MOST_UNEVEN = 0.8  # of what a pair carries: left less right normal force
+_EVENLY = np.zeros(2)
 
 
 def desired_wrench(
@@ -52,6 +54,23 @@ def learn(settings: ControllerSettings, learnt: float, state: Measurement, goal:
     return min(max(learnt, -MAX_LEARNT), MAX_LEARNT)
 
 
+def roll_forces(
+    robot: Robot, settings: ControllerSettings, state: Measurement, target: Setpoint
+) -> Floats:
+    """(2,) left less right normal force of the pairs that keeps the robot from rolling over [N].
+
+    Against gravity its stiffness must be above g / h. Pairs share it as they share the weight, up
+    to `MOST_UNEVEN` of what each carries.
+    """
+    height = state.com[1] - state.wheels[:, 1].mean() + robot.wheel.radius
+    wanted = settings.roll_stiffness * state.roll + settings.roll_damping * state.roll_rate
+    moment = -robot.mass * height * height * wanted
+    carried = np.maximum(target.forces[:, 1], 0.0)
+    share = moment / robot.hips.half_track / max(float(carried.sum()), 1e-9)
+    uneven: Floats = carried * np.clip(share, -MOST_UNEVEN, MOST_UNEVEN)
+    return uneven
+
+
 def force_cost(
     settings: ControllerSettings,
     force_map: Floats,
@@ -59,31 +78,34 @@ def force_cost(
     resting: Floats,
     previous: Floats,
     even: float = 0.0,
+    uneven: Floats = _EVENLY,
 ) -> tuple[Floats, Floats]:
     """Hessian H (8, 8) and gradient g (8,) of ``F' H F / 2 + g' F``, half the cost of eq 11.
 
     ``D' S D + alpha |F - F_rest|^2 + beta |F - F_prev|^2`` with ``D = A F - b_des``; the paper's
-    cost has ``F_rest = 0``. `even` weights the squares of left less right forces, which it has not.
+    cost has ``F_rest = 0``. `even` weights the squares of left less right forces, which it has not;
+    of pairs' normal forces less `uneven` (2,) [N].
     """
     weights = np.array([settings.force_weight, settings.force_weight, settings.moment_weight])
     weighted = force_map.T * weights
     hessian = weighted @ force_map + (settings.alpha + settings.beta) * np.eye(8)
     hessian += even * np.kron(np.eye(2), np.kron([[1.0, -1.0], [-1.0, 1.0]], np.eye(2)))
     gradient = -weighted @ desired - settings.alpha * resting - settings.beta * previous
+    gradient -= even * np.kron(uneven, [0.0, 1.0, 0.0, -1.0])
     return hessian, gradient
 
 
-def force_limits(settings: ControllerSettings, friction: Floats) -> tuple[Floats, Floats]:
+def force_limits(limit: float, friction: Floats) -> tuple[Floats, Floats]:
     """``C F <= d`` (eq 12): friction cones and saturation, C (16, 8) and d (16,).
 
-    Four rows a wheel: forward and backward friction, normal force at least 0, at most the limit.
+    Four rows a wheel: forward and backward friction, normal force at least 0, at most `limit` [N].
     `friction` (4,) is what each wheel may use.
     """
     C = np.zeros((16, 8))
     for w, mu in enumerate(friction):
         block = np.array([[1.0, -mu], [-1.0, -mu], [0.0, -1.0], [0.0, 1.0]])
         C[4 * w : 4 * w + 4, 2 * w : 2 * w + 2] = block
-    return C, np.tile([0.0, 0.0, 0.0, settings.force_limit], 4)
+    return C, np.tile([0.0, 0.0, 0.0, limit], 4)
 
 
 def force_torques(state: Measurement, points: Floats, forces: Floats) -> Floats:

@@ -25,7 +25,8 @@ Floats = NDArray[np.float64]
 
 _MAX_ACCELERATION = balance.MAX_ACCELERATION
 _GRAVITY = rigid_body.GRAVITY
-_PERIOD, _MAX_LEARNT, _EVEN = balance.CONTROL_PERIOD, balance.MAX_LEARNT, balance.EVEN
+_PERIOD, _MAX_LEARNT = balance.CONTROL_PERIOD, balance.MAX_LEARNT
+_EVEN, _MOST_UNEVEN = balance.EVEN, balance.MOST_UNEVEN
 _Q, _PITCH, _COM, _FORCE = 2, 6, 7, 22
 
 _NAMES = (
@@ -59,6 +60,8 @@ _NAMES = (
     "pitch_stiffness",
     "pitch_damping",
     "pitch_integral",
+    "roll_stiffness",
+    "roll_damping",
     "force_weight",
     "moment_weight",
     "alpha",
@@ -98,6 +101,7 @@ def parameters(robot: Robot, friction: float, settings: ControllerSettings) -> N
         "joint_stiffness": own.joint_stiffness,
         "joint_damping": own.joint_damping,
         "wheel_damping": own.wheel_damping,
+        "force_limit": own.force_limit,
         "leg_torque": robot.actuators.leg.torque,
         "leg_speed": robot.actuators.leg.speed,
         "wheel_torque": robot.actuators.wheel.torque,
@@ -220,9 +224,18 @@ def contact_control(
         resting = fx * nz - fz * nx if i % 2 == 0 else fx * nx + fz * nz
         g[i] = -A[0, i] * b[0] - A[1, i] * b[1] - A[2, i] * b[2]
         g[i] -= p.alpha * resting + p.beta * forces[i]
+    height = com_z - 0.25 * (world[0, 5] + world[1, 5] + world[2, 5] + world[3, 5]) + R
+    roll = p.roll_stiffness * r21 + p.roll_damping * (r22 * sx - r20 * sz)
+    carried = max(target[_FORCE + 1], 0.0) + max(target[_FORCE + 3], 0.0)
+    share = -p.mass * height * height * roll / p.half_track / max(carried, 1e-9)
+    share = min(max(share, -_MOST_UNEVEN), _MOST_UNEVEN)
     for i in (0, 1, 4, 5):  # left and right wheel of a pair
         H[i, i + 2] -= _EVEN
         H[i + 2, i] -= _EVEN
+        if i % 2 == 1:
+            uneven = max(target[_FORCE + 2 * (i // 4) + 1], 0.0) * share
+            g[i] -= _EVEN * uneven
+            g[i + 2] += _EVEN * uneven
     solve_native(H, g, friction, p.force_limit, forces)
 
     # Torques: J' F and the legs' weight, tracking (eq 27), rolling (eqs 14-16) with feed-forward.

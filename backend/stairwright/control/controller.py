@@ -28,22 +28,25 @@ from .settings import ControllerSettings
 Floats = NDArray[np.float64]
 
 LEG_PAIR = np.array([0, 0, 1, 1])  # legs FL, FR, RL, RR -> front, rear
+_LIMIT = 1.3  # times the robot's weight: largest normal force of a wheel
 
 
 @dataclass(frozen=True)
 class Gains:
-    """Joint and wheel gains with the robot's own filled in."""
+    """Joint and wheel gains and the largest normal force, with the robot's own filled in."""
 
     joint_stiffness: float
     joint_damping: float
     wheel_damping: float
+    force_limit: float
 
 
 def gains(robot: Robot, settings: ControllerSettings) -> Gains:
     """The settings' gains, or the robot's where a setting is empty.
 
-    A wheel is damped at most so that it has its wished rate after one control step: with light
-    rotors more would make it swing ever wider.
+    A wheel bears half of the weight where its pair carries the robot, and more in motion. It is
+    damped at most so that it has its wished rate after one control step: with light rotors more
+    would make it swing ever wider.
     """
     own = robot.gains
     spin_inertia = robot.wheel.inertia[1] + robot.actuators.wheel.armature
@@ -55,6 +58,7 @@ def gains(robot: Robot, settings: ControllerSettings) -> Gains:
         pick(settings.joint_stiffness, own.joint_stiffness),
         pick(settings.joint_damping, own.joint_damping),
         min(pick(settings.wheel_damping, own.wheel_damping), spin_inertia / balance.CONTROL_PERIOD),
+        pick(settings.force_limit, _LIMIT * robot.mass * rigid_body.GRAVITY),
     )
 
 
@@ -112,7 +116,8 @@ class Controller:
             self.learnt,
         )
         resting = np.einsum("nji,nj->ni", frames, (target.forces / 2)[LEG_PAIR]).ravel()
-        self._solve(A, desired, resting, friction)
+        uneven = balance.roll_forces(robot, settings, state, target)
+        self._solve(A, desired, resting, friction, balance.EVEN, uneven)
         forces = np.einsum("nij,nj->ni", frames, self.forces.reshape(4, 2))
         torques = balance.force_torques(state, points, forces)
         torques += balance.leg_weight_torques(robot, state)
@@ -144,15 +149,21 @@ class Controller:
             target,
         )
         usable = np.full(4, self.settings.friction_share * self.friction)
-        self._solve(to_centres, desired - to_contacts @ driven, np.zeros(8), usable)
+        self._solve(
+            to_centres, desired - to_contacts @ driven, np.zeros(8), usable, 0.0, np.zeros(2)
+        )
         forces = np.einsum("nij,nj->ni", frames, self.forces.reshape(4, 2))
         torques = balance.force_torques(state, state.wheels, forces)
         return self._joined(state, target, torques, wheel)
 
-    def _solve(self, force_map: Floats, desired: Floats, resting: Floats, friction: Floats) -> None:
-        even = balance.EVEN if self.settings.form == "contact" else 0.0
-        H, g = balance.force_cost(self.settings, force_map, desired, resting, self.forces, even)
-        C, d = balance.force_limits(self.settings, friction)
+    def _solve(
+        self, force_map: Floats, desired: Floats, resting: Floats, friction: Floats, even: float,
+        uneven: Floats,
+    ) -> None:  # fmt: skip
+        H, g = balance.force_cost(
+            self.settings, force_map, desired, resting, self.forces, even, uneven
+        )
+        C, d = balance.force_limits(self.gains.force_limit, friction)
         self.forces = qp.solve(self.settings.solver, H, g, C, d, self.forces)
 
     def _yaw(self, state: Measurement, target: Setpoint) -> Floats:

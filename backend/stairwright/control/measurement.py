@@ -27,6 +27,8 @@ class Measurement:
         trunk_velocity: (2,) its velocity.
         pitch: about +y; continuous through 90 degrees.
         pitch_rate: [rad/s].
+        roll: sine of the lateral axis' rise, the left side up positive.
+        roll_rate: its rate [1/s].
         heading: of the lateral axis about z, so that it has no singularity at 90 degrees of pitch.
         yaw_rate: about the world's z axis [rad/s].
         hips, knees, wheels: (4, 2) x, z.
@@ -43,6 +45,8 @@ class Measurement:
     trunk_velocity: Floats
     pitch: float
     pitch_rate: float
+    roll: float
+    roll_rate: float
     heading: float
     yaw_rate: float
     hips: Floats
@@ -97,6 +101,8 @@ def measure(robot: Robot, qpos: Floats, qvel: Floats) -> Measurement:
         trunk_velocity=qvel[[0, 2]],
         pitch=math.atan2(turn[0, 2], turn[2, 2]),
         pitch_rate=float(spin[1]),
+        roll=float(turn[2, 1]),
+        roll_rate=float(turn[2, 2] * spin[0] - turn[2, 0] * spin[2]),
         heading=math.atan2(-turn[0, 1], turn[1, 1]),
         yaw_rate=float(turn[2] @ spin),
         hips=world(hips),

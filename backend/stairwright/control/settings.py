@@ -89,6 +89,18 @@ class ControllerSettings(Model):
         "Learns a moment that the model does not know, e.g. of a shifted load (form contact)",
         "linear",
     )
+    roll_stiffness: float = _number(
+        100.0,
+        0.0,
+        1000.0,
+        "1/s²",
+        "Roll stiffness",
+        "Left wheels push more than right ones where the robot leans to the left (form contact)",
+        "linear",
+    )
+    roll_damping: float = _number(
+        14.0, 0.0, 100.0, "1/s", "Roll damping", "The same against the rate of roll", "linear"
+    )
     force_weight: float = _number(
         1.0, 0.001, 100.0, "1", "Force task", "S of eq 11 for the force rows", "log"
     )
@@ -116,8 +128,14 @@ class ControllerSettings(Model):
         "Part of the friction that the QP may use; all of it where the plan itself needs more",
         "linear",
     )
-    force_limit: float = _number(
-        150.0, 20.0, 1000.0, "N", "Force limit", "Largest normal force of a wheel (eq 12)", "log"
+    force_limit: float | None = _number(
+        None,
+        20.0,
+        10000.0,
+        "N",
+        "Force limit",
+        "Largest normal force of a wheel (eq 12); 1.3 times the robot's weight if empty",
+        "log",
     )
 
 
