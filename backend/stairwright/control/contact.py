@@ -72,20 +72,22 @@ def support(
     far the force acts from the wheel's centre [m] (the radius; 0 in a corner), and the normals of
     the face before and after a corner (both the same elsewhere).
     """
-    nx, nz = face_normal(pieces, radius, corners, measured, planned)
     for corner in corners:
-        if abs(planned - corner) < CORNER_PLANNED and abs(measured - corner) < CORNER_MEASURED:
-            _, _, ax, az = curve_at(pieces, radius, corner - _BESIDE)
-            _, _, bx, bz = curve_at(pieces, radius, corner + _BESIDE)
-            if lean != BOTH:
-                nx, nz = (ax, az) if lean == BEFORE else (bx, bz)
-                break
+        if abs(planned - corner) >= CORNER_PLANNED or abs(measured - corner) >= CORNER_MEASURED:
+            continue
+        _, _, ax, az = curve_at(pieces, radius, corner - _BESIDE)
+        _, _, bx, bz = curve_at(pieces, radius, corner + _BESIDE)
+        if lean == BOTH:
             length = math.hypot(ax + bx, az + bz)
             half = 0.5 * math.acos(min(1.0, max(-1.0, ax * bx + az * bz)))
             wide = math.tan(min(WIDEST, half + math.atan(friction)))
             out[0], out[1], out[2], out[3] = (ax + bx) / length, (az + bz) / length, wide, 0.0
             out[4], out[5], out[6], out[7] = ax, az, bx, bz
             return
+        nx, nz = (ax, az) if lean == BEFORE else (bx, bz)
+        break
+    else:
+        nx, nz = face_normal(pieces, radius, corners, measured, planned)
     out[0], out[1], out[2], out[3] = nx, nz, friction, radius
     out[4], out[5], out[6], out[7] = nx, nz, nx, nz
 

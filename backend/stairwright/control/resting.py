@@ -11,6 +11,8 @@ time that it gets there.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numba as nb
 import numpy as np
 from numpy.typing import NDArray
@@ -53,62 +55,110 @@ def resting_forces(
         out: (n, 7) filled with front x, z and rear x, z in world axes, the share of the friction
             that they keep to, and what the front and the rear wheels lean on in a corner.
     """
-    held, A, S = np.empty(8), np.empty((3, 8)), (1.0, 1.0, _MOMENT)
-    H, g, mu, forces = np.empty((8, 8)), np.empty(8), np.empty(4), np.zeros(8)
-    normals = np.empty((2, 2))
+    tried = Trial(np.empty((3, 8)), np.empty(4), np.zeros(8), np.empty((4, 2)))
     for k in range(len(places)):
-        ways = np.empty(2, np.int64)
-        for pair in range(2):
-            ways[pair] = 3 if _in_corner(corners, places[k, pair]) else 1
+        front, rear = _ways(corners, places[k, 0]), _ways(corners, places[k, 1])
         for share, limit in STAGES:
-            best = np.inf
-            for way in range(ways[0] * ways[1]):
-                leans = (BOTH - way % ways[0], BOTH - way // ways[0])
-                for wheel in range(4):
-                    pair, t, n = wheel // 2, 2 * wheel, 2 * wheel + 1
-                    s, lean = places[k, pair], leans[pair]
-                    # What leans on both faces takes no friction: else one of them would do.
-                    usable = 0.0 if lean == BOTH and ways[pair] > 1 else share * friction
-                    support(pieces, radius, corners, s, s, usable, lean, held)
-                    x, z, _, _ = curve_at(pieces, radius, s)
-                    nx, nz, mu[wheel], reach = held[0], held[1], held[2], held[3]
-                    normals[pair, 0], normals[pair, 1] = nx, nz
-                    lx, lz = x - reach * nx - com[k, 0], z - reach * nz - com[k, 1]
-                    A[0, t], A[1, t], A[2, t] = nz, -nx, lz * nz + lx * nx
-                    A[0, n], A[1, n], A[2, n] = nx, nz, lz * nx - lx * nz
-                for i in range(8):
-                    for j in range(8):
-                        H[i, j] = _SMALL if i == j else 0.0
-                        for r in range(3):
-                            H[i, j] += S[r] * A[r, i] * A[r, j]
-                    g[i] = -A[1, i] * weight
-                solve_native(H, g, mu, limit * weight, forces)
-                missed = size = 0.0
-                for i in range(8):
-                    size += forces[i] * forces[i]
-                for r in range(3):
-                    total = -weight if r == 1 else 0.0
-                    for i in range(8):
-                        total += A[r, i] * forces[i]
-                    missed += S[r] * total * total
+            held, best = False, np.inf
+            for way in range(front * rear):
+                leans = (BOTH - way % front, BOTH - way // front)
+                # What leans on both faces takes no friction: else one of them would do.
+                usable = (
+                    0.0 if leans[0] == BOTH and front > 1 else share * friction,
+                    0.0 if leans[1] == BOTH and rear > 1 else share * friction,
+                )
+                missed = _rest(
+                    pieces, corners, radius, weight, places[k], com[k], leans, usable, limit, tried
+                )
                 holds = missed < (_HELD * weight) ** 2
-                value = size if holds else weight * weight * 1e6 + missed
-                if value >= best:
+                value = (tried.forces**2).sum() if holds else missed
+                if holds < held or (holds == held and value >= best):
                     continue
-                best = value
+                held, best = holds, value
                 out[k, 4], out[k, 5], out[k, 6] = share, leans[0], leans[1]
                 for pair in range(2):
-                    nx, nz = normals[pair, 0], normals[pair, 1]
-                    t = forces[4 * pair] + forces[4 * pair + 2]
-                    n = forces[4 * pair + 1] + forces[4 * pair + 3]
+                    nx, nz = tried.normals[2 * pair]
+                    t = tried.forces[4 * pair] + tried.forces[4 * pair + 2]
+                    n = tried.forces[4 * pair + 1] + tried.forces[4 * pair + 3]
                     out[k, 2 * pair], out[k, 2 * pair + 1] = t * nz + n * nx, n * nz - t * nx
-            if best < weight * weight * 1e6:
+            if held:
                 break
 
 
+class Trial(NamedTuple):
+    """One way to rest.
+
+    Attributes:
+        A: (3, 8) map from forces to the body's wrench (eqs 3-7).
+        friction: (4,) that each wheel may use.
+        forces: (8,) per wheel tangential and normal [N].
+        normals: (4, 2) of the faces that the wheels rest on.
+    """
+
+    A: Floats
+    friction: Floats
+    forces: Floats
+    normals: Floats
+
+
+@nb.njit(cache=True)
+def _rest(
+    pieces: Floats,
+    corners: Floats,
+    radius: float,
+    weight: float,
+    places: Floats,
+    com: Floats,
+    leans: tuple[int, int],
+    usable: tuple[float, float],
+    limit: float,
+    trial: Trial,
+) -> float:
+    """Fill `trial` with the smallest forces that come nearest to holding the robot.
+
+    Args:
+        pieces, corners, radius, weight: See `resting_forces`.
+        places, com: (2,) at one instant.
+        leans: What front and rear wheels lean on in a corner.
+        usable: Friction that front and rear wheels may use.
+        limit: Largest normal force of a wheel in weights.
+        trial: Filled.
+
+    Returns:
+        Weighted square of the wrench by which they miss it [N^2].
+    """
+    A, S, support_of = trial.A, (1.0, 1.0, _MOMENT), np.empty(8)
+    for wheel in range(4):
+        pair, t, n = wheel // 2, 2 * wheel, 2 * wheel + 1
+        s = places[pair]
+        support(pieces, radius, corners, s, s, usable[pair], leans[pair], support_of)
+        x, z, _, _ = curve_at(pieces, radius, s)
+        nx, nz, trial.friction[wheel], reach = support_of[:4]
+        trial.normals[wheel, 0], trial.normals[wheel, 1] = nx, nz
+        lx, lz = x - reach * nx - com[0], z - reach * nz - com[1]
+        A[0, t], A[1, t], A[2, t] = nz, -nx, lz * nz + lx * nx
+        A[0, n], A[1, n], A[2, n] = nx, nz, lz * nx - lx * nz
+    H, g = np.empty((8, 8)), np.empty(8)
+    for i in range(8):
+        for j in range(8):
+            H[i, j] = _SMALL if i == j else 0.0
+            for r in range(3):
+                H[i, j] += S[r] * A[r, i] * A[r, j]
+        g[i] = -A[1, i] * weight
+    solve_native(H, g, trial.friction, limit * weight, trial.forces)
+    missed = 0.0
+    for r in range(3):
+        total = -weight if r == 1 else 0.0
+        for i in range(8):
+            total += A[r, i] * trial.forces[i]
+        missed += S[r] * total * total
+    return missed
+
+
 @leaf
-def _in_corner(corners: Floats, s: float) -> bool:
-    for corner in corners:  # noqa: SIM110 (compiled)
+def _ways(corners: Floats, s: float) -> int:
+    """In how many ways a wheel at `s` may lean on the ground."""
+    for corner in corners:
         if abs(s - corner) < CORNER_PLANNED:
-            return True
-    return False
+            return 3
+    return 1
