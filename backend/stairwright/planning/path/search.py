@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,17 +15,16 @@ from .cells import (
     build_cells,
     lag_spans,
     pitch_ranges,
-    volume_size,
     wheel_pairs,
 )
 from .cheapest import cheapest, trace
 from .course import Stand, sample_course, scale, stand_height
+from .ends import anywhere, arrival, cheapest_pose, near, pose_in, widest_pose
 from .flood import flood
 from .lattice import LAG, Finding
 from .legs import LEGS_GAP, Leg, farthest_apart
 from .question import Question
 from .tables import (
-    INF,
     Bounds,
     Floats32,
     Lattice,
@@ -38,7 +35,7 @@ from .tables import (
     on_lattice,
 )
 from .trunk import trunk_table
-from .volumes import Costs, Volumes, make_costs, make_volumes
+from .volumes import Volumes, make_costs, make_volumes
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -71,9 +68,9 @@ class Search:
             weights.com_margin, weights.clearance, weights.torque, weights.smoothness, weights.pitch
         )
         front, rear = self.legs
-        near = 2 * p.wheel_radius + LEGS_GAP + _APART
+        close = 2 * p.wheel_radius + LEGS_GAP + _APART
         far, ends = farthest_apart(self.legs), (self._index(begin)[0], self._index(end)[1])
-        self.pairs = wheel_pairs(self.centres, near, far, *ends)
+        self.pairs = wheel_pairs(self.centres, close, far, *ends)
         widest = max(leg.reach_max for leg in self.legs) + 0.2 * (p.thigh + p.calf)
         kept, like = alike(path.vertices, self.centres, widest)
         pitches = pitch_ranges(self.centres, self.pairs, lattice)
@@ -139,20 +136,18 @@ class Search:
         still_wanted()
         w = self._world(com)
         source = int(np.argmax(entries))
-        seed = self._seed(cells, source, self.begin)
-        first = self._around(seed)
-        if open_start:
-            first = self._anywhere()
+        seed = pose_in(lat, cells, source, self.begin)
+        first = anywhere(lat) if open_start else near(lat, seed)
         v = make_volumes(len(cells.front), lat)
         moves = FORWARD
         flood(w, cells, v, entries, first, moves)
-        best, goal, pose = self._arrival(v, goals, target)
+        best, goal, pose = arrival(lat, v, goals, target)
         if best == 0 and roll_back:
             moves = len(MOVES)
             for k in range(_SWEEPS):
                 if not flood(w, cells, v, entries, first, moves):
                     break
-                best, goal, pose = self._arrival(v, goals, target)
+                best, goal, pose = arrival(lat, v, goals, target)
                 if best > 0 and k > 1:
                     break
         reached = None if best > 0 else self._farthest(cells, v)
@@ -162,7 +157,7 @@ class Search:
             return Finding(None, None, best, None, moves > FORWARD)
         if best == 0:
             goal = int(cells.number[self._index(Stand(reached or (0.0, 0.0), self.end.body))])
-            pose = self._widest(v, goal)
+            pose = widest_pose(lat, v, goal)
         still_wanted()
         wide = best or int(v.best[goal])
         level = max(1, min(wide, 150) if wide > 100 else int(0.7 * wide))
@@ -192,12 +187,12 @@ class Search:
         row = 0
         while len(goals) and row <= cells.rear[goals].max():
             v = make_volumes(len(cells.front), self.lattice)
-            flood(w, cells, v, cells.rear == row, self._anywhere(), FORWARD)
+            flood(w, cells, v, cells.rear == row, anywhere(self.lattice), FORWARD)
             end = self._farthest(cells, v)
             if end is None:
                 row += 1
                 continue
-            if self._arrival(v, goals, target)[0] > 0:
+            if arrival(self.lattice, v, goals, target)[0] > 0:
                 break
             out.append(end)
             row = self._index(Stand(end, self.end.body))[0]
@@ -208,7 +203,9 @@ class Search:
         if open_end:
             return np.flatnonzero(cells.front == len(self.s) - 1), None
         goals = np.flatnonzero(self._only(cells, self.end))
-        return goals, self._seed(cells, int(goals[0]), self.end) if len(goals) else None
+        if not len(goals):
+            return goals, None
+        return goals, pose_in(self.lattice, cells, int(goals[0]), self.end)
 
     def _cells(self, friction: float, reserve: float, com: float) -> Cells:
         return build_cells(
@@ -233,7 +230,7 @@ class Search:
             if not cheapest(w, cells, v, costs, source, seed, moves, smooth, pulls, level):
                 break
         rows = np.empty((4 * len(self.s) + 400, 5), np.int32)
-        last = self._cheapest_pose(costs, goal, pose)
+        last = cheapest_pose(self.lattice, costs, goal, pose)
         count = trace(w, cells, costs, source, goal, last, moves, smooth, rows)
         return rows[:count][::-1] if count >= 0 else None
 
@@ -258,74 +255,8 @@ class Search:
             int(np.argmin(np.abs(self.s - where.wheels[1]))),
         )
 
-    def _seed(self, cells: Cells, c: int, where: Stand) -> Ints:
-        lat, body = self.lattice, where.body
-        seed = [
-            round(body[2] / lat.turn) + lat.pitches // 2 - cells.t0[c],
-            round(body[1] / lat.step) - cells.z0[c],
-            round(body[0] / lat.step) - cells.x0[c],
-        ]
-        sizes = (lat.nt, lat.nz, lat.nx)
-        return np.array(
-            [min(max(int(v), 0), n - 1) for v, n in zip(seed, sizes, strict=True)], np.int32
-        )
-
-    def _window(self, volume: NDArray[Any]) -> NDArray[Any]:
-        """(nt, nz, nx) view of a flat volume without its rim."""
-        lat = self.lattice
-        full = volume.reshape(lat.nt + 4, lat.nz + 4, lat.row)
-        return full[2:-2, 2:-2, 2 : 2 + lat.nx]
-
-    def _anywhere(self) -> Ints:
-        """Range (3, 2) of all window indices."""
-        lat = self.lattice
-        return np.array([[0, lat.nt], [0, lat.nz], [0, lat.nx]], np.int32)
-
-    def _around(self, pose: Ints) -> Ints:
-        """Range (3, 2) of window indices within two of `pose` (3,)."""
-        lat = self.lattice
-        sizes = np.array([lat.nt, lat.nz, lat.nx], np.int32)
-        both = np.stack([np.maximum(pose - 2, 0), np.minimum(pose + 3, sizes)], axis=1)
-        return both.astype(np.int32)
-
-    def _near(self, pose: Ints) -> tuple[slice, ...]:
-        return tuple(slice(int(a), int(b)) for a, b in self._around(pose))
-
-    def _arrival(self, v: Volumes, goals: Longs, target: Ints | None) -> tuple[int, int, Ints]:
-        """Best quality at one of the `goals`, near the resting pose `target` if there is one.
-
-        Returns:
-            The quality (0: none is reached), the goal, and its pose.
-        """
-        goal = int(goals[int(np.argmax(v.best[goals]))])
-        if v.best[goal] == 0:
-            return 0, goal, np.zeros(3, np.int32)
-        if target is None:
-            return int(v.best[goal]), goal, self._widest(v, goal)
-        part = self._near(target)
-        near = self._window(v.width[v.slot[goal]])[part]
-        if near.max() == 0:
-            return 0, goal, target
-        at = np.unravel_index(int(near.argmax()), near.shape)
-        pose = [int(k) + part[m].start for m, k in enumerate(at)]
-        return int(near.max()), goal, np.array(pose, np.int32)
-
-    def _widest(self, v: Volumes, c: int) -> Ints:
-        """The pose of cell `c` with the widest way to it."""
-        inside = self._window(v.width[v.slot[c]])
-        at = np.unravel_index(int(inside.argmax()), inside.shape)
-        return np.array([int(k) for k in at], np.int32)
-
-    def _cheapest_pose(self, costs: Costs, c: int, pose: Ints) -> Ints:
-        """The cheapest pose of cell `c` near `pose`."""
-        flat = np.full(volume_size(self.lattice), INF, np.float32)
-        low, high, at = costs.low[c], costs.high[c], costs.base[c]
-        flat[low:high] = costs.value[at + low : at + high]
-        volume, part = self._window(flat), self._near(pose)
-        at = np.unravel_index(int(volume[part].argmin()), volume[part].shape)
-        return np.array([int(k) + part[m].start for m, k in enumerate(at)], np.int32)
-
-    def _farthest(self, cells: Cells, v: Volumes) -> tuple[float, float] | None:
+    def _farthest(self, cells: Cells, v: Volumes) -> Place | None:
+        """The pair of places farthest along that was reached."""
         found = np.flatnonzero(v.best)
         if len(found) == 0:
             return None
