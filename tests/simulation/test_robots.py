@@ -36,7 +36,7 @@ def scaled(name: str, legs: float, trunk: float, mass: float) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("robot", "points", "friction"),
     [
-        # One pair carries nearly all of 41 kg: more than the largest force that suited the library's robots.
+        # One pair carries nearly all of 41 kg: more than the force limit of the library's robots.
         (scaled("a1_wheeled", 1.43, 1.31, 3.5), DOWN_UP_DOWN, 0.5),
         # High on a narrow track, with joints that are soft for it: rolled over sideways.
         (scaled("a1_wheeled_x", 1.48, 0.83, 1.5), HILL, 0.35),
