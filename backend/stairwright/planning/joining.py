@@ -6,8 +6,9 @@ import numpy as np
 
 from stairwright.terrain.wheel_path import wheel_path
 
-from .certificate import certify
+from .certificate import judge
 from .interpolation import reference
+from .motion import Motion
 from .plan import Certificate, Check, Plan, Problem, ProblemKind
 from .reference import Reference
 from .sqp.cells import make_course
@@ -62,22 +63,8 @@ def _thin_balance(plan: Plan, samples: Reference) -> Problem | None:
 
 
 def _certify(plan: Plan, samples: Reference) -> Certificate:
-    first = plan.poses[0]
-    poses = [
-        first.model_copy(
-            update={
-                "progress": float(samples.progress[i]),
-                "time": float(samples.time[i]),
-                "x_c": float(samples.trunk[i, 0]),
-                "z_c": float(samples.trunk[i, 1]),
-                "pitch": float(samples.trunk[i, 2]),
-                "q": tuple(samples.q[i].tolist()),
-                "wheel_progress": tuple(samples.wheel_progress[i].tolist()),
-            }
-        )
-        for i in range(len(samples.time))
-    ]
-    return certify(plan.model_copy(update={"poses": poses}), "motion")
+    robot, ground = plan.robot_description, plan.terrain.vertices
+    return judge(Motion(ground, robot, plan.friction, samples.trunk, samples.q, samples.progress))
 
 
 def _problem(check: Check, plan: Plan, samples: Reference) -> Problem:

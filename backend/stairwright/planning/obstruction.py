@@ -250,11 +250,8 @@ def _torque(course: Course, motor: Motor) -> Cause | None:
     strong = candidate.change(course, candidate.limit).quick()
     if isinstance(strong, Blocked):
         return None
-    if motor == "leg":
-        used = max(candidate.limit - pose.margins.torque for pose in strong.poses)
-    else:
-        forces = np.array([pose.forces for pose in strong.poses])  # of pairs of wheels
-        used = 0.5 * float(np.abs(forces[:, :, 0]).max()) * course.robot.wheel.radius
+    record = strong.nodes.record
+    used = float((record.torque if motor == "leg" else record.wheel_torque).max())
     ratio = 1.001 * used / candidate.available
     return (candidate, ratio) if ratio > 1.0 and candidate.solves(course, ratio) else None
 

@@ -117,6 +117,8 @@ def cheapest(
 ) -> bool:
     """One sweep of the cheapest way from `source` through poses at least `level` wide.
 
+    A cell is left out if no cell that leads to it has changed since it was last looked at.
+
     Args:
         w: The problem.
         cells: Its cells.
@@ -136,16 +138,22 @@ def cheapest(
     size, margin = volume_size(lat), reach(lat)
     pad, result = np.full(size, INF, np.float32), np.full(size, INF, np.float32)
     least = np.uint8(level)
-    changed = False
+    changed, sweeps = False, costs.sweeps
     for c in range(len(cells.front)):
         if v.best[c] < least:
             continue
         lo, hi = size, 0
+        news = c == source and sweeps.seen[c] < 0
         for m in range(moves):
             p = cells.origin[c, m]
             if p >= 0 and costs.low[p] < costs.high[p]:
                 by = offset(cells, lat, c, p)
                 lo, hi = min(lo, costs.low[p] - by), max(hi, costs.high[p] - by)
+                news |= sweeps.grown[p] > sweeps.seen[c]
+        if not news:
+            continue
+        sweeps.clock[0] += 1
+        sweeps.seen[c] = sweeps.clock[0]
         if c == source:
             lo, hi = 0, size
         lo, hi = max(0, lo - margin), min(size, hi + margin)
@@ -172,6 +180,7 @@ def cheapest(
         pose_costs(w, cells, c, pulls, width, least, lo, hi, result)
         _only_wide(width[lo:hi], least, result[lo:hi])  # the rim between rows holds scratch
         if _keep(costs, c, lo, hi, result):
+            sweeps.grown[c] = sweeps.clock[0]
             changed = True
     return changed
 

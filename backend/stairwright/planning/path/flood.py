@@ -32,6 +32,8 @@ Flags = NDArray[np.bool_]
 def flood(w: World, cells: Cells, v: Volumes, entry: Flags, seed: Ints, moves: int) -> bool:
     """One sweep of the widest path from the cells of entry over all cells; True if any changed.
 
+    A cell is left out if no cell that leads to it has changed since it was last looked at.
+
     Args:
         w: The problem.
         cells: Its cells.
@@ -44,14 +46,20 @@ def flood(w: World, cells: Cells, v: Volumes, entry: Flags, seed: Ints, moves: i
     size, margin = volume_size(lat), reach(lat)
     pad, result = np.zeros(size, np.uint8), np.zeros(size, np.uint8)
     fresh = make_fresh(lat)
-    changed = False
+    changed, sweeps = False, v.sweeps
     for c in range(len(cells.front)):
         lo, hi = size, 0
+        news = entry[c] and sweeps.seen[c] < 0
         for m in range(moves):
             p = cells.origin[c, m]
             if p >= 0 and v.first[p] < v.last[p]:
                 by = offset(cells, lat, c, p)
                 lo, hi = min(lo, v.first[p] - by), max(hi, v.last[p] - by)
+                news |= sweeps.grown[p] > sweeps.seen[c]
+        if not news:
+            continue
+        sweeps.clock[0] += 1
+        sweeps.seen[c] = sweeps.clock[0]
         if entry[c]:
             lo, hi = 0, size
         lo, hi = max(0, lo - margin), min(size, hi + margin)
@@ -78,6 +86,7 @@ def flood(w: World, cells: Cells, v: Volumes, entry: Flags, seed: Ints, moves: i
             v.slot[c] = k
             v.width[k] = 0
         if _grow(w, cells, v, c, lo, hi, result, fresh):
+            sweeps.grown[c] = sweeps.clock[0]
             changed = True
     return changed
 

@@ -45,9 +45,7 @@ def plan_path(terrain: Terrain, robot: Robot, friction: float, weights: PathWeig
         return make_plan(terrain, robot, friction, weights, begun, problem=problem)
     found = course.solve(search_threads())
     if isinstance(found, Solved):
-        plan = make_plan(
-            terrain, robot, friction, weights, begun, found.poses, found.keys, found.total
-        )
+        plan = make_plan(terrain, robot, friction, weights, begun, *course.way(found.nodes))
         return plan.model_copy(update={"certificate": found.certificate})
     from stairwright.planning.obstruction import explain  # it plans again, so it imports us
 

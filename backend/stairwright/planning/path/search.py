@@ -144,6 +144,7 @@ class Search:
         best, goal, pose = arrival(lat, v, goals, target)
         if best == 0 and roll_back:
             moves = len(MOVES)
+            v.sweeps.seen.fill(-1)  # none has been looked at for ways back
             for k in range(_SWEEPS):
                 if not flood(w, cells, v, entries, first, moves):
                     break

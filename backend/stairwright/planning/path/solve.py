@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-import time as clock
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.planning.certificate import certify
-from stairwright.planning.plan import Certificate, Plan, Pose
+from stairwright.planning.certificate import judge
+from stairwright.planning.motion import Motion
+from stairwright.planning.plan import Certificate, Pose
 from stairwright.planning.threads import race, still_wanted
 from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
 
-from .assemble import make_plan, make_poses
+from .assemble import make_poses
 from .course import Stand, find_stands
 from .ground import make_ground
 from .lattice import BOLD, HOPE, KEEN, STRICT, Finding
@@ -28,6 +28,7 @@ from .record import Motor
 from .refine import Refined, refine
 from .search import Place
 from .tables import Bounds
+from .timing import path_parameter
 from .windows import Searches, find_path
 
 Ints = NDArray[np.int64]
@@ -61,16 +62,18 @@ _THIN = 0.01  # m; CoM margin
 class Solved:
     """A path and its certificate, which has passed unless the path is still to be mended."""
 
-    poses: list[Pose]
-    keys: list[int]
-    total: float
+    nodes: Refined
     certificate: Certificate
-    margin: float  # m; thinnest of the CoM
+
+    @property
+    def margin(self) -> float:
+        """Thinnest margin of the CoM [m]."""
+        return float(self.nodes.record.firm.min())
 
     @property
     def bad(self) -> Ints:
-        """Poses at which a check of the certificate is violated most."""
-        progress = np.array([pose.progress for pose in self.poses])
+        """Nodes at which a check of the certificate is violated most."""
+        progress = path_parameter(self.nodes.s, self.nodes.body)
         places = {
             int(np.abs(progress - check.progress).argmin())
             for check in self.certificate.checks
@@ -220,7 +223,7 @@ class Course(Question):
             found = found.part(0, int(bad[0]))
         if len(found.s) < 2:
             return ([], [], 0.0), finding.reached
-        return make_poses(self.path, self.robot, found, self.weights), finding.reached
+        return self.way(found), finding.reached
 
     def finish(self, finding: Finding) -> Solved | Blocked:
         """Polish, mend and certify; where that fails, the arc lengths at the worst place."""
@@ -243,11 +246,14 @@ class Course(Question):
         worst = found.s[int(found.record.room.argmin())]
         return Blocked((float(worst[0]), float(worst[1])), True, found.record.weak)
 
-    def _certified(self, found: Refined) -> Solved:
-        """The path as a document with its certificate, passed or not."""
-        poses, keys, total = make_poses(self.path, self.robot, found, self.weights)
-        plan: Plan = make_plan(
-            self.terrain, self.robot, self.friction, self.weights, clock.perf_counter(), poses,
-            keys, total,
+    def _certified(self, nodes: Refined) -> Solved:
+        """The path with its certificate, passed or not."""
+        motion = Motion(
+            self.terrain.vertices, self.robot, self.friction, nodes.body,
+            nodes.record.poses[:, :4], path_parameter(nodes.s, nodes.body),
         )  # fmt: skip
-        return Solved(poses, keys, total, certify(plan), float(found.record.firm.min()))
+        return Solved(nodes, judge(motion))
+
+    def way(self, nodes: Refined) -> Way:
+        """What the plan's document says of a path."""
+        return make_poses(self.path, self.robot, nodes, self.weights)

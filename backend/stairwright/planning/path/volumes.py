@@ -30,6 +30,20 @@ def offset(cells: Cells, lat: Lattice, c: int, p: int) -> int:
     )
 
 
+class Sweeps(NamedTuple):
+    """What has happened to cells: a sweep leaves out those to which nothing new leads.
+
+    Attributes:
+        clock: (1,) how often any cell was looked at.
+        grown: (n,) the clock when a cell's volume last changed.
+        seen: (n,) the clock when ways into a cell were last looked for, -1: never.
+    """
+
+    clock: Ints
+    grown: Ints
+    seen: Ints
+
+
 class Volumes(NamedTuple):
     """Volumes of the cells that are entered, in the order in which they are.
 
@@ -40,6 +54,7 @@ class Volumes(NamedTuple):
             there is none.
         first, last: (n,) range of positions in `width` that are reached; first >= last: none are.
         best: (n,) largest width of a cell.
+        sweeps: Over the cells.
     """
 
     slot: Ints
@@ -48,6 +63,7 @@ class Volumes(NamedTuple):
     first: Ints
     last: Ints
     best: Bytes
+    sweeps: Sweeps
 
 
 class Costs(NamedTuple):
@@ -58,6 +74,7 @@ class Costs(NamedTuple):
         base: (n,).
         first, last: (n,) range of positions for which there is room; first >= last: none are.
         low, high: (n,) range of those that have a value.
+        sweeps: Over the cells.
     """
 
     value: Floats32
@@ -66,6 +83,7 @@ class Costs(NamedTuple):
     last: Ints
     low: Ints
     high: Ints
+    sweeps: Sweeps
 
 
 _memory = threading.local()
@@ -83,6 +101,10 @@ def _array(name: str, rows: int, columns: int, kind: Any) -> NDArray[Any]:
     return kept[:size].reshape(rows, columns)
 
 
+def _no_sweeps(n: int) -> Sweeps:
+    return Sweeps(np.zeros(1, np.int32), np.zeros(n, np.int32), np.full(n, -1, np.int32))
+
+
 def make_volumes(n: int, lat: Lattice) -> Volumes:
     """Empty volumes for `n` cells; they share memory with earlier ones of this thread."""
     size = volume_size(lat)
@@ -90,6 +112,7 @@ def make_volumes(n: int, lat: Lattice) -> Volumes:
         np.full(n, -1, np.int32), np.zeros(1, np.int32),
         _array("width", n, size, np.uint8),
         np.full(n, size, np.int32), np.zeros(n, np.int32), np.zeros(n, np.uint8),
+        _no_sweeps(n),
     )  # fmt: skip
 
 
@@ -99,7 +122,8 @@ def make_costs(v: Volumes, level: int) -> Costs:
     room = np.maximum(last - first, 0).astype(np.int64)
     base = np.cumsum(room) - room - first
     value = _array("value", 1, int(room.sum()), np.float32)[0]
-    return Costs(value, base, first, last, np.zeros_like(first), np.zeros_like(last))
+    low, high = np.zeros_like(first), np.zeros_like(last)
+    return Costs(value, base, first, last, low, high, _no_sweeps(len(first)))
 
 
 @nb.njit(cache=True, nogil=True)

@@ -1,0 +1,173 @@
+"""Distances of the robot from the ground and of its legs from each other, for the certificate.
+
+Exact (shapely) wherever they may be the least or less than the motion between two samples; what is
+farther off is told by bounds, at a fraction of the time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from stairwright.robot import kinematics as kin
+from stairwright.terrain.profile import height_at
+
+from .motion import Samples
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Shapes = NDArray[Any]  # of shapely geometries
+
+_CHUNK = 64  # samples that share one piece of terrain
+_SIGHT = 0.01  # m; clearance up to which parts are looked at before one is known
+_MORE = 1e-6  # m
+
+
+class Gaps:
+    """Distances (n,) [m] at the samples of a motion."""
+
+    def __init__(self, samples: Samples) -> None:
+        self.samples = samples
+        self.robot, self.body = samples.motion.robot, samples.motion.body
+        self.vertices = samples.motion.vertices
+        self.starts = np.arange(0, len(self.body), _CHUNK)
+        self.lines = [self._ground_near(self.body[k : k + _CHUNK, 0]) for k in self.starts]
+
+    def wheels(self) -> list[Floats]:
+        """Of the rims of the front and of the rear wheels from the ground; negative where sunk."""
+        everywhere = np.arange(len(self.body))
+        out = []
+        for centres in np.moveaxis(self.samples.frames.wheels, 1, 0):
+            distance = self._from_ground(shapely.points(centres), everywhere)
+            distance = np.where(self._above(centres), distance, -distance)
+            out.append(distance - self.robot.wheel.radius)
+        return out
+
+    def trunk(self) -> Floats:
+        """Of the trunk from the ground; see `_clearances`."""
+        size = np.array([self.robot.trunk.size[0], self.robot.trunk.size[2]]) / 2
+        corners = np.array([[1, 1], [1, -1], [-1, -1], [-1, 1], [1, 1]]) * size
+        box = self.body[:, None, :2] + kin.rotate(self.body[:, 2, None], corners)
+        return self._clearances([(box, 0.0)], self.body[:, :2], shapely.polygons)
+
+    def links(self) -> Floats:
+        """Of thighs and calves from the ground; see `_clearances`."""
+        f, robot = self.samples.frames, self.robot
+        parts = []
+        for a, b, link in ((f.knees, f.wheels, robot.calf), (f.hips, f.knees, robot.thigh)):
+            parts += [(np.stack([a[:, leg], b[:, leg]], axis=1), link.radius) for leg in range(2)]
+        return self._clearances(parts, None, shapely.linestrings)
+
+    def legs(self) -> Floats:
+        """Between links and wheels of the front and the rear leg, exact where it may be least."""
+        f, robot = self.samples.frames, self.robot
+        joints = np.stack([f.hips, f.knees, f.wheels], axis=2)  # (n, leg, joint, 2)
+        thigh, calf = robot.thigh.radius, robot.calf.radius
+        radii = np.array([[thigh], [max(thigh, calf)], [max(calf, robot.wheel.radius)]])
+        low, high = (joints - radii).min(axis=2), (joints + radii).max(axis=2)
+        between = np.maximum(low[:, 0] - high[:, 1], low[:, 1] - high[:, 0])
+        gap: Floats = np.hypot(*np.maximum(between, 0.0).T)
+        first = np.array([np.argmin(gap)])
+        near = np.flatnonzero(gap <= max(self._between_legs(first)[0], 0.0))
+        gap[near] = self._between_legs(near)
+        return gap
+
+    def _clearances(
+        self,
+        parts: Sequence[tuple[Floats, float]],
+        inside: Floats | None,
+        shape: Callable[[Floats], Shapes],
+    ) -> Floats:
+        """Least clearance of some parts from the ground.
+
+        It is exact where it may be less than a sample's slack, or where it may be the least of all
+        after that is taken off; elsewhere it is a bound.
+
+        Args:
+            parts: Outlines (n, k, 2) and radii round them [m].
+            inside: (n, 2) a point of each part that shows whether it lies above the ground; None:
+                the first of its outline.
+            shape: What makes shapely's geometries of outlines.
+        """
+        slack = self.samples.slack
+        worst = np.full(len(slack), np.inf)
+        for outline, radius in parts:
+            point = outline[:, 0] if inside is None else inside
+
+            def exact(
+                k: Ints, line: Floats = outline, r: float = radius, at: Floats = point
+            ) -> Floats:
+                distance = self._from_ground(shape(line[k]), k)
+                return np.where(self._above(at[k]), distance, -1.0) - r
+
+            # What is worst so far, or first sight shows, tells how much ground has to be looked at.
+            bound = self._at_least(outline, _SIGHT + radius) - radius - slack
+            first = np.array([np.argmin(bound)])
+            least = max(min(np.min(worst - slack), (exact(first) - slack[first])[0]), 0.0)
+            clear = self._at_least(outline, least + slack.max() + radius + _MORE) - radius
+            near = np.flatnonzero(clear - slack <= least)
+            clear[near] = exact(near)
+            worst = np.minimum(worst, clear)
+        return worst
+
+    def _at_least(self, outline: Floats, most: float) -> Floats:
+        """A bound of the distance (n,) of outlines (n, k, 2) from the ground; it is at most `most`.
+
+        What lies ahead or behind by more than that is no matter.
+        """
+        low, high = outline[..., 0].min(axis=1) - most, outline[..., 0].max(axis=1) + most
+        x, z = self.vertices.T
+        ends = np.maximum(np.interp(low, x, z), np.interp(high, x, z))
+        a, b = np.searchsorted(x, low, side="left"), np.searchsorted(x, high, side="right")
+        between = np.stack([a, b], axis=1).ravel()
+        inner = np.maximum.reduceat(np.append(z, -np.inf), between)[::2]
+        highest = np.maximum(ends, np.where(a < b, inner, -np.inf))
+        bound: Floats = np.minimum(outline[..., 1].min(axis=1) - highest, most)
+        return bound
+
+    def _from_ground(self, shapes: Shapes, samples: Ints) -> Floats:
+        """Distance of `shapes` (k,) at `samples` (k,), which rise, from the ground near them."""
+        parts = np.split(shapes, np.searchsorted(samples, self.starts[1:]))
+        pairs = zip(self.lines, parts, strict=True)
+        return np.concatenate([shapely.distance(line, part) for line, part in pairs])
+
+    def _ground_near(self, x: Floats) -> shapely.Geometry:
+        """The piece of terrain that robots may meet whose trunks are at `x`."""
+        robot = self.robot
+        reach = 1.0 + robot.thigh.length + robot.calf.length + robot.trunk.size[0]
+        places = self.vertices[:, 0]
+        a = max(0, int(np.searchsorted(places, x.min() - reach, side="left")) - 1)
+        b = min(len(places), int(np.searchsorted(places, x.max() + reach, side="right")) + 1)
+        if b - a < 2:
+            a, b = max(0, min(a, len(places) - 2)), max(2, b)
+        line = shapely.linestrings(self.vertices[a:b])
+        shapely.prepare(line)
+        return line
+
+    def _above(self, points: Floats) -> NDArray[np.bool_]:
+        """Whether points (n, 2) lie above the ground; beyond the profile's ends there is none."""
+        x = self.vertices[:, 0]
+        beyond = (points[:, 0] < x[0]) | (points[:, 0] > x[-1])
+        above: NDArray[np.bool_] = (points[:, 1] > height_at(self.vertices, points[:, 0])) | beyond
+        return above
+
+    def _between_legs(self, samples: Ints) -> Floats:
+        """Least distance between the links and wheels of both legs at some samples (n,)."""
+        f, robot = self.samples.frames, self.robot
+        parts = []
+        for leg in range(2):
+            hip, knee, wheel = (one[samples, leg] for one in (f.hips, f.knees, f.wheels))
+            parts.append(
+                [
+                    (shapely.linestrings(np.stack([hip, knee], axis=1)), robot.thigh.radius),
+                    (shapely.linestrings(np.stack([knee, wheel], axis=1)), robot.calf.radius),
+                    (shapely.points(wheel), robot.wheel.radius),
+                ]
+            )
+        gaps = [shapely.distance(a, b) - ra - rb for a, ra in parts[0] for b, rb in parts[1]]
+        least: Floats = np.min(gaps, axis=0)
+        return least
