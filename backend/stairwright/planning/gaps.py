@@ -6,7 +6,9 @@ farther off is told by bounds, at a fraction of the time.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import reduce
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -65,10 +67,10 @@ class Gaps:
     def legs(self) -> Floats:
         """Between links and wheels of the front and the rear leg, exact where it may be least."""
         f, robot = self.samples.frames, self.robot
-        joints = np.stack([f.hips, f.knees, f.wheels], axis=2)  # (n, leg, joint, 2)
-        thigh, calf = robot.thigh.radius, robot.calf.radius
-        radii = np.array([[thigh], [max(thigh, calf)], [max(calf, robot.wheel.radius)]])
-        low, high = (joints - radii).min(axis=2), (joints + radii).max(axis=2)
+        thigh, calf, wheel = robot.thigh.radius, robot.calf.radius, robot.wheel.radius
+        radii = (thigh, max(thigh, calf), max(calf, wheel))
+        joints = list(zip((f.hips, f.knees, f.wheels), radii, strict=True))
+        low, high = _box([at - r for at, r in joints])[0], _box([at + r for at, r in joints])[1]
         between = np.maximum(low[:, 0] - high[:, 1], low[:, 1] - high[:, 0])
         gap: Floats = np.hypot(*np.maximum(between, 0.0).T)
         first = np.array([np.argmin(gap)])
@@ -105,35 +107,38 @@ class Gaps:
                 return np.where(self._above(at[k]), distance, -1.0) - r
 
             # What is worst so far, or first sight shows, tells how much ground has to be looked at.
-            bound = self._at_least(outline, _SIGHT + radius) - radius - slack
+            box = _box(np.moveaxis(outline, 1, 0))
+            bound = self._at_least(*box, _SIGHT + radius) - radius - slack
             first = np.array([np.argmin(bound)])
             least = max(min(np.min(worst - slack), (exact(first) - slack[first])[0]), 0.0)
-            clear = self._at_least(outline, least + slack.max() + radius + _MORE) - radius
+            clear = self._at_least(*box, least + slack.max() + radius + _MORE) - radius
             near = np.flatnonzero(clear - slack <= least)
             clear[near] = exact(near)
             worst = np.minimum(worst, clear)
         return worst
 
-    def _at_least(self, outline: Floats, most: float) -> Floats:
-        """A bound of the distance (n,) of outlines (n, k, 2) from the ground; it is at most `most`.
-
-        What lies ahead or behind by more than that is no matter.
+    def _at_least(self, low: Floats, high: Floats, most: float) -> Floats:
+        """A bound of the distance (n,) of what lies between corners `low` and `high` (n, 2) from
+        the ground, at most `most`: what lies ahead or behind by more than that is no matter.
         """
-        low, high = outline[..., 0].min(axis=1) - most, outline[..., 0].max(axis=1) + most
+        left, right = low[:, 0] - most, high[:, 0] + most
         x, z = self.vertices.T
-        ends = np.maximum(np.interp(low, x, z), np.interp(high, x, z))
-        a, b = np.searchsorted(x, low, side="left"), np.searchsorted(x, high, side="right")
+        ends = np.maximum(np.interp(left, x, z), np.interp(right, x, z))
+        a, b = np.searchsorted(x, left, side="left"), np.searchsorted(x, right, side="right")
         between = np.stack([a, b], axis=1).ravel()
         inner = np.maximum.reduceat(np.append(z, -np.inf), between)[::2]
         highest = np.maximum(ends, np.where(a < b, inner, -np.inf))
-        bound: Floats = np.minimum(outline[..., 1].min(axis=1) - highest, most)
+        bound: Floats = np.minimum(low[:, 1] - highest, most)
         return bound
 
     def _from_ground(self, shapes: Shapes, samples: Ints) -> Floats:
         """Distance of `shapes` (k,) at `samples` (k,), which rise, from the ground near them."""
-        parts = np.split(shapes, np.searchsorted(samples, self.starts[1:]))
-        pairs = zip(self.lines, parts, strict=True)
-        return np.concatenate([shapely.distance(line, part) for line, part in pairs])
+        out = np.empty(len(samples))
+        edges = [0, *np.searchsorted(samples, self.starts[1:]).tolist(), len(samples)]
+        for line, (a, b) in zip(self.lines, pairwise(edges), strict=True):
+            if a < b:
+                out[a:b] = shapely.distance(line, shapes[a:b])
+        return out
 
     def _ground_near(self, x: Floats) -> shapely.Geometry:
         """The piece of terrain that robots may meet whose trunks are at `x`."""
@@ -171,3 +176,9 @@ class Gaps:
         gaps = [shapely.distance(a, b) - ra - rb for a, ra in parts[0] for b, rb in parts[1]]
         least: Floats = np.min(gaps, axis=0)
         return least
+
+
+def _box(points: Iterable[Floats]) -> tuple[Floats, Floats]:
+    """Least and largest coordinates (...) of some points (...)."""
+    points = list(points)
+    return reduce(np.minimum, points), reduce(np.maximum, points)
