@@ -17,6 +17,7 @@ from .search import Search
 from .tables import Bounds
 
 WINDOW = 5.0  # m, for legs of 0.4 m
+_ASKED = 12.0  # m; window of searches that only ask whether there is a way: they take less memory
 _AHEAD = 1.8  # m of a window that are searched again by the next
 
 
@@ -42,7 +43,7 @@ def find_path(
     size = scale(q.robot)
     rows_s, rows_body, quality, back = [], [], 255, False
     while True:
-        stop = begin.wheels[0] + WINDOW * size
+        stop = begin.wheels[0] + (WINDOW if cheap else _ASKED) * size
         last = stop > end.wheels[0] - 0.5 * size
         until = end if last else Stand((stop, stop - 0.2 * size), end.body)
         search = search_between(q, begin, until, bounds, fine, searches)
