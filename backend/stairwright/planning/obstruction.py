@@ -16,6 +16,7 @@ from functools import cache, partial
 
 import numpy as np
 
+from .path.lattice import PLAIN
 from .path.pieces import pieces
 from .path.record import Motor
 from .path.search import Place
@@ -38,6 +39,7 @@ Ranked = list[Cause]
 
 _ROUGH = 1.3  # relative precision of a factor before other quantities were asked
 _MORE = (1.005, 1.05, 1.15, 1.3, 1.7, 2.5, 4.0)  # on the least factor: planning is tried there
+_BETWEEN = 1.05  # of them is left out where not even a search that forgives nothing finds a way
 _SURE = 1.15  # relative precision of a value that only whole plans can tell
 _RIVALS = 2  # candidates for which planning is tried
 _ASKED = 2  # times that candidates are ranked anew, without those that led nowhere
@@ -219,20 +221,25 @@ def _confirmed(
         pool: Who tries.
     """
     tries = sorted(
-        {(min(ratio * more, one.most), k)
+        {(min(ratio * more, one.most), k, more == _BETWEEN)
          for k, (one, ratio) in enumerate(ranked[:_RIVALS]) for more in _MORE}
     )  # fmt: skip
     whole = _whole(course, places)
     low: dict[int, float] = {}
 
-    def lead(one: tuple[float, int]) -> Solved | Blocked:
-        ratio, k = one
-        return ranked[k][0].attempt(course, ratio)
+    def lead(one: tuple[float, int, bool]) -> Solved | Blocked | None:
+        ratio, k, spare = one
+        candidate = ranked[k][0]
+        if spare and not candidate.opens(course, places, ratio, PLAIN):
+            return None
+        return candidate.attempt(course, ratio)
 
     with race(pool, lead, tries) as ends:
-        for (ratio, k), end in zip(tries, ends, strict=True):
+        for (ratio, k, _), end in zip(tries, ends, strict=True):
             if isinstance(end, Solved):
                 break
+            if end is None:
+                continue
             if not (whole or low or end.opened):
                 return Beyond(end.reached or course.stands[0].wheels)
             low[k] = ratio

@@ -17,6 +17,7 @@ from .path.pieces import pieces
 from .path.record import Motor
 from .path.search import Place
 from .path.solve import Blocked, Course, Solved, pose_course
+from .path.tables import Bounds
 
 Kind = Literal["reach", "clearance", "statics", "torque", "joint_limit"]
 
@@ -53,8 +54,10 @@ class Candidate:
         """The largest factor worth asking about where one of `below` is known to do."""
         return min(self.most, below / (1.0 + CLOSE))
 
-    def opens(self, course: Course, places: Sequence[Place], ratio: float) -> bool:
-        """Whether a quick, forgiving search comes past `places` with the quantity changed so.
+    def opens(
+        self, course: Course, places: Sequence[Place], ratio: float, bounds: Bounds = BOLD
+    ) -> bool:
+        """Whether a quick search within `bounds` comes past `places` with the quantity changed so.
 
         Of another profile all is asked.
         """
@@ -62,7 +65,7 @@ class Candidate:
             changed = self.change(course, self.at(ratio))
         except NoStand:
             return False
-        return leads_past(changed, places if changed.terrain is course.terrain else ())
+        return leads_past(changed, places if changed.terrain is course.terrain else (), bounds)
 
     def attempt(self, course: Course, ratio: float) -> Solved | Blocked:
         """What comes of a quick attempt at a plan with the quantity changed so."""
@@ -77,9 +80,9 @@ class Candidate:
         return isinstance(self.attempt(course, ratio), Solved)
 
 
-def leads_past(course: Course, places: Sequence[Place]) -> bool:
-    """Whether a quick, forgiving search leads through the pieces round `places`."""
-    return all(course.passes(piece, _FINE, BOLD) for piece in pieces(course, places))
+def leads_past(course: Course, places: Sequence[Place], bounds: Bounds = BOLD) -> bool:
+    """Whether a quick search within `bounds` leads through the pieces round `places`."""
+    return all(course.passes(piece, _FINE, bounds) for piece in pieces(course, places))
 
 
 def candidates_of(course: Course) -> list[Candidate]:
