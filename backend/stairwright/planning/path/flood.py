@@ -20,8 +20,9 @@ from stairwright.compiled import leaf
 from .cells import Cells, World, quality, row_start, table_rows, volume_size
 from .collide import legs_clear
 from .kernels import dilate, gather, reach
-from .tables import Floats32, Lattice, moments, shifted
+from .tables import Floats32, Lattice, moments
 from .volumes import Volumes, offset
+from .words import between, lowest, shifted
 
 Ints = NDArray[np.int32]
 Bytes = NDArray[np.uint8]
@@ -136,7 +137,6 @@ def _wider(
     carried = mass * (w.front_table.carried[i] + w.rear_table.carried[j])
     step, x_first = np.float32(lat.step), np.float32(cells.x0[c] * lat.step)
     front, rear, trunk = w.front_table.possible, w.rear_table.possible, w.trunk.possible
-    one = np.uint64(1)
     page = lat.row * (lat.nz + 4)
     count = 0
     for t in range(max(0, lo // page - 2), min(lat.nt, hi // page - 1)):
@@ -153,9 +153,14 @@ def _wider(
             if possible == 0:
                 continue
             a, b = max(lo - k, 0), min(hi - k, lat.nx)
+            if a >= b:
+                continue
             fm, rm = front_moments[fv + z], rear_moments[rv + z]
-            for x in range(a, b):
-                if possible >> np.uint64(x) & one and result[k + x] > width[k + x]:
+            possible &= between(a, b)
+            while possible != 0:
+                x = lowest(possible)
+                possible &= possible - np.uint64(1)
+                if result[k + x] > width[k + x]:
                     legs = carried + mass * (fm[fu + x] + rm[ru + x])
                     fresh.at[count] = k + x
                     fresh.com[count] = share * (x_first + np.float32(x) * step) + legs

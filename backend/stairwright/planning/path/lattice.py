@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from stairwright.robot.description import Robot
 
 from .legs import LEGS_GAP, make_legs
-from .tables import WORD, Bounds, Lattice
+from .tables import Bounds, Lattice
+from .words import WORD
 
 Floats = NDArray[np.float64]
 

@@ -29,7 +29,6 @@ Bytes = NDArray[np.uint8]
 Words = NDArray[np.uint64]
 
 INF = np.float32(1e9)
-WORD = 64  # columns whose possibility one word tells
 
 
 class Lattice(NamedTuple):
@@ -268,19 +267,11 @@ def on_lattice(
 
 @leaf
 def bits(row: Floats32) -> np.uint64:
-    """A word whose bit k tells whether column k of a row of at most `WORD` costs is possible."""
+    """A word whose bit k tells whether column k of a row of at most 64 costs is possible."""
     word = np.uint64(0)
     for k in range(len(row)):
         word |= np.uint64(row[k] < INF) << np.uint64(k)
     return word
-
-
-@nb.njit(cache=True)
-def shifted(word: np.uint64, by: int) -> np.uint64:
-    """A word whose bit k is bit k + by of `word`, 0 where that has none."""
-    if abs(by) >= WORD:
-        return np.uint64(0)
-    return word >> np.uint64(by) if by >= 0 else word << np.uint64(-by)
 
 
 @nb.njit(cache=True, inline="always")
