@@ -12,10 +12,13 @@ from .cells import FORWARD, MOVES, Cells, World, row_start, table_rows, volume_s
 from .kernels import convolve, gather_cost, reach
 from .tables import INF, Floats32, moments
 from .volumes import Costs, Volumes, offset
+from .words import lowest
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
-Bytes = NDArray[np.uint8]
+Words = NDArray[np.uint64]
+
+_WORD = 8  # poses whose widths are in one word
 
 
 @leaf
@@ -28,12 +31,12 @@ def step_cost(w: World, cells: Cells, c: int, m: int) -> float:
 
 @vector_leaf
 def pose_costs(
-    w: World, cells: Cells, c: int, pulls: Floats, width: Bytes, least: np.uint8, lo: int, hi: int,
-    out: Floats32,
+    w: World, cells: Cells, c: int, pulls: Floats, width: Words, least: np.uint8, lo: int, hi: int,
+    way: Floats32, out: Floats32,
 ) -> None:  # fmt: skip
-    """Add the costs of the poses of cell `c` to the flat volume `out`, in rows that meet [lo, hi).
+    """Costs of ways to the poses of cell `c` in [lo, hi): of the `way` there and of the pose.
 
-    Poses narrower than `least`, and the rows' other positions, become INF.
+    Poses narrower than `least` cost INF.
 
     Args:
         w: The problem.
@@ -41,11 +44,12 @@ def pose_costs(
         c: The cell.
         pulls: Weights of CoM margin, pitch; nominal height above the wheels' mean [m]; the margin
             wished for [m].
-        width: (volume,) of the cell.
+        width: (volume / 8,) of the cell, eight poses in a word.
         least: Width.
         lo: First position.
         hi: Position after the last.
-        out: (volume,) cost so far.
+        way: (volume,) cost so far, INF where none leads.
+        out: (volume,) filled from `lo` to `hi`.
     """
     lat = w.lat
     i, j = cells.front[c], cells.rear[c]
@@ -59,11 +63,12 @@ def pose_costs(
     share = np.float32(w.robot.trunk_mass / w.robot.mass)
     wish, heavy = np.float32(pulls[3]), np.float32(0.25 * pulls[0])
     worst, zero, half = np.float32(-0.06), np.float32(0.0), np.float32(0.5)
-    advance, one = share * np.float32(lat.step), np.float32(1.0)
-    carried = mass * (w.front_table.carried[i] + w.rear_table.carried[j])
-    first_f, last_f = w.front_table.first, w.front_table.last
-    first_r, last_r = w.rear_table.first, w.rear_table.last
-    page = lat.row * (lat.nz + 4)
+    advance = share * np.float32(lat.step)
+    first = share * np.float32(cells.x0[c] * lat.step)
+    first += mass * (w.front_table.carried[i] + w.rear_table.carried[j])
+    front, rear, trunk = w.front_table.cost, w.rear_table.cost, w.trunk.cost
+    page, words = lat.row * (lat.nz + 4), lat.row // _WORD
+    out[lo:hi] = INF
     for t in range(max(0, lo // page - 2), min(lat.nt, hi // page - 1)):
         tt = cells.t0[c] + t
         lean = (tt - lat.pitches // 2) * lat.turn + 0.8 * cells.slope[c]
@@ -72,34 +77,26 @@ def pose_costs(
         rear_moments, ru, rv = moments(w.rear_table, j, tt, sr, rz)
         for z in range(lat.nz):
             k = row_start(lat, t, z)
-            if k + lat.nx <= lo or k >= hi:
-                continue
-            some = np.uint8(0)
-            for x in range(k, k + lat.nx):
-                some = width[x] if width[x] > some else some
-            if some < least:
-                out[k : k + lat.nx] = INF
-                continue
-            a = max(first_f[i, tt, fz + z] - sf, first_r[j, tt, rz + z] - sr, 0)
-            b = min(last_f[i, tt, fz + z] - sf, last_r[j, tt, rz + z] - sr, lat.nx)
-            out[k : k + a] = INF
-            out[k + b : k + lat.nx] = INF
             rise = ((cells.z0[c] + z) * lat.step - mean) / pulls[2] - 1.0
             base = np.float32(0.075 * pulls[1] * lean * lean + 0.3 * rise * rise)
-            first = share * np.float32((cells.x0[c] + a) * lat.step) + carried
-            fc = w.front_table.cost[i, tt, fz + z, a + sf : b + sf]
-            fm = front_moments[fv + z, fu + a : fu + b]
-            rc = w.rear_table.cost[j, tt, rz + z, a + sr : b + sr]
-            rm = rear_moments[rv + z, ru + a : ru + b]
-            tc = w.trunk.cost[tt, tz + z, a + st : b + st]
-            row, wide = out[k + a : k + b], width[k + a : k + b]
-            for x in range(b - a):
-                e = fc[x] + rc[x] + tc[x]
-                com = first + np.float32(x) * advance + mass * (fm[x] + rm[x])
-                h = max(zero, wish - max(worst, min(com - low, high - com))) / wish
-                g = max(zero, wish - max(worst, min(com - rlow, rhigh - com))) / wish
-                cost = half * e + base + heavy * (h * h + g * g)
-                row[x] = row[x] + (cost if wide[x] >= least else one * INF)
+            for q in range(k // _WORD, k // _WORD + words):
+                word = width[q]
+                while word != 0:
+                    byte = lowest(word) // 8
+                    bits = np.uint64(8 * byte)
+                    wide = np.uint8(word >> bits & np.uint64(255)) >= least
+                    word &= ~(np.uint64(255) << bits)
+                    at = q * _WORD + byte
+                    if not wide or at < lo or at >= hi or way[at] >= INF:
+                        continue
+                    x = at - k
+                    e = front[i, tt, fz + z, x + sf] + rear[j, tt, rz + z, x + sr]
+                    e += trunk[tt, tz + z, x + st]
+                    legs = front_moments[fv + z, fu + x] + rear_moments[rv + z, ru + x]
+                    com = first + np.float32(x) * advance + mass * legs
+                    h = max(zero, wish - max(worst, min(com - low, high - com))) / wish
+                    g = max(zero, wish - max(worst, min(com - rlow, rhigh - com))) / wish
+                    out[at] = way[at] + half * e + base + heavy * (h * h + g * g)
 
 
 @nb.njit(cache=True, nogil=True)
@@ -137,7 +134,7 @@ def cheapest(
     lat = w.lat
     size, margin = volume_size(lat), reach(lat)
     pad, result = np.full(size, INF, np.float32), np.full(size, INF, np.float32)
-    least = np.uint8(level)
+    least, widths = np.uint8(level), v.width.view(np.uint64)
     changed, sweeps = False, costs.sweeps
     for c in range(len(cells.front)):
         if v.best[c] < least:
@@ -176,21 +173,11 @@ def cheapest(
                         far = abs(t - seed[0]) + abs(z - seed[1]) + abs(x - seed[2])
                         result[row_start(lat, t, z) + x] = np.float32(far)
         lo, hi = max(lo, costs.first[c]), min(hi, costs.last[c])
-        width = v.width[v.slot[c]]
-        pose_costs(w, cells, c, pulls, width, least, lo, hi, result)
-        _only_wide(width[lo:hi], least, result[lo:hi])  # the rim between rows holds scratch
-        if _keep(costs, c, lo, hi, result):
+        pose_costs(w, cells, c, pulls, widths[v.slot[c]], least, lo, hi, result, pad)
+        if _keep(costs, c, lo, hi, pad):
             sweeps.grown[c] = sweeps.clock[0]
             changed = True
     return changed
-
-
-@vector_leaf
-def _only_wide(width: Bytes, least: np.uint8, out: Floats32) -> None:
-    """INF where `width` (n,) is less than `least`, in `out` (n,)."""
-    one = np.float32(1.0)
-    for k in range(len(out)):
-        out[k] = out[k] if width[k] >= least else one * INF
 
 
 @leaf
