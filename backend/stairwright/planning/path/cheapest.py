@@ -137,7 +137,7 @@ def cheapest(
     least, widths = np.uint8(level), v.width.view(np.uint64)
     changed, sweeps = False, costs.sweeps
     for c in range(len(cells.front)):
-        if v.best[c] < least:
+        if costs.first[c] >= costs.last[c]:
             continue
         lo, hi = size, 0
         news = c == source and sweeps.seen[c] < 0

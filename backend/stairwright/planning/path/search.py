@@ -35,7 +35,7 @@ from .tables import (
     on_lattice,
 )
 from .trunk import trunk_table
-from .volumes import Volumes, make_costs, make_volumes
+from .volumes import Volumes, leading_to, make_costs, make_volumes
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -162,11 +162,12 @@ class Search:
         still_wanted()
         wide = best or int(v.best[goal])
         level = max(1, min(wide, 150) if wide > 100 else int(0.7 * wide))
+        wanted = leading_to(cells, v, level, goal, moves)
         lag_spans(
-            cells, v.best >= level, self.path.pieces, self.path.corners, self.planar.wheel_radius,
+            cells, wanted, self.path.pieces, self.path.corners, self.planar.wheel_radius,
             self.s, friction, LAG,
         )  # fmt: skip
-        rows = self._smoothest(w, cells, v, source, seed, goal, pose, moves, level)
+        rows = self._smoothest(w, cells, v, source, seed, goal, pose, moves, level, wanted)
         if rows is None:
             return Finding(None, None, 0, self._farthest(cells, v))
         s = np.stack([self.s[rows[:, 0]], self.s[rows[:, 1]]], axis=1)
@@ -216,9 +217,11 @@ class Search:
 
     def _smoothest(
         self, w: World, cells: Cells, v: Volumes, source: int, seed: Ints, goal: int, pose: Ints,
-        moves: int, level: int,
+        moves: int, level: int, wanted: Flags,
     ) -> Ints | None:  # fmt: skip
-        """Cheapest way at least `level` wide from cell `source` to `goal`: see `cheapest`, `trace`.
+        """Cheapest way at least `level` wide from cell `source` to `goal` through `wanted` cells.
+
+        See `cheapest`, `trace`.
 
         Returns:
             (n, 5) its front and rear samples and lattice poses (pitch, z, x), if it ends.
@@ -226,7 +229,7 @@ class Search:
         height, wish = stand_height(self.robot), 0.09 * scale(self.robot)
         pulls = np.array([self.weights.com_margin, self.weights.pitch, height, wish])
         smooth = 0.25 * self.weights.smoothness
-        costs = make_costs(v, level)
+        costs = make_costs(v, level, wanted)
         for _ in range(1 if moves == FORWARD else 2 * _SWEEPS):
             if not cheapest(w, cells, v, costs, source, seed, moves, smooth, pulls, level):
                 break

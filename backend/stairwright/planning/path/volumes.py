@@ -18,6 +18,7 @@ from .tables import Floats32, Lattice
 Ints = NDArray[np.int32]
 Longs = NDArray[np.int64]
 Bytes = NDArray[np.uint8]
+Flags = NDArray[np.bool_]
 
 _KEPT = 64_000_000  # bytes of an array that is kept for the next search of this thread
 
@@ -116,9 +117,9 @@ def make_volumes(n: int, lat: Lattice) -> Volumes:
     )  # fmt: skip
 
 
-def make_costs(v: Volumes, level: int) -> Costs:
-    """No costs yet, with room for poses at least `level` wide."""
-    first, last = _wide(v, np.uint8(level))
+def make_costs(v: Volumes, level: int, wanted: Flags) -> Costs:
+    """No costs yet, with room for poses at least `level` wide of the `wanted` cells (n,)."""
+    first, last = _wide(v, np.uint8(level), wanted)
     room = np.maximum(last - first, 0).astype(np.int64)
     base = np.cumsum(room) - room - first
     value = _array("value", 1, int(room.sum()), np.float32)[0]
@@ -127,13 +128,31 @@ def make_costs(v: Volumes, level: int) -> Costs:
 
 
 @nb.njit(cache=True, nogil=True)
-def _wide(v: Volumes, level: np.uint8) -> tuple[Ints, Ints]:
-    """Range (n,), (n,) of positions of each cell that are at least `level` wide."""
+def leading_to(cells: Cells, v: Volumes, level: int, goal: int, moves: int) -> Flags:
+    """Which cells (n,) have poses at least `level` wide and lead to `goal` through such cells."""
+    least = np.uint8(level)
+    out = np.zeros(len(v.best), np.bool_)
+    out[goal] = v.best[goal] >= least
+    changed = True
+    while changed:
+        changed = False
+        for c in range(len(out) - 1, -1, -1):
+            if not out[c]:
+                continue
+            for m in range(moves):
+                p = cells.origin[c, m]
+                if p >= 0 and not out[p] and v.best[p] >= least:
+                    out[p] = True
+                    changed |= p > c  # those before it are still to come
+    return out
+
+
+@nb.njit(cache=True, nogil=True)
+def _wide(v: Volumes, level: np.uint8, wanted: Flags) -> tuple[Ints, Ints]:
+    """Range (n,), (n,) of positions of each `wanted` cell that are at least `level` wide."""
     n = len(v.best)
     first, last = np.zeros(n, np.int32), np.zeros(n, np.int32)
-    for c in range(n):
-        if v.best[c] < level:
-            continue
+    for c in np.flatnonzero(wanted):
         width, a, b = v.width[v.slot[c]], v.first[c], v.last[c]
         while width[a] < level:
             a += 1
