@@ -101,7 +101,8 @@ def build_cells(
 ) -> Cells:
     """Those `pairs` of samples (see `wheel_pairs`) that can stand at all.
 
-    CoM intervals with lag are left to `lag_spans`.
+    CoM intervals with lag are left to `lag_spans`; those at the `reserve` friction are empty if
+    that is 0.
     """
     n, k = len(s), len(pairs[0])
     index = np.full((n, n), -1, np.int32)
@@ -117,7 +118,11 @@ def build_cells(
             continue
         front[m], rear[m], index[i, j] = i, j, m
         spans[m, 0], spans[m, 1] = lo, hi
-        spans[m, 2], spans[m, 3] = steady_interval(pieces, corners, r, s[i], s[j], reserve, scratch)
+        spans[m, 2], spans[m, 3] = np.inf, -np.inf
+        if reserve > 0.0:
+            spans[m, 2], spans[m, 3] = steady_interval(
+                pieces, corners, r, s[i], s[j], reserve, scratch
+            )
         slope[m] = _slope(centres, i, j)
         t0[m] = _first_pitch(slope[m], lat)
         x0[m] = int(round(0.5 * (centres[i, 0] + centres[j, 0]) / lat.step)) - lat.nx // 2

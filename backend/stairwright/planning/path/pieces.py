@@ -103,7 +103,7 @@ def stops(
     open_end = high < end.wheels[0]
     piece = piece._replace(high=high if open_end else end.wheels[0], open_end=open_end)
     search = search_between(q, *_ends(q, piece), bounds, fine, searches)
-    return tuple(search.stops(q.friction, q.reserve, bounds.com, open_end))
+    return tuple(search.stops(q.friction, bounds.com, open_end))
 
 
 def _round(q: Question, place: Place) -> Piece:

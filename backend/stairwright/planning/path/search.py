@@ -121,14 +121,15 @@ class Search:
             friction: Coulomb friction.
             reserve: Lower friction that is kept where the terrain allows it.
             com: Least CoM margin [m].
-            cheap: Also trace the smoothest way; otherwise only the verdict is given.
+            cheap: Also trace the smoothest way; otherwise only the verdict is given, without regard
+                to the reserve.
             roll_back: Let wheels roll back where there is no way forward only.
             open_start: Any pose with the rear wheels at the first sample will do; not with `cheap`.
             open_end: Any pose with the front wheels at the last sample will do.
             partial: Where there is no way to the goal, trace the one that gets farthest.
         """
         lat = self.lattice
-        cells = self._cells(friction, reserve, com)
+        cells = self._cells(friction, reserve if cheap or partial else 0.0, com)
         entries = cells.rear == 0 if open_start else self._only(cells, self.begin)
         goals, target = self._goals(cells, open_end)
         if not entries.any() or not len(goals):
@@ -176,14 +177,14 @@ class Search:
         )
         return Finding(s, body, best, (float(s[-1, 0]), float(s[-1, 1])), moves > FORWARD)
 
-    def stops(self, friction: float, reserve: float, com: float, open_end: bool) -> list[Place]:
+    def stops(self, friction: float, com: float, open_end: bool) -> list[Place]:
         """Where ways end that begin at any pose with the rear wheels at the first sample, and so on
         from where the front wheels ended; see `find`.
 
         Returns:
             Arc lengths of front and rear wheel, in order; empty where a way leads to the end.
         """
-        cells, w = self._cells(friction, reserve, com), self._world(com)
+        cells, w = self._cells(friction, 0.0, com), self._world(com)
         goals, target = self._goals(cells, open_end)
         out: list[Place] = []
         row = 0
