@@ -11,7 +11,7 @@ from stairwright.planning.path.ground import box_clearance, link_clearance, make
 from stairwright.planning.path.kernels import dilate, gather, reach
 from stairwright.planning.path.lattice import make_lattice
 from stairwright.planning.path.legs import LEGS, REACH, RECORD, evaluate, make_legs
-from stairwright.planning.path.tables import INF, WORD, alike, bits, shifted
+from stairwright.planning.path.tables import alike
 
 
 def stairs(n):
@@ -54,17 +54,6 @@ def test_dilation_of_a_part_equals_that_of_the_whole():
         answers.append(out)
     assert np.array_equal(*answers)
     assert answers[0].max() == source.max()
-
-
-def test_words_tell_what_is_possible():
-    rng = np.random.default_rng(5)
-    row = np.where(rng.uniform(size=WORD) < 0.5, INF, 0.25).astype(np.float32)
-    word = np.uint64(bits(row))
-    for by in (-200, -64, -63, -5, 0, 1, 40, 63, 64, 1000):
-        moved = int(shifted(word, by))
-        for k in range(WORD):
-            inside = 0 <= k + by < WORD
-            assert bool(moved >> k & 1) == (inside and row[k + by] < INF)
 
 
 @pytest.mark.parametrize("name", ["a1_wheeled", "a1_wheeled_x"])

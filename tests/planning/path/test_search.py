@@ -1,0 +1,99 @@
+"""One search: what its passes may leave out changes nothing of what they find."""
+
+import numpy as np
+import pytest
+
+from stairwright.library import load_robot
+from stairwright.planning.path import search
+from stairwright.planning.path.lattice import BOLD, HOPE, make_lattice
+from stairwright.planning.path.search import Search
+from stairwright.planning.path.solve import Course, pose_course
+from stairwright.planning.weights import PathWeights
+from stairwright.terrain.profile import Terrain
+
+
+def steps(seed: int, rise: float, friction: float = 0.6) -> Course:
+    """Four steps up or down of up to `rise`, close together."""
+    random = np.random.default_rng(seed)
+    points = [(-1.2, 0.0), (0.0, 0.0)]
+    for _ in range(4):
+        x, z = points[-1]
+        z += random.uniform(-rise, rise)
+        points += [(x, z), (x + random.uniform(0.15, 0.5), z)]
+    points.append((points[-1][0] + 1.2, points[-1][1]))
+    terrain = Terrain(name="steps", points=points)
+    return pose_course(terrain, load_robot("a1_wheeled"), friction, PathWeights())
+
+
+def search_of(course: Course, bounds) -> Search:
+    return Search(course, *course.stands, make_lattice(course.robot, 2.0), bounds)
+
+
+def swept(course: Course, monkeypatch, everywhere: bool):
+    """What sweeps that roll back reach, how many there are, and how many cells they look at."""
+    flood, swept = search.flood, []
+
+    def spied(w, cells, v, *rest):
+        if everywhere:
+            v.sweeps.seen.fill(-1)
+        changed = flood(w, cells, v, *rest)
+        swept.append(v)
+        return changed
+
+    monkeypatch.setattr(search, "flood", spied)
+    search_of(course, HOPE).find(course.friction, course.reserve, HOPE.com, False, True)
+    monkeypatch.undo()
+    v = swept[-1]
+    widths = {c: v.width[v.slot[c]].copy() for c in np.flatnonzero(v.best)}
+    return widths, len(swept), int(v.sweeps.clock[0])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_sweeps_reach_what_they_would_if_they_looked_everywhere(seed, monkeypatch):
+    course = steps(seed, 0.7, 0.4)
+    widths, sweeps, looked = swept(course, monkeypatch, False)
+    all_widths, all_sweeps, all_looked = swept(course, monkeypatch, True)
+    assert sweeps == all_sweeps > 2
+    assert looked < all_looked
+    assert widths.keys() == all_widths.keys()
+    lat = make_lattice(course.robot, 2.0)
+    inner = (lat.nt + 4, lat.nz + 4, lat.row)  # its rim holds scratch
+    for c, width in widths.items():
+        both = [one.reshape(inner)[2:-2, 2:-2, 2 : 2 + lat.nx] for one in (width, all_widths[c])]
+        assert np.array_equal(*both)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_cheapest_way_goes_through_cells_that_lead_to_the_goal(seed, monkeypatch):
+    course = steps(seed, 0.12)
+    one = search_of(course, BOLD)
+
+    def way():
+        return one.find(course.friction, course.reserve, BOLD.com)
+
+    found = way()
+    spared = []
+
+    def all_wide(cells, v, level, goal, moves):
+        spared.append((v.best >= level) & ~leading_to(cells, v, level, goal, moves))
+        return v.best >= level
+
+    leading_to = search.leading_to
+    monkeypatch.setattr(search, "leading_to", all_wide)
+    same = way()
+    assert found.s is not None
+    assert np.array_equal(found.s, same.s)
+    assert np.array_equal(found.body, same.body)
+    assert spared[0].any()
+
+
+def test_whether_there_is_a_way_does_not_depend_on_the_reserve():
+    open_ones = 0
+    for seed in range(12):
+        course = steps(seed, 0.3)
+        one = search_of(course, BOLD)
+        asked = one.find(course.friction, course.reserve, BOLD.com, cheap=False)
+        found = one.find(course.friction, course.reserve, BOLD.com)
+        assert (asked.quality > 0) == (found.s is not None)
+        open_ones += asked.quality > 0
+    assert 0 < open_ones < 12
