@@ -79,7 +79,7 @@ def _dispatchers() -> Iterator[Dispatcher]:
 def _is_of_numbers(function: Dispatcher) -> bool:
     signature = inspect.signature(function.py_func)
     given = {parameter.annotation for parameter in signature.parameters.values()}
-    numbers = {"float", "int", "bool", "np.uint64", "tuple[float, float]"}
+    numbers = {"float", "int", "bool", "np.uint64", "np.int64", "tuple[float, float]"}
     return signature.return_annotation in numbers and given <= numbers | {
         "Leg",
         "Planar",
