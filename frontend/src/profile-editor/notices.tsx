@@ -89,10 +89,16 @@ export function Refusal() {
 
 const HINT = { width: 236, height: 84 };
 
-/** Once, on the first visit, beside the corner that is worth dragging. */
+/** Once, on the first visit, beside the corner that is worth dragging; not under a verdict. */
 export function FirstHint() {
   const points = drawing.value.points;
-  if (hintSeen.value || !plan.value || selection.value.length > 0 || points.length < 4) return null;
+  if (
+    hintSeen.value ||
+    plan.value?.status !== "feasible" ||
+    selection.value.length > 0 ||
+    points.length < 4
+  )
+    return null;
   if (activity.value !== "idle" || run.value || !planKept.value) return null;
   const i = Math.min(
     points.length - 2,

@@ -44,6 +44,7 @@ function Content() {
   if (activity.value === "failed" || activity.value === "cancelled") return <NotRun />;
   if (run.value) return isNarrow.value ? <Lines result={run.value} /> : <Card result={run.value} />;
   if (plan.value?.problem) {
+    const { problem, poses } = plan.value;
     return (
       <>
         <h2 class="bad">
@@ -51,8 +52,9 @@ function Content() {
           No rollout
         </h2>
         <p>
-          The plan stops at progress {fixed(plan.value.problem.progress, 2)} m. The plots show the
-          planned part only; fix the marked spot to run it.
+          {poses.length > 0
+            ? `The plan stops at progress ${fixed(problem.progress, 2)} m. The plots show the planned part only; fix the marked spot to run it.`
+            : "No pose was found. Fix the marked spot to run it."}
         </p>
       </>
     );
