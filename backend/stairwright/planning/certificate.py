@@ -17,8 +17,8 @@ from stairwright.arguments import as_model
 from stairwright.errors import InputError
 from stairwright.robot import kinematics as kin
 
+from .distances import Distances
 from .equilibrium import balanced
-from .gaps import Gaps
 from .motion import Motion, Samples, sampled
 from .plan import Certificate, Check, Plan
 
@@ -80,14 +80,14 @@ class _Checker:
 
     def checks(self) -> list[Check]:
         """All checks in the order of a reader's interest."""
-        gaps = Gaps(self.samples)
-        rims = gaps.wheels()
+        distances = Distances(self.samples)
+        rims = distances.wheels()
         return [
             self._most("gap between wheels and ground", np.max(rims, axis=0), WHEEL_GAP),
             self._most("wheels sunk into the ground", -np.min(rims, axis=0), WHEEL_SINK),
-            self._clear("clearance of the trunk", gaps.trunk()),
-            self._clear("clearance of the links", gaps.links()),
-            self._least("gap between front and rear leg", gaps.legs(), LEGS_GAP, "m"),
+            self._clear("clearance of the trunk", distances.trunk()),
+            self._clear("clearance of the links", distances.links()),
+            self._least("gap between front and rear leg", distances.legs(), LEGS_GAP, "m"),
             self._least("slack of the joint limits", self._limits(), 0.0, "rad"),
             self._balance(),
         ]

@@ -63,7 +63,7 @@ def touching(vertices: Floats, centres: Floats, reach: float) -> tuple[Floats, F
     last = np.minimum(np.searchsorted(x, centres[:, 0] + reach, side="right") + 1, len(x) - 1)
     begin = 0
     while begin < n:
-        widest = np.maximum.accumulate((last - first)[begin:])
+        widest = np.maximum.accumulate(np.maximum((last - first)[begin:], 1))
         fits = np.searchsorted(widest * np.arange(1, len(widest) + 1), _BLOCK, side="right")
         part = slice(begin, begin + max(1, int(fits)))
         points[part], normals[part], found[part] = _nearest_faces(
@@ -79,7 +79,7 @@ def _nearest_faces(
 ) -> tuple[Floats, Floats, Flags]:  # fmt: skip
     """`touching` for samples whose segments `first` to `last` (excluded) may be near."""
     n = len(centres)
-    k = first[:, None] + np.arange(int((last - first).max()))
+    k = first[:, None] + np.arange(max(1, int((last - first).max())))
     inside = k < last[:, None]
     k = np.minimum(k, len(vertices) - 2)
     p, d = vertices[k], vertices[k + 1] - vertices[k]

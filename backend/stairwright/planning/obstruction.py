@@ -212,7 +212,8 @@ def _confirmed(
 ) -> Cause | Beyond | None:
     """The least factor with which a certified plan exists, and on which of the `ranked`.
 
-    Factors from those told on are tried, the least first, two at once.
+    Factors from those told on are tried, the least first, two at once. `_BETWEEN` may be left out:
+    those before and after it are within `_SURE` of each other.
 
     Args:
         course: The question.
@@ -221,21 +222,21 @@ def _confirmed(
         pool: Who tries.
     """
     tries = sorted(
-        {(min(ratio * more, one.most), k, more == _BETWEEN)
+        {(min(ratio * more, one.most), k)
          for k, (one, ratio) in enumerate(ranked[:_RIVALS]) for more in _MORE}
     )  # fmt: skip
     whole = _whole(course, places)
     low: dict[int, float] = {}
 
-    def lead(one: tuple[float, int, bool]) -> Solved | Blocked | None:
-        ratio, k, spare = one
-        candidate = ranked[k][0]
-        if spare and not candidate.opens(course, places, ratio, PLAIN):
+    def lead(one: tuple[float, int]) -> Solved | Blocked | None:
+        ratio, k = one
+        candidate, least = ranked[k]
+        if ratio == least * _BETWEEN and not candidate.opens(course, places, ratio, PLAIN):
             return None
         return candidate.attempt(course, ratio)
 
     with race(pool, lead, tries) as ends:
-        for (ratio, k, _), end in zip(tries, ends, strict=True):
+        for (ratio, k), end in zip(tries, ends, strict=True):
             if isinstance(end, Solved):
                 break
             if end is None:

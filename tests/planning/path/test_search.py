@@ -56,35 +56,72 @@ def test_sweeps_reach_what_they_would_if_they_looked_everywhere(seed, monkeypatc
     assert sweeps == all_sweeps > 2
     assert looked < all_looked
     assert widths.keys() == all_widths.keys()
-    lat = make_lattice(course.robot, 2.0)
-    inner = (lat.nt + 4, lat.nz + 4, lat.row)  # its rim holds scratch
-    for c, width in widths.items():
-        both = [one.reshape(inner)[2:-2, 2:-2, 2 : 2 + lat.nx] for one in (width, all_widths[c])]
-        assert np.array_equal(*both)
+    assert all(np.array_equal(width, all_widths[c]) for c, width in widths.items())
 
 
+def rolls_back(monkeypatch):
+    """Make a search believe that there is no way forward only."""
+    arrival, asked = search.arrival, []
+
+    def none_at_first(lat, v, goals, target):
+        best, goal, pose = arrival(lat, v, goals, target)
+        asked.append(best)
+        return (0 if len(asked) == 1 else best), goal, pose
+
+    monkeypatch.setattr(search, "arrival", none_at_first)
+
+
+def way_of(course: Course, monkeypatch, back: bool):
+    if back:
+        rolls_back(monkeypatch)
+    found = search_of(course, BOLD).find(course.friction, course.reserve, BOLD.com, True, back)
+    monkeypatch.undo()
+    assert found.s is not None
+    assert found.back == back
+    return found
+
+
+@pytest.mark.parametrize("back", [False, True])
 @pytest.mark.parametrize("seed", range(3))
-def test_the_cheapest_way_goes_through_cells_that_lead_to_the_goal(seed, monkeypatch):
+def test_the_cheapest_way_goes_through_cells_that_lead_to_the_goal(seed, back, monkeypatch):
     course = steps(seed, 0.12)
-    one = search_of(course, BOLD)
-
-    def way():
-        return one.find(course.friction, course.reserve, BOLD.com)
-
-    found = way()
-    spared = []
+    found, spared = way_of(course, monkeypatch, back), []
+    leading_to = search.leading_to
 
     def all_wide(cells, v, level, goal, moves):
         spared.append((v.best >= level) & ~leading_to(cells, v, level, goal, moves))
         return v.best >= level
 
-    leading_to = search.leading_to
     monkeypatch.setattr(search, "leading_to", all_wide)
-    same = way()
-    assert found.s is not None
+    same = way_of(course, monkeypatch, back)
     assert np.array_equal(found.s, same.s)
     assert np.array_equal(found.body, same.body)
-    assert spared[0].any()
+    assert spared[0].any() or back  # back, nearly every cell leads to the goal
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_cheapest_way_back_is_that_of_sweeps_that_look_everywhere(seed, monkeypatch):
+    course = steps(seed, 0.12)
+    cheapest, looked = search.cheapest, []
+
+    def spied(everywhere):
+        def sweep(w, cells, v, costs, *rest):
+            if everywhere:
+                costs.sweeps.seen.fill(-1)
+            changed = cheapest(w, cells, v, costs, *rest)
+            looked.append(int(costs.sweeps.clock[0]))
+            return changed
+
+        return sweep
+
+    ways, last = [], []
+    for everywhere in (False, True):
+        monkeypatch.setattr(search, "cheapest", spied(everywhere))
+        ways.append(way_of(course, monkeypatch, True))
+        last.append(looked[-1])
+    assert last[0] < last[1]
+    assert np.array_equal(ways[0].s, ways[1].s)
+    assert np.array_equal(ways[0].body, ways[1].body)
 
 
 def test_whether_there_is_a_way_does_not_depend_on_the_reserve():

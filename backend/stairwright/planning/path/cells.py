@@ -118,7 +118,7 @@ def build_cells(
             continue
         front[m], rear[m], index[i, j] = i, j, m
         spans[m, 0], spans[m, 1] = lo, hi
-        spans[m, 2], spans[m, 3] = np.inf, -np.inf
+        spans[m, 2], spans[m, 3] = 1.0, -1.0
         if reserve > 0.0:
             spans[m, 2], spans[m, 3] = steady_interval(
                 pieces, corners, r, s[i], s[j], reserve, scratch

@@ -6,7 +6,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.compiled import leaf, vector_leaf
+from stairwright.compiled import leaf
 
 from .cells import FORWARD, MOVES, Cells, World, row_start, table_rows, volume_size
 from .kernels import convolve, gather_cost, reach
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Words = NDArray[np.uint64]
 
-_WORD = 8  # poses whose widths are in one word
+_PACKED = 8  # poses whose widths are in one word
 
 
 @leaf
@@ -29,7 +29,7 @@ def step_cost(w: World, cells: Cells, c: int, m: int) -> float:
     return float(length) * (1.0 if m == 0 else (1.25 if m < FORWARD else 2.5)) / (2.0 * w.lat.step)
 
 
-@vector_leaf
+@leaf
 def pose_costs(
     w: World, cells: Cells, c: int, pulls: Floats, width: Words, least: np.uint8, lo: int, hi: int,
     way: Floats32, out: Floats32,
@@ -67,7 +67,7 @@ def pose_costs(
     first = share * np.float32(cells.x0[c] * lat.step)
     first += mass * (w.front_table.carried[i] + w.rear_table.carried[j])
     front, rear, trunk = w.front_table.cost, w.rear_table.cost, w.trunk.cost
-    page, words = lat.row * (lat.nz + 4), lat.row // _WORD
+    page, words = lat.row * (lat.nz + 4), lat.row // _PACKED
     out[lo:hi] = INF
     for t in range(max(0, lo // page - 2), min(lat.nt, hi // page - 1)):
         tt = cells.t0[c] + t
@@ -79,14 +79,14 @@ def pose_costs(
             k = row_start(lat, t, z)
             rise = ((cells.z0[c] + z) * lat.step - mean) / pulls[2] - 1.0
             base = np.float32(0.075 * pulls[1] * lean * lean + 0.3 * rise * rise)
-            for q in range(k // _WORD, k // _WORD + words):
+            for q in range(k // _PACKED, k // _PACKED + words):
                 word = width[q]
                 while word != 0:
                     byte = lowest(word) // 8
                     bits = np.uint64(8 * byte)
                     wide = np.uint8(word >> bits & np.uint64(255)) >= least
                     word &= ~(np.uint64(255) << bits)
-                    at = q * _WORD + byte
+                    at = q * _PACKED + byte
                     if not wide or at < lo or at >= hi or way[at] >= INF:
                         continue
                     x = at - k

@@ -25,7 +25,6 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 Ints = NDArray[np.int32]
 Longs = NDArray[np.int64]
-Bytes = NDArray[np.uint8]
 Words = NDArray[np.uint64]
 
 INF = np.float32(1e9)
@@ -76,7 +75,6 @@ class LegTable(NamedTuple):
         x0, z0: Lattice index of the first column and row, per sample and pitch.
         u, v: Column and row of the hip grid that those read.
         possible: Bit k of a row's word tells whether its column k is possible.
-        first, last: First possible column of a row and the one after the last (0, 0 if none).
     """
 
     cost: Floats32
@@ -87,8 +85,6 @@ class LegTable(NamedTuple):
     u: Ints
     v: Ints
     possible: Words
-    first: Bytes
-    last: Bytes
 
 
 def alike(vertices: Floats, centres: Floats, reach: float) -> tuple[Ints, Ints]:
@@ -220,8 +216,6 @@ def on_lattice(
     x0, z0 = np.empty((n, lat.pitches), np.int32), np.empty((n, lat.pitches), np.int32)
     us, vs = np.empty((n, lat.pitches), np.int32), np.empty((n, lat.pitches), np.int32)
     possible = np.zeros((n, lat.pitches, m), np.uint64)
-    first = np.zeros((n, lat.pitches, m), np.uint8)
-    last = np.zeros((n, lat.pitches, m), np.uint8)
     middle = np.float32(0.5 * (leg.thigh_min + leg.thigh_max))
     half_range = np.float32(0.5 * (leg.thigh_max - leg.thigh_min) - slack)
     turn_over, full = np.float32(math.pi), np.float32(2 * math.pi)
@@ -253,16 +247,9 @@ def on_lattice(
                     e = max(zero, soft - room) / soft
                     fits = src[k] + weight * e * e
                     value[k] = fits if room >= zero else INF
-                a, b = 0, width
-                while a < width and value[a] >= INF:
-                    a += 1
-                while b > a and value[b - 1] >= INF:
-                    b -= 1
-                if b > a:
-                    first[i, t, j], last[i, t, j] = a, b
-                    possible[i, t, j] = bits(value[:b])
+                possible[i, t, j] = bits(value[:width])
     carried = (mass * centres[:, 0]).astype(np.float32)
-    return LegTable(out, moment, carried, x0, z0, us, vs, possible, first, last)
+    return LegTable(out, moment, carried, x0, z0, us, vs, possible)
 
 
 @leaf

@@ -17,7 +17,8 @@ from .search import Search
 from .tables import Bounds
 
 WINDOW = 5.0  # m, for legs of 0.4 m
-_ASKED = 12.0  # m; window of searches that only ask whether there is a way: they take less memory
+_LAST = 5.5  # m; what is left of a course when the last window takes it all
+_LAST_ASKED = 12.0  # m; the same where only the question is whether there is a way: no costs there
 _AHEAD = 1.8  # m of a window that are searched again by the next
 
 
@@ -43,8 +44,8 @@ def find_path(
     size = scale(q.robot)
     rows_s, rows_body, quality, back = [], [], 255, False
     while True:
-        stop = begin.wheels[0] + (WINDOW if cheap else _ASKED) * size
-        last = stop > end.wheels[0] - 0.5 * size
+        stop = begin.wheels[0] + WINDOW * size
+        last = end.wheels[0] - begin.wheels[0] < (_LAST if cheap else _LAST_ASKED) * size
         until = end if last else Stand((stop, stop - 0.2 * size), end.body)
         search = search_between(q, begin, until, bounds, fine, searches)
         found = search.find(

@@ -1,12 +1,12 @@
 """Distances of the robot from the ground and of its legs from each other, for the certificate.
 
 Exact (shapely) wherever they may be the least or less than the motion between two samples; what is
-farther off is told by bounds, at a fraction of the time.
+farther off is told by bounds, at a fraction of the time. Ground more than a metre away is not seen.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from functools import reduce
 from itertools import pairwise
 from typing import Any
@@ -26,10 +26,10 @@ Shapes = NDArray[Any]  # of shapely geometries
 
 _CHUNK = 64  # samples that share one piece of terrain
 _SIGHT = 0.01  # m; clearance up to which parts are looked at before one is known
-_MORE = 1e-6  # m
+_MORE = 1e-6  # m; so much more is looked at than matters: what is not seen is farther off for sure
 
 
-class Gaps:
+class Distances:
     """Distances (n,) [m] at the samples of a motion."""
 
     def __init__(self, samples: Samples) -> None:
@@ -54,15 +54,17 @@ class Gaps:
         size = np.array([self.robot.trunk.size[0], self.robot.trunk.size[2]]) / 2
         corners = np.array([[1, 1], [1, -1], [-1, -1], [-1, 1], [1, 1]]) * size
         box = self.body[:, None, :2] + kin.rotate(self.body[:, 2, None], corners)
-        return self._clearances([(box, 0.0)], self.body[:, :2], shapely.polygons)
+        return self._clearances([(box, 0.0, self.body[:, :2])], shapely.polygons)
 
     def links(self) -> Floats:
         """Of thighs and calves from the ground; see `_clearances`."""
         f, robot = self.samples.frames, self.robot
-        parts = []
-        for a, b, link in ((f.knees, f.wheels, robot.calf), (f.hips, f.knees, robot.thigh)):
-            parts += [(np.stack([a[:, leg], b[:, leg]], axis=1), link.radius) for leg in range(2)]
-        return self._clearances(parts, None, shapely.linestrings)
+        parts = [
+            (np.stack([a[:, leg], b[:, leg]], axis=1), link.radius, a[:, leg])
+            for a, b, link in ((f.knees, f.wheels, robot.calf), (f.hips, f.knees, robot.thigh))
+            for leg in range(2)
+        ]
+        return self._clearances(parts, shapely.linestrings)
 
     def legs(self) -> Floats:
         """Between links and wheels of the front and the rear leg, exact where it may be least."""
@@ -70,7 +72,8 @@ class Gaps:
         thigh, calf, wheel = robot.thigh.radius, robot.calf.radius, robot.wheel.radius
         radii = (thigh, max(thigh, calf), max(calf, wheel))
         joints = list(zip((f.hips, f.knees, f.wheels), radii, strict=True))
-        low, high = _box([at - r for at, r in joints])[0], _box([at + r for at, r in joints])[1]
+        low = reduce(np.minimum, [at - r for at, r in joints])
+        high = reduce(np.maximum, [at + r for at, r in joints])
         between = np.maximum(low[:, 0] - high[:, 1], low[:, 1] - high[:, 0])
         gap: Floats = np.hypot(*np.maximum(between, 0.0).T)
         first = np.array([np.argmin(gap)])
@@ -80,8 +83,7 @@ class Gaps:
 
     def _clearances(
         self,
-        parts: Sequence[tuple[Floats, float]],
-        inside: Floats | None,
+        parts: Sequence[tuple[Floats, float, Floats]],
         shape: Callable[[Floats], Shapes],
     ) -> Floats:
         """Least clearance of some parts from the ground.
@@ -90,15 +92,13 @@ class Gaps:
         after that is taken off; elsewhere it is a bound.
 
         Args:
-            parts: Outlines (n, k, 2) and radii round them [m].
-            inside: (n, 2) a point of each part that shows whether it lies above the ground; None:
-                the first of its outline.
+            parts: Outlines (n, k, 2), radii round them [m], and a point (n, 2) of each that shows
+                whether it lies above the ground.
             shape: What makes shapely's geometries of outlines.
         """
         slack = self.samples.slack
         worst = np.full(len(slack), np.inf)
-        for outline, radius in parts:
-            point = outline[:, 0] if inside is None else inside
+        for outline, radius, point in parts:
 
             def exact(
                 k: Ints, line: Floats = outline, r: float = radius, at: Floats = point
@@ -107,7 +107,8 @@ class Gaps:
                 return np.where(self._above(at[k]), distance, -1.0) - r
 
             # What is worst so far, or first sight shows, tells how much ground has to be looked at.
-            box = _box(np.moveaxis(outline, 1, 0))
+            corners = list(np.moveaxis(outline, 1, 0))
+            box = reduce(np.minimum, corners), reduce(np.maximum, corners)
             bound = self._at_least(*box, _SIGHT + radius) - radius - slack
             first = np.array([np.argmin(bound)])
             least = max(min(np.min(worst - slack), (exact(first) - slack[first])[0]), 0.0)
@@ -176,9 +177,3 @@ class Gaps:
         gaps = [shapely.distance(a, b) - ra - rb for a, ra in parts[0] for b, rb in parts[1]]
         least: Floats = np.min(gaps, axis=0)
         return least
-
-
-def _box(points: Iterable[Floats]) -> tuple[Floats, Floats]:
-    """Least and largest coordinates (...) of some points (...)."""
-    points = list(points)
-    return reduce(np.minimum, points), reduce(np.maximum, points)
