@@ -49,10 +49,11 @@ class Rung:
     probe: bool = False
 
 
+BACK = Rung(1.7, BOLD, roll_back=True)
 LADDER = (  # rungs of one step are tried together; the first path is taken
     (Rung(2.0, STRICT),),
     (Rung(1.7, BOLD), Rung(1.7, HOPE, roll_back=True, probe=True)),
-    (Rung(1.7, HOPE), Rung(1.7, BOLD, roll_back=True), Rung(1.4, KEEN)),
+    (Rung(1.7, HOPE), BACK, Rung(1.4, KEEN)),
 )
 _COARSE = 2  # steps of the ladder that are compared where a path is thin
 _THIN = 0.01  # m; CoM margin
@@ -143,6 +144,8 @@ class Course(Question):
         ends: tuple[Place, ...] = ()
         for height, rungs in enumerate(LADDER, 1):
             tried = [rung for rung in rungs if best is None or not rung.probe]
+            if height > _COARSE and blocked[1].opened:
+                tried.remove(BACK)  # bold wheels need not roll back: it would be the same way again
             with race(pool, self.attempt, tried) as answers:
                 for answer in answers:
                     if isinstance(answer, Blocked):
