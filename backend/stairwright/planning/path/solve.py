@@ -53,7 +53,7 @@ BACK = Rung(1.7, BOLD, roll_back=True)
 LADDER = (  # rungs of one step are tried together; the first path is taken
     (Rung(2.0, STRICT),),
     (Rung(1.7, BOLD), Rung(1.7, HOPE, roll_back=True, probe=True)),
-    (Rung(1.7, HOPE), BACK, Rung(1.4, KEEN)),
+    (Rung(1.7, HOPE), Rung(1.4, KEEN), BACK),
 )
 _COARSE = 2  # steps of the ladder that are compared where a path is thin
 _THIN = 0.01  # m; CoM margin
