@@ -13,6 +13,7 @@ from typing import Annotated, Literal, NamedTuple
 
 from pydantic import AfterValidator, Field, model_validator
 
+from stairwright import _core
 from stairwright.documents import Model, content_hash
 from stairwright.errors import InputError
 
@@ -196,6 +197,13 @@ class Robot(Model):
     def mass(self) -> float:
         """Total mass [kg]."""
         return self.trunk.mass + 4 * (self.thigh.mass + self.calf.mass + self.wheel.mass)
+
+    @cached_property
+    def native(self) -> _core.Robot:
+        """The planar robot of the native core; to change one, copy it first (`copy.copy`)."""
+        from .native import native_robot  # it imports this file
+
+        return native_robot(self)
 
     @cached_property
     def planar(self) -> Planar:

@@ -1,0 +1,65 @@
+// Statics of wheels on terrain: where the centre of mass may be, in closed form.
+//
+// The robot at rest needs contact forces inside their friction cones whose sum is the weight and whose moment
+// balances it. In the plane a cone is spanned by two rays; force is counted in robot weights and moment in
+// weights times metres, so the moment that the weight asks for is the CoM's x.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <span>
+
+#include "stairwright/kinematics.hpp"
+
+namespace stairwright {
+
+inline constexpr double kRayLimit = 1.0;        // largest ray strength, in weights: joints hold no larger force of wedged wheels
+inline constexpr double kNothingHolds = -1.0;   // m; the margin where no CoM is in equilibrium, and the least that is stated
+inline constexpr std::size_t kMostContacts = 6;
+
+struct Contact {
+    Vec2 point, normal;     // the normal points out of the terrain
+    double friction = 0.0;  // Coulomb coefficient
+};
+
+// Values of the CoM's x; lower > upper where there are none.
+struct Interval {
+    double lower = std::numeric_limits<double>::infinity(), upper = -std::numeric_limits<double>::infinity();
+
+    constexpr bool empty() const { return lower > upper; }
+    constexpr bool contains(double x) const { return lower <= x && x <= upper; }
+    constexpr Interval intersect(Interval o) const { return {std::max(lower, o.lower), std::min(upper, o.upper)}; }
+    // The smallest interval that holds both.
+    constexpr Interval join(Interval o) const {
+        return o.empty() ? *this : empty() ? o : Interval{std::min(lower, o.lower), std::max(upper, o.upper)};
+    }
+};
+
+// Least and largest x of the CoM that `contacts` can hold at rest, with ray strengths of at most `limit` weights.
+Interval com_interval(std::span<const Contact> contacts, double limit = kRayLimit);
+
+// How far a CoM may shift in x, the smaller way, within `interval` [m]: negative outside, never below kNothingHolds.
+double com_margin(Interval interval, double com_x);
+
+// Least friction with which any number of contacts hold a CoM; infinite if none does. Their own friction is not used.
+double friction_needed(std::span<const Contact> contacts, double com_x);
+
+// A contact force in the contact's frame: tangential is positive along (n_z, -n_x), forward on the level.
+struct ContactForce {
+    double tangential = 0.0, normal = 0.0;
+};
+
+// Least friction with which two contacts hold a CoM at `com_x`, and the forces that do, in weights; infinite where
+// no push on both holds the robot. Up to `ample` friction the forces squeeze the terrain least, beyond it they need
+// the least friction.
+double least_friction(const std::array<Contact, 2>& contacts, double com_x, double ample, std::array<ContactForce, 2>& forces);
+
+struct LegTorques {
+    double thigh = 0.0, calf = 0.0, wheel = 0.0;  // Nm
+};
+
+// Static torques of one leg whose wheel carries `force` [N] at `contact`. The wheel's motor sits in the calf, so for
+// the leg's joints the wheel is one body with it.
+LegTorques static_torques(const Leg& leg, const LegPoints& points, Vec2 contact, Vec2 force);
+
+}  // namespace stairwright

@@ -1,0 +1,50 @@
+// The ground below an x-monotone profile, and exact distances of points, links and polygons from it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "stairwright/robot.hpp"
+
+namespace stairwright {
+
+// Squared distance from a point to the segment a-b.
+inline double point_segment_squared(Vec2 p, Vec2 a, Vec2 b) {
+    const Vec2 d = b - a;
+    const double square = dot(d, d);
+    double t = square > 1e-18 ? dot(p - a, d) / square : 0.0;
+    t = std::fmin(1.0, std::fmax(0.0, t));
+    const Vec2 e = p - a - t * d;
+    return dot(e, e);
+}
+
+// Distance of the segments a-b and c-d; 0 where they cross.
+double segment_distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d);
+
+// A profile whose x never decreases (equal x: a vertical face), indexed by buckets of x.
+class Terrain {
+  public:
+    explicit Terrain(std::vector<Vec2> vertices);
+
+    const std::vector<Vec2>& vertices() const { return vertices_; }
+    std::size_t segments() const { return vertices_.size() - 1; }
+    // Index of a segment at or before the first that touches abscissas from `x` on.
+    std::size_t first_segment(double x) const;
+    // Upper height of the ground at `x`; -inf beyond the profile's ends.
+    double height(double x) const;
+    // Distance of a point from the profile, at most `query_radius`.
+    double distance(Vec2 point, double query_radius) const;
+    // Distance of the capsule a-b from the ground, at most `query_radius`; minus its depth if inside [m].
+    // The depth counts from the capsule's axis: the deepest of five points on it, so that it shrinks as the
+    // link backs out.
+    double link_clearance(Vec2 a, Vec2 b, double radius, double query_radius) const;
+    // Distance of a convex polygon of the trunk frame at `body`, at most `query_radius`; minus its depth if inside [m].
+    double polygon_clearance(const Polygon& polygon, Vec2 at, Turn pitch, double query_radius) const;
+
+  private:
+    std::vector<Vec2> vertices_;
+    std::vector<std::int32_t> first_;  // per bucket of x: the first segment that reaches into it
+};
+
+}  // namespace stairwright

@@ -1,0 +1,12 @@
+// What the module is made of: each function lies in a file of its own.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace stairwright::python {
+
+void bind_robot(nanobind::module_& m);
+void bind_terrain(nanobind::module_& m);
+void bind_statics(nanobind::module_& m);
+
+}  // namespace stairwright::python

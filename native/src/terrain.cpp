@@ -1,0 +1,140 @@
+#include "stairwright/terrain.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+namespace stairwright {
+
+namespace {
+constexpr double kBucket = 0.02;    // m
+constexpr double kPierced = 0.005;  // m; depth of what a spike goes through that has no width to be deep in
+constexpr double kDeepest = 0.5;    // m; larger depths are not told apart
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// How far `p` is inside a convex polygon: negative outside (then not a distance).
+double depth_inside(const Polygon& polygon, Vec2 p) {
+    double least = kInfinity;
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Vec2 a = polygon[k], b = polygon[(k + 1) % polygon.size()];
+        least = std::min(least, cross(b - a, p - a) / norm(b - a));
+    }
+    return least;
+}
+
+double distance_outside(const Polygon& polygon, Vec2 p) {
+    double square = kInfinity;
+    for (std::size_t k = 0; k < polygon.size(); ++k)
+        square = std::min(square, point_segment_squared(p, polygon[k], polygon[(k + 1) % polygon.size()]));
+    return std::sqrt(square);
+}
+}  // namespace
+
+double segment_distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
+    const double s1 = cross(b - a, c - a), s2 = cross(b - a, d - a);
+    const double s3 = cross(d - c, a - c), s4 = cross(d - c, b - c);
+    if (s1 * s2 < 0.0 && s3 * s4 < 0.0) return 0.0;
+    return std::sqrt(std::min(std::min(point_segment_squared(a, c, d), point_segment_squared(b, c, d)),
+                              std::min(point_segment_squared(c, a, b), point_segment_squared(d, a, b))));
+}
+
+Terrain::Terrain(std::vector<Vec2> vertices) : vertices_(std::move(vertices)) {
+    if (vertices_.size() < 2) throw std::invalid_argument("a profile needs at least two points");
+    const double begin = vertices_.front().x;
+    const auto buckets = static_cast<std::size_t>((vertices_.back().x - begin) / kBucket) + 2;
+    first_.resize(buckets);
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < buckets; ++i) {
+        const double edge = begin + kBucket * static_cast<double>(i);
+        while (k < vertices_.size() && vertices_[k].x < edge) ++k;
+        first_[i] = static_cast<std::int32_t>(k > 0 ? k - 1 : 0);
+    }
+}
+
+std::size_t Terrain::first_segment(double x) const {
+    const double bucket = (x - vertices_.front().x) / kBucket;
+    if (!(bucket > 0.0)) return static_cast<std::size_t>(first_.front());
+    return static_cast<std::size_t>(first_[std::min(static_cast<std::size_t>(std::fmin(bucket, 1e9)), first_.size() - 1)]);
+}
+
+double Terrain::height(double x) const {
+    double best = -kInfinity;
+    for (std::size_t i = first_segment(x); i < segments(); ++i) {
+        const Vec2 a = vertices_[i], b = vertices_[i + 1];
+        if (a.x > x) break;
+        if (x > b.x) continue;
+        const double width = b.x - a.x;
+        best = std::max(best, width < 1e-12 ? std::max(a.z, b.z) : a.z + (b.z - a.z) * (x - a.x) / width);
+    }
+    return best;
+}
+
+double Terrain::distance(Vec2 point, double query_radius) const {
+    double best = query_radius * query_radius;
+    for (std::size_t i = first_segment(point.x - query_radius); i < segments(); ++i) {
+        if (vertices_[i].x > point.x + query_radius) break;
+        best = std::min(best, point_segment_squared(point, vertices_[i], vertices_[i + 1]));
+    }
+    return std::sqrt(best);
+}
+
+double Terrain::link_clearance(Vec2 a, Vec2 b, double radius, double query_radius) const {
+    double best = query_radius + radius;
+    const double lo = std::min(a.x, b.x) - best, hi = std::max(a.x, b.x) + best, bottom = std::min(a.z, b.z);
+    bool inside = false;
+    for (std::size_t i = first_segment(lo); i < segments(); ++i) {
+        const Vec2 p = vertices_[i], q = vertices_[i + 1];
+        if (p.x > hi) break;
+        if (q.x < lo || std::max(p.z, q.z) < bottom - best) continue;
+        best = std::min(best, segment_distance(a, b, p, q));
+        if (p.x <= a.x && a.x <= q.x && q.x > p.x && a.z < p.z + (q.z - p.z) * (a.x - p.x) / (q.x - p.x)) inside = true;
+    }
+    if (best > 0.0 && !inside) return best - radius;
+    double depth = 0.0;
+    for (int k = 0; k < 5; ++k) {
+        const Vec2 p = a + (0.25 * k) * (b - a);
+        if (p.z < height(p.x)) depth = std::max({depth, distance(p, kDeepest), 1e-4});
+    }
+    return -radius - (depth > 2e-4 ? depth : kPierced);
+}
+
+double Terrain::polygon_clearance(const Polygon& polygon, Vec2 at, Turn pitch, double query_radius) const {
+    double best = query_radius, depth = 0.0, lo = kInfinity, hi = -kInfinity, bottom = kInfinity;
+    Vec2 middle;
+    for (const Vec2 corner : polygon) {
+        const Vec2 p = at + pitch * corner;
+        lo = std::min(lo, p.x), hi = std::max(hi, p.x), bottom = std::min(bottom, p.z);
+        middle += (1.0 / static_cast<double>(polygon.size())) * corner;
+    }
+    lo -= query_radius, hi += query_radius;
+    const Vec2 centre = at + pitch * middle;
+    bool below = false;
+    for (std::size_t i = first_segment(lo); i < segments(); ++i) {
+        const Vec2 a = vertices_[i], b = vertices_[i + 1];
+        if (a.x > hi) break;
+        if (b.x < lo || std::max(a.z, b.z) < bottom - best) continue;
+        if (a.x <= centre.x && centre.x <= b.x && b.x > a.x &&
+            centre.z < a.z + (b.z - a.z) * (centre.x - a.x) / (b.x - a.x))
+            below = true;
+        const Vec2 u = pitch.inverse(a - at), v = pitch.inverse(b - at);
+        const double inside = std::max(depth_inside(polygon, u), depth_inside(polygon, v));
+        if (inside >= 0.0) {
+            depth = std::max(depth, inside);
+            best = 0.0;
+            continue;
+        }
+        double near = std::min(distance_outside(polygon, u), distance_outside(polygon, v));
+        if (near - norm(v - u) >= best) continue;
+        for (std::size_t k = 0; k < polygon.size() && near > 0.0; ++k)
+            near = std::min(near, segment_distance(polygon[k], polygon[(k + 1) % polygon.size()], u, v));
+        best = std::min(best, near);
+    }
+    if (best > 0.0 && !below) return best;
+    for (const Vec2 corner : polygon) {
+        const Vec2 p = at + pitch * corner;
+        if (p.z < height(p.x)) depth = std::max({depth, distance(p, kDeepest), 1e-4});
+    }
+    return -(depth > 0.0 ? depth : 4.0 * kPierced);
+}
+
+}  // namespace stairwright
