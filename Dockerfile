@@ -15,6 +15,8 @@ RUN apt-get update \
 
 # The program and its locked dependencies, in a virtual environment that is copied as a whole.
 FROM base AS program
+# hadolint ignore=DL3008
+RUN apt-get update && apt-get install --yes --no-install-recommends g++
 ENV PATH=/opt/stairwright/bin:$PATH \
     PIP_DISABLE_PIP_VERSION_CHECK=1 \
     PIP_NO_CACHE_DIR=1
@@ -30,6 +32,10 @@ COPY pyproject.toml hatch_build.py README.md LICENSE ./
 COPY terrains/ terrains/
 COPY robots/ robots/
 COPY backend/ backend/
+COPY native/ native/
+RUN cmake -S native -B /tmp/native -G Ninja -DPython_EXECUTABLE="$(command -v python)" \
+    && cmake --build /tmp/native \
+    && cmake --install /tmp/native --prefix backend/stairwright
 COPY --from=page /src/frontend/dist/ frontend/dist/
 # Compiled kernels fit one kind of processor; on another one they are compiled again at the start.
 RUN pip install --no-deps --no-build-isolation . \

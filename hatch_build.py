@@ -1,7 +1,8 @@
-"""Put what a checkout keeps at its top level into the wheel: terrains, robots and the built page.
+"""Put what a checkout keeps at its top level into the wheel: terrains, robots, the built page.
 
 A wheel holds them as `stairwright/data/terrains`, `stairwright/data/robots` and
-`stairwright/page`. An editable install needs none of this: it reads the checkout.
+`stairwright/page`, and the native core that ./dev has built beside the Python files. An editable
+install needs none of this: it reads the checkout.
 """
 
 from pathlib import Path
@@ -23,9 +24,14 @@ class ShipData(BuildHookInterface):  # type: ignore[type-arg]
         """Called before each build; `version` is "standard" or "editable"."""
         if self.target_name != "wheel" or version == "editable":
             return
-        for source, target in SHIPPED.items():
-            folder = Path(self.root, source)
-            if not folder.is_dir():
-                hint = " Build the page first: ./dev build" if source == "frontend/dist" else ""
-                raise FileNotFoundError(f"{folder} is missing.{hint}")
-            build_data["force_include"][str(folder)] = target
+        root = Path(self.root)
+        native = sorted((root / "backend/stairwright").glob("_core.*"))
+        missing = [name for name in SHIPPED if not (root / name).is_dir()]
+        if missing or not native:
+            what = " and ".join([*missing, *([] if native else ["the native core"])])
+            raise FileNotFoundError(f"{what} must be built first; this does all of it: ./dev wheel")
+        files = {str(root / source): target for source, target in SHIPPED.items()}
+        files |= {str(file): f"stairwright/{file.name}" for file in native}
+        build_data["force_include"].update(files)
+        # The core fits one version of Python on one kind of machine.
+        build_data.update(pure_python=False, infer_tag=True)

@@ -146,7 +146,7 @@ def test_docker_context_holds_what_the_dockerfile_copies() -> None:
 
 @pytest.mark.slow
 def test_wheel_brings_its_terrains_robots_and_page(tmp_path: Path) -> None:
-    """Built from the tracked files plus the page; used without the checkout."""
+    """Built from the tracked files plus page and native core; used without the checkout."""
     source = tmp_path / "source"
     files = run("git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", cwd=ROOT)
     for name in filter(None, files.stdout.split("\0")):
@@ -154,14 +154,17 @@ def test_wheel_brings_its_terrains_robots_and_page(tmp_path: Path) -> None:
             (source / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / name, source / name)
     build = (sys.executable, "-m", "hatchling", "build", "--target", "wheel")
-    without_page = run(*build, cwd=source)
-    assert without_page.returncode != 0
-    assert "./dev build" in without_page.stderr
+    unbuilt = run(*build, cwd=source)
+    assert unbuilt.returncode != 0
+    assert "./dev wheel" in unbuilt.stderr
 
     assert (ROOT / "frontend" / "dist" / "index.html").is_file(), (
         "build the page first: ./dev build"
     )
     shutil.copytree(ROOT / "frontend" / "dist", source / "frontend" / "dist")
+    package = Path("backend", "stairwright")
+    for core in (ROOT / package).glob("_core.*"):
+        shutil.copy(core, source / package / core.name)
     built = run(*build, cwd=source)
     assert built.returncode == 0, built.stderr
     (wheel,) = (source / "dist").glob("*.whl")
@@ -170,7 +173,8 @@ def test_wheel_brings_its_terrains_robots_and_page(tmp_path: Path) -> None:
         archive.extractall(unpacked)
     assert (unpacked / "stairwright" / "page" / "index.html").is_file()
     assert (unpacked / "stairwright" / "py.typed").is_file()
-    program = "import stairwright as sw; print(sw.__file__, *sw.robots(), *sw.terrains())"
+    program = "import stairwright as sw; from stairwright import _core; "
+    program += "print(_core.__file__, *sw.robots(), *sw.terrains())"
     env = os.environ | {"PYTHONPATH": str(unpacked), "NUMBA_CACHE_DIR": str(tmp_path / "numba")}
     used = run(sys.executable, "-c", program, cwd=tmp_path, env=env)
     assert used.returncode == 0, used.stderr

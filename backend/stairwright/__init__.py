@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from .mujoco_library import load_mujoco_library
+
 if TYPE_CHECKING:
     from .library import load_robot, load_terrain, robots, terrains
     from .planning.certificate import certify
@@ -30,6 +32,8 @@ __all__ = [
     "rollout",
     "terrains",
 ]
+
+load_mujoco_library()  # the native core links it
 
 # Loaded on first use: `stairwright --help` and the web process need neither CasADi nor MuJoCo.
 _HOMES = {
