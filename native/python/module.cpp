@@ -7,4 +7,5 @@ NB_MODULE(_core, m) {
     bind_robot(m);
     bind_terrain(m);
     bind_statics(m);
+    bind_smoothing(m);
 }

@@ -12,7 +12,10 @@ void bind_robot(nb::module_& m) {
     nb::class_<Range>(m, "Range").def(nb::init<double, double>()).def_rw("lower", &Range::lower).def_rw("upper", &Range::upper);
     nb::class_<Motor>(m, "Motor").def(nb::init<double, double>()).def_rw("torque", &Motor::torque).def_rw("speed", &Motor::speed);
     nb::class_<Capsule>(m, "Capsule").def(nb::init<Vec2, Vec2, double>());
-    nb::class_<Link>(m, "Link").def(nb::init<Vec2, Vec2, double, double, std::vector<Capsule>>());
+    nb::class_<Polygon>(m, "Polygon").def("__init__", [](Polygon* self, const Points& corners) { new (self) Polygon(points(corners)); });
+    nb::class_<Link>(m, "Link").def("__init__", [](Link* self, Vec2 end, Vec2 com, double mass, double inertia, std::vector<Capsule> shape) {
+        new (self) Link{end, com, mass, inertia, std::move(shape)};
+    });
     nb::class_<Wheel>(m, "Wheel").def(nb::init<double, double, double>()).def_rw("radius", &Wheel::radius);
     nb::class_<Leg>(m, "Leg")
         .def(nb::init<Vec2, Link, Link, Wheel, Range, Range, Motor, Motor, Motor, double>())

@@ -39,8 +39,8 @@ void bind_terrain(nb::module_& m) {
         .def("distance", [](const Terrain& t, double x, double z, double r) { return t.distance({x, z}, r); })
         .def("link_clearance", [](const Terrain& t, double ax, double az, double bx, double bz, double radius,
                                   double r) { return t.link_clearance({ax, az}, {bx, bz}, radius, r); })
-        .def("polygon_clearance", [](const Terrain& t, const Points& polygon, double x, double z, double pitch,
-                                     double r) { return t.polygon_clearance(points(polygon), {x, z}, Turn::by(pitch), r); });
+        .def("polygon_clearance", [](const Terrain& t, const Polygon& polygon, double x, double z, double pitch,
+                                     double r) { return t.polygon_clearance(polygon, {x, z}, Turn::by(pitch), r); });
     nb::class_<WheelPath>(m, "WheelPath")
         .def("__init__", [](WheelPath* self, const Points& v, double radius) { new (self) WheelPath(points(v), radius); })
         .def_prop_ro("radius", &WheelPath::radius)

@@ -2,20 +2,14 @@
 
 namespace stairwright {
 
-Vec2 carried_point(const Link& link, Vec2 line, Vec2 point) {
-    // The turn that takes `end` to `line`: no angle is needed for it.
-    const double square = dot(link.end, link.end);
-    return Turn{dot(link.end, line) / square, cross(line, link.end) / square} * point;
-}
-
 JointAngles joint_angles(const Leg& leg, double pitch, Vec2 knee, Vec2 reach) {
     const double upper_angle = std::atan2(-knee.x, -knee.z);
-    const double thigh = leg.thigh.length(), calf = leg.calf.length();
+    const double thigh = leg.thigh.length, calf = leg.calf.length;
     const double cosine = (dot(reach, reach) - thigh * thigh - calf * calf) / (2.0 * thigh * calf);
     const double between = leg.knee * std::acos(std::clamp(cosine, -1.0, 1.0));
     JointAngles q;
-    q.thigh = nearest_turn(upper_angle - leg.thigh.bend() - pitch, leg.thigh_range.middle());
-    q.calf = between + leg.thigh.bend() - leg.calf.bend();
+    q.thigh = nearest_turn(upper_angle - leg.thigh.bend - pitch, leg.thigh_range.middle());
+    q.calf = between + leg.thigh.bend - leg.calf.bend;
     return q;
 }
 
@@ -33,8 +27,8 @@ LegPoints place_leg(const Leg& leg, const Body& body, Turn pitch, Vec2 wheel) {
 }
 
 ReachRange reach_range(const Leg& leg) {
-    const double l1 = leg.thigh.length(), l2 = leg.calf.length();
-    const double offset = leg.calf.bend() - leg.thigh.bend();
+    const double l1 = leg.thigh.length, l2 = leg.calf.length;
+    const double offset = leg.calf.bend - leg.thigh.bend;
     const double a = std::abs(leg.calf_range.lower + offset), b = std::abs(leg.calf_range.upper + offset);
     const auto reach = [&](double bend) {
         return std::sqrt(std::max(0.0, l1 * l1 + l2 * l2 + 2.0 * l1 * l2 * std::cos(std::min(bend, std::numbers::pi))));
@@ -43,8 +37,8 @@ ReachRange reach_range(const Leg& leg) {
 }
 
 Vec2 pair_moment(const Leg& leg, Vec2 knee, Vec2 wheel) {
-    const Vec2 thigh = carried_point(leg.thigh, knee, leg.thigh.com);
-    const Vec2 calf = knee + carried_point(leg.calf, wheel - knee, leg.calf.com);
+    const Vec2 thigh = link_turn(leg.thigh, knee) * leg.thigh.com;
+    const Vec2 calf = knee + link_turn(leg.calf, wheel - knee) * leg.calf.com;
     return 2.0 * (leg.thigh.mass * thigh + leg.calf.mass * calf + leg.wheel.mass * wheel);
 }
 

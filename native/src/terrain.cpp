@@ -11,23 +11,6 @@ constexpr double kBucket = 0.02;    // m
 constexpr double kPierced = 0.005;  // m; depth of what a spike goes through that has no width to be deep in
 constexpr double kDeepest = 0.5;    // m; larger depths are not told apart
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// How far `p` is inside a convex polygon: negative outside (then not a distance).
-double depth_inside(const Polygon& polygon, Vec2 p) {
-    double least = kInfinity;
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-        const Vec2 a = polygon[k], b = polygon[(k + 1) % polygon.size()];
-        least = std::min(least, cross(b - a, p - a) / norm(b - a));
-    }
-    return least;
-}
-
-double distance_outside(const Polygon& polygon, Vec2 p) {
-    double square = kInfinity;
-    for (std::size_t k = 0; k < polygon.size(); ++k)
-        square = std::min(square, point_segment_squared(p, polygon[k], polygon[(k + 1) % polygon.size()]));
-    return std::sqrt(square);
-}
 }  // namespace
 
 double segment_distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
@@ -100,37 +83,27 @@ double Terrain::link_clearance(Vec2 a, Vec2 b, double radius, double query_radiu
 
 double Terrain::polygon_clearance(const Polygon& polygon, Vec2 at, Turn pitch, double query_radius) const {
     double best = query_radius, depth = 0.0, lo = kInfinity, hi = -kInfinity, bottom = kInfinity;
-    Vec2 middle;
-    for (const Vec2 corner : polygon) {
+    for (const Vec2 corner : polygon.corners()) {
         const Vec2 p = at + pitch * corner;
         lo = std::min(lo, p.x), hi = std::max(hi, p.x), bottom = std::min(bottom, p.z);
-        middle += (1.0 / static_cast<double>(polygon.size())) * corner;
     }
     lo -= query_radius, hi += query_radius;
-    const Vec2 centre = at + pitch * middle;
+    const Vec2 middle = at + pitch * polygon.middle();
     bool below = false;
     for (std::size_t i = first_segment(lo); i < segments(); ++i) {
         const Vec2 a = vertices_[i], b = vertices_[i + 1];
         if (a.x > hi) break;
         if (b.x < lo || std::max(a.z, b.z) < bottom - best) continue;
-        if (a.x <= centre.x && centre.x <= b.x && b.x > a.x &&
-            centre.z < a.z + (b.z - a.z) * (centre.x - a.x) / (b.x - a.x))
+        if (a.x <= middle.x && middle.x <= b.x && b.x > a.x &&
+            middle.z < a.z + (b.z - a.z) * (middle.x - a.x) / (b.x - a.x))
             below = true;
         const Vec2 u = pitch.inverse(a - at), v = pitch.inverse(b - at);
-        const double inside = std::max(depth_inside(polygon, u), depth_inside(polygon, v));
-        if (inside >= 0.0) {
-            depth = std::max(depth, inside);
-            best = 0.0;
-            continue;
-        }
-        double near = std::min(distance_outside(polygon, u), distance_outside(polygon, v));
-        if (near - norm(v - u) >= best) continue;
-        for (std::size_t k = 0; k < polygon.size() && near > 0.0; ++k)
-            near = std::min(near, segment_distance(polygon[k], polygon[(k + 1) % polygon.size()], u, v));
-        best = std::min(best, near);
+        const double inside = -std::min(polygon.separation(u), polygon.separation(v));
+        if (inside >= 0.0) depth = std::max(depth, inside);
+        best = std::min(best, inside >= 0.0 ? 0.0 : polygon.distance(u, v, best));
     }
     if (best > 0.0 && !below) return best;
-    for (const Vec2 corner : polygon) {
+    for (const Vec2 corner : polygon.corners()) {
         const Vec2 p = at + pitch * corner;
         if (p.z < height(p.x)) depth = std::max({depth, distance(p, kDeepest), 1e-4});
     }

@@ -58,7 +58,7 @@ def test_clearance_of_the_trunk_is_the_distance_from_the_ground(steps, x, z, pit
     c, s = math.cos(pitch), math.sin(pitch)
     placed = [(x + c * u + s * v, z - s * u + c * v) for u, v in outline]
     want = ground(vertices).distance(Polygon(placed))
-    got = _core.Terrain(vertices).polygon_clearance(outline, x, z, pitch, 0.3)
+    got = _core.Terrain(vertices).polygon_clearance(_core.Polygon(outline), x, z, pitch, 0.3)
     if want > 1e-9:
         assert got == pytest.approx(min(want, 0.3), abs=1e-9)
     else:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from stairwright import _core
 
 from .description import Actuator, LegLimits, Link, Robot
@@ -11,7 +13,7 @@ def native_robot(robot: Robot) -> _core.Robot:
     """The planar robot of a document."""
     length, _, height = robot.trunk.size
     x, z = length / 2, height / 2
-    box = [_core.Vec2(*corner) for corner in ((-x, -z), (x, -z), (x, z), (-x, z))]
+    box = _core.Polygon(np.array([(-x, -z), (x, -z), (x, z), (-x, z)]))
     trunk = _core.Trunk(robot.trunk.mass, robot.trunk.inertia[1], _core.Vec2(0.0, 0.0), [box])
     legs = [
         _leg(robot, hip, limits)

@@ -28,7 +28,7 @@ inline Vec2 hip(const Leg& leg, const Body& body, Turn pitch) { return Vec2{body
 
 // Knee relative to the hip for a wheel at `reach` from it, by the leg's knee side; the reach is clamped.
 inline Vec2 knee_offset(const Leg& leg, Vec2 reach) {
-    const double thigh = leg.thigh.length(), calf = leg.calf.length();
+    const double thigh = leg.thigh.length, calf = leg.calf.length;
     const double d = std::max(norm(reach), 1e-9);
     const Vec2 e = {reach.x / d, reach.z / d};
     const double a = std::clamp((thigh * thigh - calf * calf + d * d) / (2.0 * d), -thigh, thigh);
@@ -46,8 +46,11 @@ inline double nearest_turn(double angle, double middle) {
 // Joint angles that put the knee and the wheel where they are; the thigh's is nearest to the middle of its range.
 JointAngles joint_angles(const Leg& leg, double pitch, Vec2 knee, Vec2 reach);
 
-// A point of a link's frame, relative to its upper joint, when `line` leads from its upper joint to its lower one.
-Vec2 carried_point(const Link& link, Vec2 line, Vec2 point);
+// What takes a link's frame to the world when `line` leads from its upper joint to its lower one: no angle is needed.
+inline Turn link_turn(const Link& link, Vec2 line) {
+    const double over = 1.0 / (link.length * link.length);
+    return {dot(link.end, line) * over, cross(line, link.end) * over};
+}
 
 // Hip, knee and wheel of a leg at joint angles `q`.
 LegPoints forward(const Leg& leg, const Body& body, JointAngles q);

@@ -8,7 +8,7 @@
 #include <array>
 #include <vector>
 
-#include "stairwright/vec2.hpp"
+#include "stairwright/polygon.hpp"
 
 namespace stairwright {
 
@@ -40,10 +40,9 @@ struct Link {
     double mass = 0.0;     // kg
     double inertia = 0.0;  // Iyy about the mass centre [kg m^2]
     std::vector<Capsule> shape;
-
-    double length() const { return norm(end); }
+    double length = norm(end);
     // Angle of the line from joint to joint when the link's own angle is 0: 0 for a straight link.
-    double bend() const { return std::atan2(-end.x, -end.z); }
+    double bend = std::atan2(-end.x, -end.z);
 };
 
 struct Wheel {
@@ -61,8 +60,6 @@ struct Leg {
 
     double pair_mass() const { return 2.0 * (thigh.mass + calf.mass + wheel.mass); }
 };
-
-using Polygon = std::vector<Vec2>;  // convex, anticlockwise seen with x right and z up
 
 struct Trunk {
     double mass = 0.0;     // with what is fixed to it and the payload [kg]

@@ -49,6 +49,12 @@ struct ContactForce {
     double tangential = 0.0, normal = 0.0;
 };
 
+// In world axes.
+inline Vec2 world_force(const Contact& contact, const ContactForce& f) {
+    const Vec2 n = contact.normal;
+    return {f.tangential * n.z + f.normal * n.x, -f.tangential * n.x + f.normal * n.z};
+}
+
 // Least friction with which two contacts hold a CoM at `com_x`, and the forces that do, in weights; infinite where
 // no push on both holds the robot. Up to `ample` friction the forces squeeze the terrain least, beyond it they need
 // the least friction.
@@ -60,6 +66,6 @@ struct LegTorques {
 
 // Static torques of one leg whose wheel carries `force` [N] at `contact`. The wheel's motor sits in the calf, so for
 // the leg's joints the wheel is one body with it.
-LegTorques static_torques(const Leg& leg, const LegPoints& points, Vec2 contact, Vec2 force);
+LegTorques static_torques(const Leg& leg, const LegPoints& points, const Contact& contact, const ContactForce& force);
 
 }  // namespace stairwright

@@ -1,0 +1,23 @@
+// Nodes dense enough that joints may be interpolated linearly between them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "stairwright/smoothing/node_margins.hpp"
+
+namespace stairwright::smoothing {
+
+// Where contacts change between nodes, as fractional node numbers.
+std::vector<double> contact_changes(const WheelPath& path, std::span<const Node> nodes);
+
+// Insert nodes at `changes`, then halve intervals until the wheels follow their curve under linear motion.
+std::vector<Node> densify(const WheelPath& path, const RobotModel& robot, std::span<const Node> nodes,
+                          std::span<const double> changes);
+
+// Intervals of nodes, each also good to the next ones: where contacts change between two nodes both keep what holds
+// there, because the CoM moves linearly.
+std::vector<NodeIntervals> intervals_along(const WheelPath& path, std::span<const Node> nodes,
+                                           std::span<const double> changes, double friction, double reserve, double lag);
+
+}  // namespace stairwright::smoothing

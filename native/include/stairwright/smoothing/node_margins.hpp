@@ -1,0 +1,39 @@
+// What every node of a path is worth: joints, margins, forces and torques.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "stairwright/posture.hpp"
+#include "stairwright/wheel_contacts.hpp"
+
+namespace stairwright::smoothing {
+
+struct Node {
+    WheelPlaces s;
+    Body body;
+};
+
+// Linear interpolation.
+inline double between(double a, double b, double share) { return (b - a) * share + a; }
+inline Body between(const Body& a, const Body& b, double share) {
+    return {between(a.x, b.x, share), between(a.z, b.z, share), between(a.pitch, b.pitch, share)};
+}
+inline Node between(const Node& a, const Node& b, double share) {
+    return {{between(a.s.front, b.s.front, share), between(a.s.rear, b.s.rear, share)}, between(a.body, b.body, share)};
+}
+
+struct NodeMargins {
+    PoseGeometry geometry;
+    double com = 0.0;                    // CoM margin at the friction there is [m]
+    double firm_com = 0.0;               // the same with friction on one face of a corner only, which robots can hold [m]
+    double friction_needed = 0.0;
+    std::array<ContactForce, 2> forces;  // of each wheel pair [N]; a wheel between two faces: along what carries it
+    // Of each leg; a pair's force is shared by its two legs.
+    std::array<LegTorques, 2> torques;
+};
+
+std::vector<NodeMargins> node_margins(const Terrain& terrain, const WheelPath& path, const RobotModel& robot,
+                                      std::span<const Node> nodes, double friction);
+
+}  // namespace stairwright::smoothing

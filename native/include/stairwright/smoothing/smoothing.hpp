@@ -1,0 +1,48 @@
+// Smoothing: the trunk's poses along a fixed wheel path, by Levenberg-Marquardt on hinge residuals.
+//
+//   minimise  sum_k |r(body_k)|^2 + rate sum |d body|^2 + curvature sum |dd body|^2
+//
+// where r holds, per node, how far each margin is below its target, the pitch's distance from what it follows, and the
+// height's from the standing height.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "stairwright/smoothing/banded.hpp"
+#include "stairwright/smoothing/node_margins.hpp"
+
+namespace stairwright::smoothing {
+
+// A margin is drawn to its target with this weight; nothing draws it beyond.
+struct MarginTerm {
+    double target = 0.0, weight = 0.0;
+};
+
+struct Objective {
+    // CoM margins: at the friction there is, at the reserved friction, and where a wheel is late [m].
+    MarginTerm com, reserve, lagged;
+    MarginTerm trunk, links, legs;  // clearances [m]
+    MarginTerm joints;              // joint ranges [rad]
+    MarginTerm reach;               // hip-wheel distances [m]
+    double pitch_weight = 0.0;      // of pitch + slope_share * slope [1/rad]
+    double slope_share = 0.8;       // of the slope between the wheels that the pitch follows
+    double height_weight = 0.0;     // of the height above the wheels' mean [1/m]
+    double height = 0.0;            // m
+    Evenness evenness;
+};
+
+struct SmoothingProblem {
+    const Terrain& terrain;
+    const RobotModel& robot;
+    std::span<const WheelCentres> wheels;
+    std::span<const NodeIntervals> intervals;
+    std::vector<bool> fixed;  // nodes that must not move
+    Objective objective;
+};
+
+// Change `nodes` in place; returns the cost left. A node that has hardly moved since it was looked at is not looked at
+// again: its residuals are extrapolated. In most iterations few nodes move.
+double smooth(const SmoothingProblem& problem, std::span<Body> nodes, int iterations);
+
+}  // namespace stairwright::smoothing

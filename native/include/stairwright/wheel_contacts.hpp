@@ -1,0 +1,57 @@
+// Which faces a wheel touches at an arc length, and the CoM intervals that follow for two wheel pairs.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "stairwright/statics.hpp"
+#include "stairwright/wheel_path.hpp"
+
+namespace stairwright {
+
+inline constexpr double kGentleRays = 0.75;  // weights; ray strength that poses with reserve do with: no wheels that pinch
+inline constexpr double kStray = 0.005;      // m; how far a wheel may be from its place
+inline constexpr double kTouch = 0.0018;     // m; a wheel this near to a concave corner (by arc length) touches both faces
+
+// One or two contacts of a wheel.
+struct WheelContacts {
+    std::array<Contact, 2> at;
+    std::size_t count = 0;
+
+    std::span<const Contact> span() const { return {at.data(), count}; }
+};
+
+// Arc lengths of the front and the rear wheels.
+struct WheelPlaces {
+    double front = 0.0, rear = 0.0;
+
+    constexpr double operator[](int pair) const { return pair == kFront ? front : rear; }
+};
+
+WheelContacts wheel_contacts(const WheelPath& path, double s, double friction);
+
+// CoM interval with the wheels at `s`. A wheel between two faces pushes on either with friction, or on both without.
+// Friction on both could hold more: a motor that drives the wheel against the face ahead lifts the robot's nose. But
+// it takes all the grip of both at once, and robots whose plans counted on it tipped.
+Interval pair_interval(const WheelPath& path, WheelPlaces s, double friction, double ray_limit = kRayLimit);
+
+// The same with friction on both faces of a corner, as plans state their margins.
+Interval stated_interval(const WheelPath& path, WheelPlaces s, double friction);
+
+// CoM interval without pinching that also holds where a wheel on an edge strays by kStray: round an edge a few
+// millimetres tilt the face by a tenth of a radian. Empty where no CoM suits all cases.
+Interval steady_interval(const WheelPath& path, WheelPlaces s, double friction);
+
+// CoM interval that also holds if either wheel is `lag` behind its plan, or kStray ahead. A wheel that arrives late
+// at a corner pushes on the face behind it alone; plans that tolerate this are what a controller can follow. Empty
+// where no CoM suits all cases.
+Interval lagged_interval(const WheelPath& path, WheelPlaces s, double friction, double lag);
+
+// What the smoothing keeps the CoM within. Where one of the stricter two is empty the one before it stands in;
+// before that, less lag.
+struct NodeIntervals {
+    Interval full, reserve, lagged;
+};
+NodeIntervals node_intervals(const WheelPath& path, WheelPlaces s, double friction, double reserve, double lag);
+
+}  // namespace stairwright

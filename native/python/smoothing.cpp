@@ -1,0 +1,117 @@
+#include "stairwright/smoothing/refine.hpp"
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace stairwright::python {
+
+namespace {
+
+using smoothing::Node;
+using smoothing::NodeMargins;
+using smoothing::NodeSpacing;
+using smoothing::PathWeights;
+using smoothing::RefinedPath;
+using smoothing::RefineProblem;
+
+// Rows (s_front, s_rear, x, z, pitch).
+using Nodes = In<double, nb::shape<-1, 5>>;
+
+std::vector<Node> nodes(const Nodes& rows) {
+    std::vector<Node> out(rows.shape(0));
+    for (std::size_t k = 0; k < out.size(); ++k)
+        out[k] = {{rows(k, 0), rows(k, 1)}, {rows(k, 2), rows(k, 3), rows(k, 4)}};
+    return out;
+}
+
+// An array (n, ...) with what `read` writes of each node's margins.
+template <std::size_t Width, typename Read>
+nb::ndarray<nb::numpy, double> column(const std::vector<NodeMargins>& margins, std::initializer_list<std::size_t> shape, Read read) {
+    std::vector<double> out(Width * margins.size());
+    for (std::size_t k = 0; k < margins.size(); ++k) {
+        const std::array<double, Width> row = read(margins[k]);
+        std::copy(row.begin(), row.end(), out.begin() + static_cast<std::ptrdiff_t>(Width * k));
+    }
+    std::vector<std::size_t> full = {margins.size()};
+    full.insert(full.end(), shape);
+    auto owned = std::make_unique<std::vector<double>>(std::move(out));
+    double* data = owned->data();
+    nb::capsule owner(owned.release(), [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+    return {data, full.size(), full.data(), owner};
+}
+
+// The margins of all nodes by name, each an array over the nodes.
+nb::dict arrays(const std::vector<NodeMargins>& m) {
+    nb::dict out;
+    const auto scalar = [&](const char* name, auto read) {
+        out[name] = column<1>(m, {}, [&](const NodeMargins& n) { return std::array<double, 1>{read(n)}; });
+    };
+    out["q"] = column<4>(m, {4}, [](const NodeMargins& n) {
+        const auto& q = n.geometry.joints.q;
+        return std::array{q[0].thigh, q[0].calf, q[1].thigh, q[1].calf};
+    });
+    out["com"] = column<2>(m, {2}, [](const NodeMargins& n) { return std::array{n.geometry.posture.com.x, n.geometry.posture.com.z}; });
+    scalar("trunk_clearance", [](const NodeMargins& n) { return n.geometry.trunk; });
+    scalar("link_clearance", [](const NodeMargins& n) { return n.geometry.links; });
+    scalar("legs_distance", [](const NodeMargins& n) { return n.geometry.legs; });
+    scalar("joint_slack", [](const NodeMargins& n) { return n.geometry.joints.slack; });
+    scalar("com_margin", [](const NodeMargins& n) { return n.com; });
+    scalar("firm_com_margin", [](const NodeMargins& n) { return n.firm_com; });
+    scalar("friction_needed", [](const NodeMargins& n) { return n.friction_needed; });
+    out["forces"] = column<4>(m, {2, 2}, [](const NodeMargins& n) {
+        return std::array{n.forces[0].tangential, n.forces[0].normal, n.forces[1].tangential, n.forces[1].normal};
+    });
+    out["torques"] = column<6>(m, {2, 3}, [](const NodeMargins& n) {
+        const auto& [f, r] = n.torques;
+        return std::array{f.thigh, f.calf, f.wheel, r.thigh, r.calf, r.wheel};
+    });
+    return out;
+}
+
+nb::ndarray<nb::numpy, double> rows(const std::vector<Node>& path) {
+    std::vector<double> out;
+    out.reserve(5 * path.size());
+    for (const auto& [s, body] : path) out.insert(out.end(), {s.front, s.rear, body.x, body.z, body.pitch});
+    return give(std::move(out), {path.size(), 5});
+}
+
+RefinedPath run(const RefineProblem& problem, const Nodes& ends, const Nodes& poses, const NodeSpacing& spacing, std::size_t held) {
+    if (ends.shape(0) != 2 || poses.shape(0) < 2 || held < 1 || held > 20)
+        throw nb::value_error("a way needs two ends, two poses and 1 to 20 nodes held");
+    const std::vector<Node> given = nodes(poses), two = nodes(ends);
+    const nb::gil_scoped_release released;
+    return smoothing::refine(problem, {two[0], two[1]}, given, spacing, held);
+}
+
+}  // namespace
+
+void bind_smoothing(nb::module_& m) {
+    nb::class_<RobotModel>(m, "RobotModel").def(nb::init<const Robot&>());
+    nb::class_<PathWeights>(m, "PathWeights")
+        .def(nb::init<double, double, double, double, double>(), nb::arg("com_margin"), nb::arg("clearance"),
+             nb::arg("torque"), nb::arg("smoothness"), nb::arg("pitch"));
+    nb::class_<NodeSpacing>(m, "NodeSpacing")
+        .def(nb::init<double, double, double>(), nb::arg("softness"), nb::arg("spacing"), nb::arg("swing"));
+    nb::class_<RefineProblem>(m, "RefineProblem")
+        .def(nb::init<const Terrain&, const WheelPath&, const RobotModel&, double, double, double, double, PathWeights>(),
+             nb::arg("terrain"), nb::arg("path"), nb::arg("robot"), nb::arg("friction"), nb::arg("reserve"), nb::arg("lag"),
+             nb::arg("standing_height"), nb::arg("weights"), nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>())
+        .def("refine", [](const RefineProblem& problem, const Nodes& ends, const Nodes& poses, const NodeSpacing& spacing,
+                          std::size_t held) {
+            const RefinedPath found = run(problem, ends, poses, spacing, held);
+            return nb::make_tuple(rows(found.nodes), arrays(found.margins));
+        }, nb::arg("ends"), nb::arg("poses"), nb::arg("spacing"), nb::arg("held") = 1,
+           "Rows (s_front, s_rear, x, z, pitch) of the nodes, and their margins by name.")
+        .def("margins", [](const RefineProblem& p, const Nodes& path) {
+            return arrays(smoothing::node_margins(p.terrain, p.path, p.robot, nodes(path), p.friction));
+        }, nb::arg("nodes"));
+    m.def("firm_com_margins", [](const WheelPath& path, const In<double, nb::shape<-1, 2>>& s, const Vector& com_x, double friction) {
+        if (s.shape(0) != com_x.size()) throw nb::value_error("as many arc lengths as mass centres, please");
+        std::vector<double> out(com_x.size());
+        for (std::size_t k = 0; k < out.size(); ++k)
+            out[k] = com_margin(pair_interval(path, {s(k, 0), s(k, 1)}, friction), com_x(k));
+        return give(std::move(out));
+    }, "CoM margins (n,) with the wheels at `s` (n, 2), friction on one face of a corner only [m].");
+}
+
+}  // namespace stairwright::python

@@ -1,0 +1,144 @@
+#include "stairwright/wheel_contacts.hpp"
+
+#include <algorithm>
+
+namespace stairwright {
+
+namespace {
+
+// What a wheel between two faces leans on.
+enum Lean { kFirstFace = 0, kSecondFace = 1, kBothFaces = 2 };
+
+// Contacts of both wheel pairs that are counted together.
+struct Counted {
+    std::array<Contact, 4> at;
+    std::size_t count = 0;
+
+    void add(const Contact& contact) { at[count++] = contact; }
+    std::span<const Contact> span() const { return {at.data(), count}; }
+};
+
+// Friction is on the face that the wheel leans on; leaning on both it takes none.
+void add_leaning(Counted& out, const WheelContacts& wheel, int lean) {
+    for (std::size_t k = 0; k < wheel.count; ++k) {
+        if (lean != kBothFaces && lean != static_cast<int>(k)) continue;
+        Contact contact = wheel.at[k];
+        if (lean == kBothFaces) contact.friction = 0.0;
+        out.add(contact);
+    }
+}
+
+int leans(const WheelContacts& wheel) { return wheel.count == 1 ? 1 : 3; }
+
+// Whether the face tilts from `s` to `other`, both between the same two corners.
+bool tilts(const WheelPath& path, double s, double other) {
+    if (path.corner_from(std::min(s, other) - kTouch) != path.corner_from(std::max(s, other) + kTouch)) return false;
+    return dot(path.normal(s), path.normal(other)) < 1.0 - 1e-6;
+}
+
+enum Timing { kInTime = 0, kLate = 1, kLittleLate = 2, kAhead = 3 };
+
+// Contacts of a wheel that is not where it was planned.
+void add_strayed(Counted& out, const WheelPath& path, double s, double friction, int timing, double lag) {
+    if (timing == kInTime) {
+        for (const Contact& contact : wheel_contacts(path, s, friction).span()) out.add(contact);
+        return;
+    }
+    double other = timing == kLate ? s - lag : s - 0.3 * lag;
+    if (timing == kAhead) {
+        other = s + kStray;
+        const std::size_t k = path.corner_from(s);
+        if (k < path.corners().size() && path.corners()[k] < other) other = s;
+    }
+    // The straying wheel's normal at the planned centre: the direction decides.
+    const Vec2 centre = path.centre(s), normal = path.normal(other);
+    out.add({centre - path.radius() * normal, normal, friction});
+}
+
+}  // namespace
+
+WheelContacts wheel_contacts(const WheelPath& path, double s, double friction) {
+    const std::vector<double>& corners = path.corners();
+    const std::size_t k = path.corner_from(s), none = corners.size();
+    std::size_t near = none;
+    if (k < corners.size() && corners[k] - s <= kTouch) near = k;
+    if (k > 0 && s - corners[k - 1] <= kTouch && (near == none || s - corners[k - 1] < corners[k] - s)) near = k - 1;
+    const double r = path.radius();
+    if (near == none) {
+        const CurvePoint p = path.at(s);
+        return {{Contact{p.centre - r * p.normal, p.normal, friction}}, 1};
+    }
+    WheelContacts out{{}, 2};
+    for (int m = 0; m < 2; ++m) {
+        const CurvePoint p = path.at(corners[near] + (m == 0 ? -1e-7 : 1e-7));
+        out.at[m] = {p.centre - r * p.normal, p.normal, friction};
+    }
+    return out;
+}
+
+Interval pair_interval(const WheelPath& path, WheelPlaces s, double friction, double ray_limit) {
+    const WheelContacts front = wheel_contacts(path, s.front, friction), rear = wheel_contacts(path, s.rear, friction);
+    Interval out;
+    for (int i = 0; i < leans(front); ++i) {
+        for (int j = 0; j < leans(rear); ++j) {
+            Counted counted;
+            add_leaning(counted, front, i);
+            add_leaning(counted, rear, j);
+            out = out.join(com_interval(counted.span(), ray_limit));
+        }
+    }
+    return out;
+}
+
+Interval stated_interval(const WheelPath& path, WheelPlaces s, double friction) {
+    Counted counted;
+    for (const double at : {s.front, s.rear})
+        for (const Contact& contact : wheel_contacts(path, at, friction).span()) counted.add(contact);
+    return com_interval(counted.span());
+}
+
+Interval steady_interval(const WheelPath& path, WheelPlaces s, double friction) {
+    Interval out = pair_interval(path, s, friction, kGentleRays);
+    for (const int pair : {kFront, kRear}) {
+        for (const double stray : {kStray, -kStray}) {
+            if (out.empty() || !tilts(path, s[pair], s[pair] + stray)) continue;
+            WheelPlaces other = s;
+            (pair == kFront ? other.front : other.rear) += stray;
+            out = out.intersect(pair_interval(path, other, friction, kGentleRays));
+        }
+    }
+    return out;
+}
+
+Interval lagged_interval(const WheelPath& path, WheelPlaces s, double friction, double lag) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Interval out{-infinity, infinity};
+    for (int a = kInTime; a <= kAhead; ++a) {
+        for (int b = kInTime; b <= kAhead; ++b) {
+            if (std::max(a, b) == kAhead && a + b > kAhead) continue;  // ahead while the other is not in time: too much to ask
+            Counted counted;
+            add_strayed(counted, path, s.front, friction, a, lag);
+            add_strayed(counted, path, s.rear, friction, b, lag);
+            out = out.intersect(com_interval(counted.span(), kGentleRays));
+            if (out.empty()) return out;
+        }
+    }
+    return out;
+}
+
+NodeIntervals node_intervals(const WheelPath& path, WheelPlaces s, double friction, double reserve, double lag) {
+    NodeIntervals out;
+    out.full = pair_interval(path, s, friction);
+    if (out.full.empty()) {
+        const double middle = 0.5 * (path.centre(s.front).x + path.centre(s.rear).x);
+        out.full = {middle + 0.05, middle - 0.05};
+    }
+    out.reserve = pair_interval(path, s, reserve, kGentleRays);
+    if (out.reserve.empty()) out.reserve = out.full;
+    out.lagged = lagged_interval(path, s, friction, lag);
+    if (out.lagged.empty()) out.lagged = lagged_interval(path, s, friction, 0.3 * lag);
+    if (out.lagged.empty()) out.lagged = out.reserve;
+    return out;
+}
+
+}  // namespace stairwright
