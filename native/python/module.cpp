@@ -1,8 +1,12 @@
 // The Python module stairwright._core: one bind_* function a family.
 #include "bindings.hpp"
 
+namespace nb = nanobind;
+
 NB_MODULE(_core, m) {
     using namespace stairwright::python;
+    // Objects that live as long as the process (caches) are no leaks.
+    nb::set_leak_warnings(false);
     m.doc() = "Stairwright's native core; see native/include/stairwright for what it is made of.";
     bind_robot(m);
     bind_terrain(m);

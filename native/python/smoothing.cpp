@@ -1,12 +1,19 @@
 #include "stairwright/smoothing/refine.hpp"
 
+#include <nanobind/stl/pair.h>
+
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "stairwright/smoothing/densify.hpp"
+#include "stairwright/smoothing/smoothing.hpp"
 
 namespace stairwright::python {
 
 namespace {
 
+using smoothing::BandMatrix;
+using smoothing::Evenness;
+using smoothing::kBand;
 using smoothing::Node;
 using smoothing::NodeMargins;
 using smoothing::NodeSpacing;
@@ -40,9 +47,11 @@ nb::ndarray<nb::numpy, double> column(const std::vector<NodeMargins>& margins, s
     return {data, full.size(), full.data(), owner};
 }
 
+using Arrays = nb::typed<nb::dict, nb::str, nb::ndarray<nb::numpy, double>>;
+
 // The margins of all nodes by name, each an array over the nodes.
-nb::dict arrays(const std::vector<NodeMargins>& m) {
-    nb::dict out;
+Arrays arrays(const std::vector<NodeMargins>& m) {
+    Arrays out;
     const auto scalar = [&](const char* name, auto read) {
         out[name] = column<1>(m, {}, [&](const NodeMargins& n) { return std::array<double, 1>{read(n)}; });
     };
@@ -75,6 +84,12 @@ nb::ndarray<nb::numpy, double> rows(const std::vector<Node>& path) {
     return give(std::move(out), {path.size(), 5});
 }
 
+nb::ndarray<nb::numpy, double> rows(const BandMatrix& h) {
+    std::vector<double> out;
+    for (const auto& row : h) out.insert(out.end(), row.begin(), row.end());
+    return give(std::move(out), {h.size(), kBand + 1});
+}
+
 RefinedPath run(const RefineProblem& problem, const Nodes& ends, const Nodes& poses, const NodeSpacing& spacing, std::size_t held) {
     if (ends.shape(0) != 2 || poses.shape(0) < 2 || held < 1 || held > 20)
         throw nb::value_error("a way needs two ends, two poses and 1 to 20 nodes held");
@@ -99,12 +114,45 @@ void bind_smoothing(nb::module_& m) {
         .def("refine", [](const RefineProblem& problem, const Nodes& ends, const Nodes& poses, const NodeSpacing& spacing,
                           std::size_t held) {
             const RefinedPath found = run(problem, ends, poses, spacing, held);
-            return nb::make_tuple(rows(found.nodes), arrays(found.margins));
+            return std::pair(rows(found.nodes), arrays(found.margins));
         }, nb::arg("ends"), nb::arg("poses"), nb::arg("spacing"), nb::arg("held") = 1,
            "Rows (s_front, s_rear, x, z, pitch) of the nodes, and their margins by name.")
         .def("margins", [](const RefineProblem& p, const Nodes& path) {
             return arrays(smoothing::node_margins(p.terrain, p.path, p.robot, nodes(path), p.friction));
         }, nb::arg("nodes"));
+    nb::class_<Evenness>(m, "Evenness")
+        .def(nb::init<double, double, double>(), nb::arg("rate"), nb::arg("curvature"), nb::arg("lever"))
+        .def("cost", [](const Evenness& self, const In<double, nb::shape<-1, 3>>& nodes) {
+            std::vector<Body> bodies(nodes.shape(0));
+            for (std::size_t k = 0; k < bodies.size(); ++k) bodies[k] = {nodes(k, 0), nodes(k, 1), nodes(k, 2)};
+            std::vector<double> gradient(3 * bodies.size());
+            const double cost = self.cost(bodies, gradient);
+            return std::pair(cost, give(std::move(gradient)));
+        }, nb::arg("nodes"), "The cost, and half its gradient.")
+        .def("hessian", [](const Evenness& self, std::size_t n) { return rows(self.hessian(n)); }, nb::arg("n"),
+             "Half the second derivatives: rows i with H[i, i + k].");
+    m.def("solve_banded", [](const In<double, nb::shape<-1, kBand + 1>>& h, const Vector& b) {
+        if (h.shape(0) != b.size()) throw nb::value_error("as many rows as right-hand sides, please");
+        BandMatrix matrix(b.size() + kBand);
+        for (std::size_t i = 0; i < b.size(); ++i)
+            for (int k = 0; k <= kBand; ++k) matrix[i][k] = h(i, k);
+        std::vector<double> x(b.data(), b.data() + b.size());
+        x.resize(b.size() + kBand);
+        smoothing::solve_banded(matrix, x);
+        x.resize(b.size());
+        return give(std::move(x));
+    }, "Solve H x = b for rows i with H[i, i + k].");
+    m.def("contact_changes", [](const WheelPath& path, const Nodes& given) {
+        return give(smoothing::contact_changes(path, nodes(given)));
+    }, "Where contacts change between nodes, as fractional node numbers.");
+    m.def("intervals_along", [](const WheelPath& path, const Nodes& given, double friction, double reserve, double lag) {
+        const std::vector<Node> path_nodes = nodes(given);
+        const std::vector<double> changes = smoothing::contact_changes(path, path_nodes);
+        std::vector<double> out;
+        for (const NodeIntervals& n : smoothing::intervals_along(path, path_nodes, changes, friction, reserve, lag))
+            for (const Interval& i : {n.full, n.reserve, n.lagged}) out.insert(out.end(), {i.lower, i.upper});
+        return give(std::move(out), {path_nodes.size(), 6});
+    }, "CoM intervals (n, 6) that the smoothing keeps: at friction, at the reserve, with lag.");
     m.def("firm_com_margins", [](const WheelPath& path, const In<double, nb::shape<-1, 2>>& s, const Vector& com_x, double friction) {
         if (s.shape(0) != com_x.size()) throw nb::value_error("as many arc lengths as mass centres, please");
         std::vector<double> out(com_x.size());

@@ -45,8 +45,8 @@ void bind_terrain(nb::module_& m) {
         .def("__init__", [](WheelPath* self, const Points& v, double radius) { new (self) WheelPath(points(v), radius); })
         .def_prop_ro("radius", &WheelPath::radius)
         .def_prop_ro("length", &WheelPath::length)
-        .def_prop_ro("pieces", &pieces)
-        .def_prop_ro("corners", [](const WheelPath& path) { return give(std::vector<double>(path.corners())); })
+        .def_prop_ro("pieces", &pieces, nb::rv_policy::automatic)
+        .def_prop_ro("corners", [](const WheelPath& path) { return give(std::vector<double>(path.corners())); }, nb::rv_policy::automatic)
         .def("sample", &sample)
         .def("project", [](const WheelPath& path, double x, double z, double lower, double upper) {
             return path.project({x, z}, lower, upper);

@@ -22,7 +22,7 @@ std::vector<Piece> offset_pieces(const std::vector<Vec2>& p, double r) {
     Vec2 before;  // direction of the segment before
     for (std::size_t i = 0; i + 1 < p.size(); ++i) {
         const Vec2 d = p[i + 1] - p[i];
-        const double length = norm(d);
+        const double length = std::hypot(d.x, d.z);  // exact along an axis, unlike norm()
         const Vec2 t = {d.x / length, d.z / length};
         double turn = i > 0 ? std::atan2(cross(before, t), dot(before, t)) : 0.0;
         if (std::abs(std::abs(turn) - pi) < 1e-9) turn = -pi;  // the tip of a zero-width spike (slits are closed beforehand)
@@ -51,7 +51,7 @@ int crossings(const Piece& a, const Piece& b, double r, std::array<Vec2, 2>& out
     }
     if (a.arc && b.arc) {
         const Vec2 d = b.origin - a.origin;
-        const double gap = norm(d);
+        const double gap = std::hypot(d.x, d.z);
         if (gap < 1e-12 || gap >= 2 * r) return 0;
         const double h = std::sqrt(r * r - gap * gap / 4);
         for (int k = 0; k < 2; ++k) {

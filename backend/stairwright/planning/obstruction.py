@@ -17,8 +17,8 @@ from functools import cache, partial
 import numpy as np
 
 from .path.lattice import PLAIN
+from .path.node_margins import Motor
 from .path.pieces import pieces
-from .path.record import Motor
 from .path.search import Place
 from .path.solve import Blocked, Course, Solved, Way
 from .plan import Limit, Problem
@@ -258,9 +258,7 @@ def _torque(course: Course, motor: Motor) -> Cause | None:
     strong = candidate.change(course, candidate.limit).quick()
     if isinstance(strong, Blocked):
         return None
-    record = strong.nodes.record
-    used = float((record.torque if motor == "leg" else record.wheel_torque).max())
-    ratio = 1.001 * used / candidate.available
+    ratio = 1.001 * strong.nodes.margins.torque_share(motor) * candidate.most
     return (candidate, ratio) if ratio > 1.0 and candidate.solves(course, ratio) else None
 
 

@@ -13,8 +13,8 @@ from stairwright.terrain.profile import Terrain
 
 from .path.course import NoStand
 from .path.lattice import BOLD
+from .path.node_margins import Motor
 from .path.pieces import pieces
-from .path.record import Motor
 from .path.search import Place
 from .path.solve import Blocked, Course, Solved, pose_course
 from .path.tables import Bounds

@@ -11,6 +11,8 @@ import math
 from functools import cached_property
 from typing import Annotated, Literal, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import AfterValidator, Field, model_validator
 
 from stairwright import _core
@@ -197,6 +199,12 @@ class Robot(Model):
     def mass(self) -> float:
         """Total mass [kg]."""
         return self.trunk.mass + 4 * (self.thigh.mass + self.calf.mass + self.wheel.mass)
+
+    @cached_property
+    def torque_limits(self) -> NDArray[np.float64]:
+        """(2, 3) front and rear: peak torque of thigh, calf and wheel motors [Nm]."""
+        leg, wheel = self.actuators.leg.torque, self.actuators.wheel.torque
+        return np.array([[leg, leg, wheel]] * 2)
 
     @cached_property
     def native(self) -> _core.Robot:

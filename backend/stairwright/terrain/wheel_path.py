@@ -10,7 +10,6 @@ tangent (a, b), or an arc (kind 1) round the corner (x, z) that starts at angle 
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
 
@@ -18,6 +17,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright import _core
 from stairwright.compiled import leaf
 from stairwright.errors import InputError
 
@@ -26,8 +26,6 @@ from .profile import Terrain
 Floats = NDArray[np.float64]
 
 LINE, ARC = 0.0, 1.0
-_SHORTEST = 1e-9  # m; shorter pieces are dropped
-_KINK = 1e-3  # rad; a larger jump of the normal towards the wheel is a concave corner
 
 
 @dataclass(frozen=True)
@@ -39,12 +37,14 @@ class WheelPath:
         pieces: (m, 7) lines and arcs, see the module's text.
         corners: (k,) arc lengths of concave corners, where the wheel touches two faces.
         vertices: (n, 2) the profile that it was made from.
+        native: The same curve in the native core.
     """
 
     radius: float
     pieces: Floats
     corners: Floats
     vertices: Floats
+    native: _core.WheelPath
 
     @property
     def length(self) -> float:
@@ -89,44 +89,11 @@ def wheel_path(terrain: Terrain, radius: float) -> WheelPath:
         InputError: If the profile is too short to hold a wheel.
     """
     vertices = np.ascontiguousarray(terrain.vertices)
-    pieces = _trim(_raw_pieces(vertices, radius), vertices, radius)
-    if len(pieces) == 0:
-        raise InputError("the profile is too short for the wheel", ("points",))
-    return WheelPath(radius, pieces, _concave_corners(pieces, radius), vertices)
-
-
-@nb.njit(cache=True)
-def _raw_pieces(p: Floats, r: float) -> Floats:
-    """Offset segments and the arcs between them, untrimmed; their arc lengths are still 0."""
-    out = np.zeros((2 * len(p), 7))
-    count, ux, uz = 0, 0.0, 0.0  # direction of the segment before
-    for i in range(len(p) - 1):
-        ax, az = p[i, 0], p[i, 1]
-        length = math.hypot(p[i + 1, 0] - ax, p[i + 1, 1] - az)
-        tx, tz = (p[i + 1, 0] - ax) / length, (p[i + 1, 1] - az) / length
-        turn = math.atan2(ux * tz - uz * tx, ux * tx + uz * tz) if i > 0 else 0.0
-        if abs(abs(turn) - math.pi) < 1e-9:
-            turn = -math.pi  # the tip of a zero-width spike (slits are closed beforehand)
-        if turn < -1e-12:
-            out[count, 0], out[count, 2] = ARC, -turn * r
-            out[count, 3], out[count, 4], out[count, 5] = ax, az, math.atan2(ux, -uz)
-            count += 1
-        out[count, 0], out[count, 2] = LINE, length
-        out[count, 3], out[count, 4] = ax - r * tz, az + r * tx
-        out[count, 5], out[count, 6] = tx, tz
-        count += 1
-        ux, uz = tx, tz
-    return out[:count].copy()
-
-
-def _concave_corners(pieces: Floats, r: float) -> Floats:
-    found = []
-    for before, after in itertools.pairwise(pieces):
-        _, _, ax, az = piece_at(before, r, before[2])
-        _, _, bx, bz = piece_at(after, r, 0.0)
-        if ax * bz - az * bx > _KINK:  # the normal jumps anticlockwise: a dent
-            found.append(after[1])
-    return np.array(found, dtype=float)
+    try:
+        native = _core.WheelPath(vertices, radius)
+    except ValueError as error:
+        raise InputError(str(error), ("points",)) from None
+    return WheelPath(radius, native.pieces, native.corners, vertices, native)
 
 
 @leaf
@@ -214,100 +181,3 @@ def ground_height(p: Floats, x: float) -> float:
             else:
                 best = max(best, p[i, 1] + (p[i + 1, 1] - p[i, 1]) * (x - p[i, 0]) / width)
     return best
-
-
-@leaf
-def _bounds(piece: Floats, r: float) -> tuple[float, float]:
-    if piece[0] == 1.0:
-        return piece[3] - r, piece[3] + r
-    end = piece[3] + piece[2] * piece[5]
-    return min(piece[3], end), max(piece[3], end)
-
-
-@leaf
-def _crossings(a: Floats, b: Floats, r: float, out: Floats) -> int:
-    """Intersections of the full line or circle of `a` with those of `b`; returns their number."""
-    if a[0] == 0.0 and b[0] == 0.0:
-        det = a[5] * b[6] - a[6] * b[5]
-        if abs(det) < 1e-12:
-            return 0
-        u = ((b[3] - a[3]) * b[6] - (b[4] - a[4]) * b[5]) / det
-        out[0, 0], out[0, 1] = a[3] + u * a[5], a[4] + u * a[6]
-        return 1
-    if a[0] == 1.0 and b[0] == 1.0:
-        dx, dz = b[3] - a[3], b[4] - a[4]
-        gap = math.hypot(dx, dz)
-        if gap < 1e-12 or gap >= 2 * r:
-            return 0
-        h = math.sqrt(r * r - gap * gap / 4)
-        for k in range(2):
-            side = h if k == 0 else -h
-            out[k, 0] = (a[3] + b[3]) / 2 - side * dz / gap
-            out[k, 1] = (a[4] + b[4]) / 2 + side * dx / gap
-        return 2
-    line, arc = (a, b) if a[0] == 0.0 else (b, a)
-    ox, oz = line[3] - arc[3], line[4] - arc[4]
-    along = ox * line[5] + oz * line[6]
-    disc = along * along - (ox * ox + oz * oz - r * r)
-    if disc <= 0:
-        return 0
-    for k in range(2):
-        u = -along + (math.sqrt(disc) if k == 0 else -math.sqrt(disc))
-        out[k, 0], out[k, 1] = line[3] + u * line[5], line[4] + u * line[6]
-    return 2
-
-
-@nb.njit(cache=True)
-def _trim(raw: Floats, p: Floats, r: float) -> Floats:
-    """Cut every raw piece at every crossing; keep the parts that are `r` away from the terrain."""
-    n = len(raw)
-    lo, hi = np.empty(n), np.empty(n)
-    for i in range(n):
-        lo[i], hi[i] = _bounds(raw[i], r)
-    # Raw order follows x up to the wheel's diameter: a running maximum bounds the search.
-    reach, ahead = hi.copy(), lo.copy()
-    for i in range(1, n):
-        reach[i] = max(reach[i], reach[i - 1])
-    for i in range(n - 2, -1, -1):
-        ahead[i] = min(ahead[i], ahead[i + 1])
-    out = np.empty((4 * n + 8, 7))
-    count, s = 0, 0.0
-    points = np.empty((2, 2))
-    cuts = np.empty(4 * n + 2)
-    for i in range(n):
-        cuts[0], cuts[1], k = 0.0, raw[i, 2], 2
-        for j in range(int(np.searchsorted(reach, lo[i] - 1e-9)), n):
-            if ahead[j] > hi[i] + 1e-9:
-                break
-            if j == i or lo[j] > hi[i] + 1e-9 or hi[j] < lo[i] - 1e-9:
-                continue
-            for m in range(_crossings(raw[i], raw[j], r, points)):
-                u = parameter(raw[i], r, points[m, 0], points[m, 1])
-                v = parameter(raw[j], r, points[m, 0], points[m, 1])
-                if _SHORTEST < u < raw[i, 2] - _SHORTEST and -1e-9 <= v <= raw[j, 2] + 1e-9:
-                    cuts[k] = u
-                    k += 1
-        order = np.sort(cuts[:k])
-        begin = -1.0
-        for m in range(k):
-            kept = False
-            if m + 1 < k and order[m + 1] - order[m] > _SHORTEST:
-                x, z, _, _ = piece_at(raw[i], r, 0.5 * (order[m] + order[m + 1]))
-                near = distance_to_profile(p, x, z, r + 1e-6)
-                kept = near > r - 1e-7 and z > ground_height(p, x)
-            elif m + 1 < k:
-                continue
-            if kept and begin < 0:
-                begin = order[m]
-            elif not kept and begin >= 0:
-                x, z, _, _ = piece_at(raw[i], r, begin)
-                out[count] = raw[i]
-                out[count, 1], out[count, 2] = s, order[m] - begin
-                if raw[i, 0] == 0.0:
-                    out[count, 3], out[count, 4] = x, z
-                else:
-                    out[count, 5] = raw[i, 5] - begin / r
-                s += order[m] - begin
-                count += 1
-                begin = -1.0
-    return out[:count].copy()

@@ -9,7 +9,6 @@ from stairwright.library import load_robot
 from stairwright.planning.path import mend as repair
 from stairwright.planning.path.lattice import BOLD
 from stairwright.planning.path.mend import STAGES, mend
-from stairwright.planning.path.record import evaluate_path
 from stairwright.planning.path.refine import Refined, refine
 from stairwright.planning.path.solve import Course, Rung, Solved, pose_course
 from stairwright.planning.planner import plan
@@ -37,7 +36,7 @@ def flight(direction, robot: str, friction: float, rise=0.18, run=0.28) -> Cours
 )
 def test_a_path_that_the_polish_leaves_bad_is_mended(direction, rise, run, friction):
     course = flight(direction, "a1_wheeled", friction, rise, run)
-    assert polished(course).record.worst < -0.005
+    assert polished(course).margins.worst < -0.005
     answer = course.attempt(Rung(1.7, BOLD))
     assert isinstance(answer, Solved)
     assert answer.certificate.passed
@@ -47,9 +46,9 @@ def test_only_pieces_round_bad_places_change():
     """Their ends stay, wheels never roll back, and the record is that of the whole path."""
     course = flight("down", "a1_wheeled", 0.6)
     found = polished(course)
-    bad = found.record.bad
+    bad = found.margins.bad
     mended = mend(course, found, bad, STAGES[1])
-    assert len(mended.record.bad) < len(bad)
+    assert len(mended.margins.bad) < len(bad)
     same = (mended.s[:, None] == found.s).all(axis=2) & (mended.body[:, None] == found.body).all(
         axis=2
     )
@@ -60,11 +59,9 @@ def test_only_pieces_round_bad_places_change():
     assert not kept[bad].any()
     assert kept[[0, -1]].all()
     assert (np.diff(mended.s, axis=0) >= 0.0).all()
-    whole = evaluate_path(
-        course.path, course.ground, course.robot, course.legs, mended.s, mended.body, 0.6
-    )
-    assert np.array_equal(whole.poses, mended.record.poses)
-    assert np.array_equal(whole.com, mended.record.com)
+    whole = course.refine_problem.margins(np.hstack([mended.s, mended.body]))
+    assert np.array_equal(whole["q"], mended.margins.q)
+    assert np.array_equal(whole["com_margin"], mended.margins.com_margin)
 
 
 def test_pieces_of_neighbours_do_not_overlap(monkeypatch):

@@ -7,11 +7,9 @@ import pytest
 import shapely
 
 import stairwright as sw
+from stairwright import _core
 from stairwright.planning.certificate import certify
-from stairwright.planning.path import refine
-from stairwright.planning.path.contacts import path_intervals
-from stairwright.planning.path.densify import contact_changes
-from stairwright.planning.path.lattice import LAG
+from stairwright.planning.path.question import LAG
 from stairwright.robot import kinematics as kin
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
@@ -253,15 +251,16 @@ def test_what_changes_between_two_nodes_is_kept_at_both(robot):
     """Contacts change where no node lies; the CoM keeps what holds there too."""
     path = wheel_path(terrain(STAIR), sw.load_robot(robot).wheel.radius)
     s = np.stack([np.linspace(0.6, path.length - 0.2, 90), np.linspace(0.1, 1.6, 90)], axis=1)
-    at = contact_changes(path.pieces, path.corners, s)
-    spans = refine._intervals(path, s, at, 0.6, 0.5)
+    nodes = np.hstack([s, np.zeros((90, 3))])
+    at = _core.contact_changes(path.native, nodes)
+    spans = _core.intervals_along(path.native, nodes, 0.6, 0.5, LAG)
     assert len(at) > 4
-    between = np.stack([np.interp(at, np.arange(90), s[:, k]) for k in range(2)], axis=1)
-    there = np.empty((len(at), 6))
-    path_intervals(path.pieces, path.corners, path.radius, between, 0.6, 0.5, LAG, there)
-    for k in (np.floor(at).astype(int), np.ceil(at).astype(int)):
-        assert np.all(spans[k, ::2] >= there[:, ::2])
-        assert np.all(spans[k, 1::2] <= there[:, 1::2])
+    for place in at:
+        between = np.array([np.interp(place, np.arange(90), column) for column in nodes.T])
+        (there,) = _core.intervals_along(path.native, between[None], 0.6, 0.5, LAG)
+        for k in (int(np.floor(place)), int(np.ceil(place))):
+            assert np.all(spans[k, ::2] >= there[::2])
+            assert np.all(spans[k, 1::2] <= there[1::2])
 
 
 def test_same_question_same_answer():

@@ -15,7 +15,6 @@ from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath
 
 from .course import CORNER, kink
-from .legs import COM_X, COM_Z
 from .refine import Refined
 from .timing import path_parameter, pose_times
 
@@ -26,18 +25,18 @@ def make_poses(
     path: WheelPath, robot: Robot, found: Refined, weights: PathWeights
 ) -> tuple[list[Pose], list[int], float]:
     """Poses, indices of the key poses, and the duration [s]."""
-    s, body, r = found.s, found.body, found.record
-    q = r.poses[:, :4]
-    time = pose_times(robot, s, body, q, r.firm, weights.speed)
+    s, body, m = found.s, found.body, found.margins
+    q = m.q
+    time = pose_times(robot, s, body, q, m.firm_com_margin, weights.speed)
     progress = path_parameter(s, body)
     wheels = np.stack([path.centres(s[:, k]) for k in range(2)], axis=1)
     contacts = np.stack([path.contacts(s[:, k]) for k in range(2)], axis=1)
     points = kin.collision_points(robot, body[:, 0], body[:, 1], body[:, 2], q)
-    com = r.poses[:, [COM_X, COM_Z]]
-    margins = np.stack([r.clearance, r.com, r.friction - r.need, r.leg_limit - r.torque], axis=1)
+    spare = (m.clearance, m.com_margin, m.friction - m.friction_needed, m.torque_margin("leg"))
     columns = (
         progress.tolist(), time.tolist(), *body.T.tolist(), _tuples(q), _pairs(wheels), _tuples(s),
-        _pairs(contacts), _tuples(com), _groups(points), _pairs(r.forces), *margins.T.tolist(),
+        _pairs(contacts), _tuples(m.com), _groups(points), _pairs(m.forces),
+        *(one.tolist() for one in spare),
     )  # fmt: skip
     poses = [
         # The values are ours: validating thousands of floats would cost more than planning them.
@@ -51,12 +50,12 @@ def make_poses(
             wheels=w,
             wheel_progress=sw,
             contacts=c,
-            com=m,
+            com=centre,
             collision_points=cp,
             forces=f,
             margins=Margins.trusted(clearance=clear, com=tip, friction=slip, torque=load),
         )
-        for u, t, x, z, pitch, j, w, sw, c, m, cp, f, clear, tip, slip, load in zip(
+        for u, t, x, z, pitch, j, w, sw, c, centre, cp, f, clear, tip, slip, load in zip(
             *columns, strict=True
         )
     ]

@@ -16,7 +16,6 @@ from .words import WORD
 
 Floats = NDArray[np.float64]
 
-LAG = 0.02  # m; how late a wheel may arrive at a corner
 _PITCHES = 1.9  # rad; largest pitch searched: the trunk may lean back past vertical
 
 # What lattice poses keep: a little more than the final bounds (strict); as much less as rounding to

@@ -17,7 +17,7 @@ from stairwright.planning.threads import still_wanted
 from .course import rolled, scale
 from .lattice import BOLD, make_lattice
 from .question import Question
-from .refine import Grain, Refined, concatenated, refine
+from .refine import NodeSpacing, Refined, concatenated, refine
 from .search import Search
 
 Floats = NDArray[np.float64]
@@ -46,7 +46,7 @@ class Stage(NamedTuple):
 STAGES = (Stage(0.1, None, depth=0.008), Stage(0.15, 1.25), Stage(0.25, 1.0, places=1, longest=0.9))
 _BLEND = 0.08  # m on either side of that, which are polished with it
 _HELD = 3  # nodes at the ends of a piece stay, so that it meets the path without a kink
-_GRAINS = (Grain(0.5, 0.006, 0.6), Grain(0.15, 0.006, 0.6))
+_SPACINGS = (NodeSpacing(0.5, 0.006, 0.6), NodeSpacing(0.15, 0.006, 0.6))
 
 
 def mend(q: Question, found: Refined, bad: Ints, stage: Stage) -> Refined:
@@ -60,7 +60,7 @@ def mend(q: Question, found: Refined, bad: Ints, stage: Stage) -> Refined:
         still_wanted()
         inner = _nodes(u, low - width, high + width)
         begin, end = _nodes(u, low - width - blend, high + width + blend)
-        deep = found.record.room[begin : end + 1].min() < -stage.depth
+        deep = found.margins.least_slack[begin : end + 1].min() < -stage.depth
         if deep or high - low > stage.longest * size:
             continue
         begin, inner = max(begin, last), (max(inner[0], last), inner[1])
@@ -114,10 +114,10 @@ def _polished(q: Question, old: Refined, way: tuple[Floats, Floats]) -> Refined 
     """The way as nodes, if they are better than the `old` ones."""
     ends = (old.stand(0), old.stand(-1))
     pieces = []
-    for grain in _GRAINS:
+    for spacing in _SPACINGS:
         still_wanted()
-        pieces.append(refine(q, ends, *way, grain, _HELD))
-        if not len(pieces[-1].record.bad):
+        pieces.append(refine(q, ends, *way, spacing, _HELD))
+        if not len(pieces[-1].margins.bad):
             return pieces[-1]
-    best = max(pieces, key=lambda one: one.record.worst)
-    return best if best.record.worst > old.record.worst else None
+    best = max(pieces, key=lambda one: one.margins.worst)
+    return best if best.margins.worst > old.margins.worst else None

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
+from stairwright import _core
 from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath
 
-from .course import Stand
+from .course import Stand, stand_height
 from .ground import Ground
 from .legs import Leg, make_legs
 
 _RESERVE = 0.1  # friction that a plan does without where the terrain allows it
+LAG = 0.02  # m; how late a wheel may arrive at a corner
 
 
 @dataclass
@@ -32,6 +35,21 @@ class Question:
     def reserve(self) -> float:
         """The lower friction at which poses shall still hold where that is possible."""
         return self.friction - min(_RESERVE, 0.25 * self.friction)
+
+    @cached_property
+    def refine_problem(self) -> _core.RefineProblem:
+        """What the native core needs for smoothing."""
+        w = self.weights
+        return _core.RefineProblem(
+            _core.Terrain(self.path.vertices),
+            self.path.native,
+            _core.RobotModel(self.robot.native),
+            self.friction,
+            self.reserve,
+            LAG,
+            stand_height(self.robot),
+            _core.PathWeights(w.com_margin, w.clearance, w.torque, w.smoothness, w.pitch),
+        )
 
     @property
     def legs(self) -> tuple[Leg, Leg]:

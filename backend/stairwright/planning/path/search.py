@@ -21,9 +21,9 @@ from .cheapest import cheapest, trace
 from .course import Stand, sample_course, scale, stand_height
 from .ends import anywhere, arrival, cheapest_pose, near, pose_in, widest_pose
 from .flood import flood
-from .lattice import LAG, Finding
+from .lattice import Finding
 from .legs import LEGS_GAP, Leg, farthest_apart
-from .question import Question
+from .question import LAG, Question
 from .tables import (
     Bounds,
     Floats32,

@@ -22,9 +22,9 @@ from .course import Stand, find_stands
 from .ground import make_ground
 from .lattice import BOLD, HOPE, KEEN, STRICT, Finding
 from .mend import STAGES, mend
+from .node_margins import Motor
 from .pieces import Piece, passes, pieces, stops
 from .question import Question
-from .record import Motor
 from .refine import Refined, refine
 from .search import Place
 from .tables import Bounds
@@ -69,7 +69,7 @@ class Solved:
     @property
     def margin(self) -> float:
         """Thinnest margin of the CoM [m]."""
-        return float(self.nodes.record.firm.min())
+        return float(self.nodes.margins.firm_com_margin.min())
 
     @property
     def bad(self) -> Ints:
@@ -220,8 +220,8 @@ class Course(Question):
             return ([], [], 0.0), finding.reached
         last = Stand((float(finding.s[-1, 0]), float(finding.s[-1, 1])), finding.body[-1])
         found = refine(self, (self.stands[0], last), finding.s, finding.body)
-        found = mend(self, found, found.record.bad, STAGES[0])
-        bad = np.flatnonzero(found.record.room < 0.0)
+        found = mend(self, found, found.margins.bad, STAGES[0])
+        bad = np.flatnonzero(found.margins.least_slack < 0.0)
         if len(bad):
             found = found.part(0, int(bad[0]))
         if len(found.s) < 2:
@@ -238,22 +238,22 @@ class Course(Question):
         for stage in (*STAGES, None):
             still_wanted()
             if found is not judged:
-                judged, bad = found, found.record.bad
-                if found.record.worst >= 0.0:
+                judged, bad = found, found.margins.bad
+                if found.margins.worst >= 0.0:
                     solved = self._certified(found)
                     if solved.certificate.passed:
                         return solved
                     bad = solved.bad
             if stage is not None:
                 found = mend(self, found, bad, stage)
-        worst = found.s[int(found.record.room.argmin())]
-        return Blocked((float(worst[0]), float(worst[1])), True, found.record.weak)
+        worst = found.s[int(found.margins.least_slack.argmin())]
+        return Blocked((float(worst[0]), float(worst[1])), True, found.margins.overloaded)
 
     def _certified(self, nodes: Refined) -> Solved:
         """The path with its certificate, passed or not."""
         motion = Motion(
             self.terrain.vertices, self.robot, self.friction, nodes.body,
-            nodes.record.poses[:, :4], path_parameter(nodes.s, nodes.body),
+            nodes.margins.q, path_parameter(nodes.s, nodes.body),
         )  # fmt: skip
         return Solved(nodes, judge(motion))
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright import _core
 from stairwright.planning.plan import Plan
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.statics.contact import GRAVITY
 from stairwright.terrain.wheel_path import wheel_path
 
-from .contacts import firm_margins
 from .course import rolled
 
 Floats = NDArray[np.float64]
@@ -86,7 +86,7 @@ def retimed(plan: Plan, speed: float) -> Plan:
     q = np.array([pose.q for pose in plan.poses])
     com_x = np.array([pose.com[0] for pose in plan.poses])
     path = wheel_path(plan.terrain, plan.robot_description.wheel.radius)
-    margin = firm_margins(path.pieces, path.corners, path.radius, s, com_x, plan.friction)
+    margin = _core.firm_com_margins(path.native, s, com_x, plan.friction)
     times = pose_times(plan.robot_description, s, body, q, margin, speed).tolist()
     poses = [
         pose.model_copy(update={"time": time}) for pose, time in zip(plan.poses, times, strict=True)

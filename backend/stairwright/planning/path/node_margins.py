@@ -1,0 +1,135 @@
+"""What the nodes of a path are worth: joints, margins, forces and torques, as arrays.
+
+The native core computes them (native/include/stairwright/smoothing/node_margins.hpp); the bounds
+that a path must keep are here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .legs import LEGS_GAP
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Motor = Literal["leg", "wheel"]
+
+LEAST_CLEARANCE = 0.0005  # m; the best controller strays that far
+LEAST_COM = 0.001  # m; no robot's centre of mass is known better
+# Where the CoM has less room than this [m], that share of the friction must be left: else a wheel
+# that slides a little tips the robot.
+THIN_COM, FIRM_GRIP = 0.006, 0.08
+_SPARE = 5e-4  # m
+_JOINTS: dict[Motor, slice] = {"leg": slice(0, 2), "wheel": slice(2, 3)}
+
+
+@dataclass(frozen=True)
+class NodeMargins:
+    """Arrays over the nodes of a path. SI units.
+
+    Attributes:
+        friction: What there is.
+        torque_limits: (2, 3) front and rear: of thigh, calf and wheel motors [Nm].
+        q: (n, 4) planar joints.
+        com: (n, 2) centre of mass.
+        trunk_clearance, link_clearance: (n,) distances from the terrain.
+        legs_distance: (n,) of the front from the rear leg.
+        joint_slack: (n,) least distance from a joint limit [rad].
+        com_margin: (n,) at the friction there is.
+        firm_com_margin: (n,) the same with friction on one face of a corner only, which robots can
+            hold.
+        friction_needed: (n,).
+        forces: (n, 2, 2) force of each wheel pair, tangential and normal [N]; a wheel between two
+            faces counts them along the bisector of the faces that carry it.
+        torques: (n, 2, 3) static torques of a front and a rear leg: thigh, calf, wheel [Nm].
+    """
+
+    friction: float
+    torque_limits: Floats
+    q: Floats
+    com: Floats
+    trunk_clearance: Floats
+    link_clearance: Floats
+    legs_distance: Floats
+    joint_slack: Floats
+    com_margin: Floats
+    firm_com_margin: Floats
+    friction_needed: Floats
+    forces: Floats
+    torques: Floats
+
+    def part(self, begin: int, end: int) -> NodeMargins:
+        """The margins of the nodes [begin, end)."""
+        return replace(self, **{name: getattr(self, name)[begin:end] for name in _OF_NODES})
+
+    @property
+    def clearance(self) -> Floats:
+        """(n,) least distance of trunk and links from the terrain [m]."""
+        return np.minimum(self.trunk_clearance, self.link_clearance)
+
+    def torque_margin(self, motor: Motor) -> Floats:
+        """(n,) limit minus static torque of the motors that have least to spare [Nm]."""
+        spare = self.torque_limits - np.abs(self.torques)
+        least: Floats = spare[:, :, _JOINTS[motor]].min(axis=(1, 2))
+        return least
+
+    def torque_share(self, motor: Motor) -> float:
+        """Largest static torque of such motors anywhere, over their limit."""
+        return float((np.abs(self.torques) / self.torque_limits)[:, :, _JOINTS[motor]].max())
+
+    @cached_property
+    def _slacks(self) -> Floats:
+        """(7, n) margins, each against its bound, in comparable sizes."""
+        spare_friction = (1.0 - FIRM_GRIP) * self.friction - self.friction_needed
+        slacks: Floats = np.stack(
+            [
+                self.clearance - LEAST_CLEARANCE,
+                self.legs_distance - LEGS_GAP,
+                0.2 * self.joint_slack,
+                self.firm_com_margin - LEAST_COM,
+                np.maximum(self.firm_com_margin - THIN_COM, 0.2 * spare_friction),
+                self.torque_margin("wheel") * 0.01,
+                self.torque_margin("leg") * 0.01,
+            ]
+        )
+        return slacks
+
+    @property
+    def least_slack(self) -> Floats:
+        """(n,) least of all margins."""
+        least: Floats = self._slacks.min(axis=0)
+        return least
+
+    @property
+    def overloaded(self) -> Motor | None:
+        """The motors whose torque is the one bound that is violated."""
+        broken = np.flatnonzero(self._slacks.min(axis=1) < 0.0) - len(self._slacks)
+        return _LAST_SLACKS.get(int(broken[0])) if len(broken) == 1 else None
+
+    @property
+    def worst(self) -> float:
+        """Least of all margins on the path; negative: a bound is violated."""
+        return float(self.least_slack.min())
+
+    @property
+    def bad(self) -> Ints:
+        """Nodes where a bound is violated, or kept with next to nothing to spare."""
+        return np.flatnonzero(self.least_slack < _SPARE)
+
+
+_LAST_SLACKS: dict[int, Motor] = {-2: "wheel", -1: "leg"}
+_OF_NODES = [one.name for one in fields(NodeMargins)][2:]
+
+
+def joined(margins: Sequence[NodeMargins]) -> NodeMargins:
+    """Those of one path after the other."""
+    nodes: dict[str, Any] = {
+        name: np.concatenate([getattr(one, name) for one in margins]) for name in _OF_NODES
+    }
+    return replace(margins[0], **nodes)
