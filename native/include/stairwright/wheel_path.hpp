@@ -54,6 +54,8 @@ class WheelPath {
         return pieces_[k].at(s - pieces_[k].s, radius_);
     }
     Vec2 centre(double s) const { return at(s).centre; }
+    // Whether the curve is round there: the wheel turns about an edge.
+    bool on_arc(double s) const { return pieces_[piece(s)].arc; }
     Vec2 normal(double s) const { return at(s).normal; }
     // Where the wheel touches the terrain.
     Vec2 contact(double s) const {
