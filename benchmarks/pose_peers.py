@@ -13,9 +13,8 @@ from octave_peer import Octave
 from pose_tasks import Nlp, Numbers, Task
 from scipy.optimize import minimize
 
-from stairwright.planning.pose_search import APART, CLEARANCE
-from stairwright.planning.sqp import rows
-from stairwright.planning.sqp.solve import solve_pose
+from stairwright import _core
+from stairwright.planning.pose_search import CLEARANCE, LEGS_DISTANCE
 
 Floats = NDArray[np.float64]
 Solver = Callable[[Task], tuple[Floats, Floats]]
@@ -25,32 +24,21 @@ _MOST = 200  # iterations
 
 
 def stairwright(task: Task) -> tuple[Floats, Floats]:
-    """The compiled SQP, preparation of terrain and robot included."""
+    """The native SQP, preparation of terrain and robot included."""
     numbers = Numbers(task)
     search = numbers.search
     found = []
     for k in range(2):
         lower, upper = numbers.bounds(k)
-        asked = rows.Task(
-            numbers.wanted[k],
-            search.rules.weights,
-            lower,
-            upper,
-            CLEARANCE,
-            APART,
-            numbers.hip,
-            True,
-            -np.inf,
-            np.inf,
-        )
-        x = np.empty(9)
+        asked = _core.PoseTask(
+            numbers.wanted[k], search.rules.weights, lower, upper, CLEARANCE, LEGS_DISTANCE,
+            numbers.hip, True, (-np.inf, np.inf),
+        )  # fmt: skip
         for guess in numbers.guesses(k):
-            _, violation, _ = solve_pose(
-                search.body, search.course, asked, guess[[0, 1, 2, 7, 8]], x
-            )
-            if violation <= _GOOD:
+            solution = search.problem.solve(asked, guess[[0, 1, 2, 7, 8]])
+            if solution.violation <= _GOOD:
                 break
-        found.append(x)
+        found.append(solution.x)
     return found[0], found[1]
 
 

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stairwright as sw
+from stairwright import _core
 from stairwright.planning.casadi_search import CasadiSearch
 from stairwright.planning.nlp import HIP, SELF, WHEEL, Layout, build
-from stairwright.planning.pose_search import APART, CLEARANCE, PoseSearch
-from stairwright.planning.sqp.search import GRID, reference
+from stairwright.planning.pose_search import CLEARANCE, LEGS_DISTANCE, PoseSearch
 from stairwright.planning.weights import CriticalWeights
 from stairwright.robot.description import Robot
 from stairwright.robot.symbolic import dimensions
@@ -69,14 +69,14 @@ class Numbers:
         self.wanted = np.empty((2, 7))
         for k, (front, rear) in enumerate(self.centres):
             middle = (front[0] + rear[0]) / 2
-            reference(self.search.body, self.search.course, middle, self.wanted[k])
+            self.wanted[k] = self.search.problem.reference_posture(middle)
 
     def bounds(self, k: int) -> tuple[Floats, Floats]:
         """Of the nine variables of pose `k`."""
         front, rear = self.task.places[k]
         lower, upper = self.search.rules.lower.copy(), self.search.rules.upper.copy()
         lower[7] = upper[7] = front
-        lower[8], upper[8] = rear - GRID / 2, rear + GRID / 2
+        lower[8], upper[8] = rear - _core.REAR_SPACING / 2, rear + _core.REAR_SPACING / 2
         return lower, upper
 
     @property
@@ -113,7 +113,9 @@ class Nlp:
         )
         self.lower, self.upper = numbers.bounds(k)
         kinds = np.array(self.functions.rows)
-        least = np.where(kinds == HIP, numbers.hip, np.where(kinds == SELF, APART, CLEARANCE))
+        least = np.where(
+            kinds == HIP, numbers.hip, np.where(kinds == SELF, LEGS_DISTANCE, CLEARANCE)
+        )
         self.equal = kinds == WHEEL
         self.least = np.where(self.equal, 0.0, least)
         self.most = np.where(self.equal, 0.0, math.inf)
@@ -175,9 +177,9 @@ def sound(task: Task, k: int, x: Floats) -> bool:
     return bool(
         verdict.wheel_gap <= _SLACK
         and verdict.clearance >= CLEARANCE - _SLACK
-        and verdict.legs_apart >= APART - _SLACK
+        and verdict.legs_apart >= LEGS_DISTANCE - _SLACK
         and verdict.joint_slack >= -_SLACK
         and (not task.climbs or rear[0] <= hip + _SLACK)
         and abs(x[7] - task.places[k][0]) <= _SLACK
-        and abs(x[8] - task.places[k][1]) <= GRID / 2 + _SLACK
+        and abs(x[8] - task.places[k][1]) <= _core.REAR_SPACING / 2 + _SLACK
     )

@@ -12,4 +12,5 @@ NB_MODULE(_core, m) {
     bind_terrain(m);
     bind_statics(m);
     bind_smoothing(m);
+    bind_poses(m);
 }

@@ -3,9 +3,22 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "stairwright/kinematics.hpp"
+#include "stairwright/clearance.hpp"
 
 namespace stairwright::python {
+
+namespace {
+
+using Trunk3 = In<double, nb::shape<3>>;
+using Joints4 = In<double, nb::shape<4>>;
+
+Body body(const Trunk3& t) { return {t(0), t(1), t(2)}; }
+
+std::array<LegPoints, 2> legs(const Robot& robot, const Trunk3& t, const Joints4& q) {
+    return {forward(robot.legs[kFront], body(t), {q(0), q(1)}), forward(robot.legs[kRear], body(t), {q(2), q(3)})};
+}
+
+}  // namespace
 
 void bind_robot(nb::module_& m) {
     nb::class_<Vec2>(m, "Vec2").def(nb::init<double, double>()).def_rw("x", &Vec2::x).def_rw("z", &Vec2::z);
@@ -32,6 +45,13 @@ void bind_robot(nb::module_& m) {
         .def("__copy__", [](const Robot& robot) { return robot; })
         .def_rw("legs", &Robot::legs)
         .def_prop_ro("mass", &Robot::mass);
+    m.def("least_clearance", [](const Terrain& terrain, const Robot& robot, const Trunk3& trunk, const Joints4& q) {
+        return least_clearance(terrain, robot, body(trunk), legs(robot, trunk, q)).distance;
+    }, nb::arg("terrain"), nb::arg("robot"), nb::arg("trunk"), nb::arg("q"),
+       "Least distance of trunk (x, z, pitch) and links from the ground [m]; minus the depth inside.");
+    m.def("legs_distance", [](const Robot& robot, const Trunk3& trunk, const Joints4& q) {
+        return legs_distance(RobotModel(robot), legs(robot, trunk, q));
+    }, nb::arg("robot"), nb::arg("trunk"), nb::arg("q"), "Distance of the front from the rear leg [m].");
 }
 
 }  // namespace stairwright::python

@@ -4,6 +4,8 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "stairwright/resting_forces.hpp"
+#include "stairwright/wheel_contacts.hpp"
 
 namespace stairwright::python {
 
@@ -28,6 +30,26 @@ void bind_statics(nb::module_& m) {
     m.def("friction_needed", [](const Points& at, const Points& normals, double com_x) {
         return friction_needed(contacts(at, normals, 0.0), com_x);
     });
+    m.def("com_intervals", [](const WheelPath& path, const In<double, nb::shape<-1, 2>>& s, double friction) {
+        std::vector<double> out;
+        for (std::size_t k = 0; k < s.shape(0); ++k) {
+            const Interval found = stated_interval(path, {s(k, 0), s(k, 1)}, friction);
+            out.insert(out.end(), {found.lower, found.upper});
+        }
+        return give(std::move(out), {s.shape(0), 2});
+    }, nb::arg("path"), nb::arg("wheels"), nb::arg("friction"),
+       "Least and largest x (n, 2) of the CoM with the wheels at arc lengths (n, 2) [m]; none where the first is larger.");
+    m.def("resting_forces", [](const Vector& com_x, const In<double, nb::shape<-1, 2, 2>>& at, const In<double, nb::shape<-1, 2, 2>>& normals) {
+        if (at.shape(0) != com_x.size() || normals.shape(0) != com_x.size()) throw nb::value_error("as many contacts as mass centres, please");
+        std::vector<double> out;
+        for (std::size_t k = 0; k < com_x.size(); ++k) {
+            std::array<Contact, 2> pair;
+            for (std::size_t w = 0; w < 2; ++w) pair[w] = {{at(k, w, 0), at(k, w, 1)}, {normals(k, w, 0), normals(k, w, 1)}, 0.0};
+            for (const ContactForce& f : resting_forces(pair, com_x(k))) out.insert(out.end(), {f.tangential, f.normal});
+        }
+        return give(std::move(out), {com_x.size(), 2, 2});
+    }, nb::arg("com_x"), nb::arg("contacts"), nb::arg("normals"),
+       "Forces (n, 2, 2) in robot weights with the least friction need: wheel pair, then (tangential, normal).");
 }
 
 }  // namespace stairwright::python

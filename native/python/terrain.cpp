@@ -1,7 +1,10 @@
 #include "stairwright/terrain.hpp"
 
+#include <nanobind/stl/vector.h>
+
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "stairwright/obstacles.hpp"
 #include "stairwright/wheel_path.hpp"
 
 namespace stairwright::python {
@@ -51,6 +54,13 @@ void bind_terrain(nb::module_& m) {
         .def("project", [](const WheelPath& path, double x, double z, double lower, double upper) {
             return path.project({x, z}, lower, upper);
         });
+    nb::class_<Obstacle>(m, "Obstacle", "A rise or descent of the wheel's centre between two treads. Lengths in m.")
+        .def_ro("begin", &Obstacle::begin, "Arc length where the wheel arrives at the face (eq 25).")
+        .def_ro("end", &Obstacle::end, "Arc length where the next tread is reached.")
+        .def_ro("height", &Obstacle::height, "Gained, or lost where negative (h of eq 26).")
+        .def_ro("face", &Obstacle::face, "h / sin(gamma), gamma the steepest slope of the wheel's way.")
+        .def_ro("steepest", &Obstacle::steepest, "Arc length of the last place that is as steep.");
+    m.def("find_obstacles", &find_obstacles, nb::arg("path"), nb::arg("lower"), nb::arg("upper"));
 }
 
 }  // namespace stairwright::python

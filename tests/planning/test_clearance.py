@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import stairwright as sw
-from stairwright.planning.clearance import clearance, legs_apart
+from stairwright import _core
 from stairwright.planning.terrain_window import cell_vector, cells, curve_window
 from stairwright.robot.kinematics import limits
 from stairwright.terrain.profile import height_at
@@ -14,6 +14,7 @@ from tests.shapely_checker import check
 @pytest.mark.parametrize("seed", range(20))
 def test_clearance_equals_shapely(seed):
     robot, terrain = sw.load_robot("a1_wheeled"), random_profile(seed)
+    ground = _core.Terrain(terrain.vertices)
     random = np.random.default_rng(seed)
     low, high = limits(robot).T
     for _ in range(10):
@@ -21,13 +22,14 @@ def test_clearance_equals_shapely(seed):
         trunk = (x, terrain.height(x) + random.uniform(0.0, 0.5), random.uniform(-1.5, 1.5))
         q = random.uniform(low, high)
         verdict = check(robot, terrain.vertices, *trunk, q)
-        gap, _ = clearance(robot, terrain.vertices, trunk, q)
+        gap = _core.least_clearance(ground, robot.native, np.array(trunk), q)
         if verdict.clearance > 0:
             assert gap == pytest.approx(min(verdict.clearance, 0.5), abs=1e-9)
         else:
             assert gap == pytest.approx(verdict.clearance, abs=4e-3)
         if verdict.legs_apart > 0:
-            assert legs_apart(robot, trunk, q) == pytest.approx(verdict.legs_apart, abs=1e-9)
+            distance = _core.legs_distance(robot.native, np.array(trunk), q)
+            assert distance == pytest.approx(verdict.legs_apart, abs=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(20))

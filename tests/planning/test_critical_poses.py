@@ -2,9 +2,7 @@ import numpy as np
 import pytest
 
 import stairwright as sw
-from stairwright.planning.interpolation import reference
 from stairwright.planning.pose_locations import find_obstacles
-from stairwright.planning.sqp import nearest, places, search
 from stairwright.planning.weights import CriticalWeights
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.stairs import ramp, stair
@@ -114,19 +112,6 @@ def test_poses_repeat_on_a_uniform_flight():
         before, after = plan.poses[k - 2], plan.poses[k]
         assert np.allclose(np.subtract(after.wheels, before.wheels), shift, atol=1e-6)
         assert np.allclose(after.q, before.q, atol=1e-6)
-
-
-def test_nothing_is_compiled_twice():
-    """Neither another terrain nor another robot makes a user wait for a compiler."""
-    for robot in sw.robots():
-        for terrain in (stair(0.2), stair(1.2), ramp(0.3, 0.4), "flat", random_profile(2)):
-            reference_or_none(sw.plan(terrain, robot, method="critical"))
-    kernels = (search.search, search.slacks, nearest.nearest, places.rear_places, places.rooms)
-    assert [len(kernel.signatures) for kernel in kernels] == [1] * len(kernels)
-
-
-def reference_or_none(plan):
-    return reference(plan) if plan.feasible else None
 
 
 def test_same_question_same_answer():

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .sqp.cells import Course
-from .sqp.places import rooms
+from stairwright import _core
+from stairwright.terrain.wheel_path import WheelPath
 
 Floats = NDArray[np.float64]
 
@@ -14,16 +14,16 @@ ROOM = 0.03  # m of CoM margin wanted on the way
 EASE = 0.06  # m of progress over which the CoM moves aside before and after it must
 
 
-def com_ways(course: Course, friction: float, wheels: Floats, spare: float) -> Floats:
+def com_ways(path: WheelPath, friction: float, wheels: Floats, spare: float) -> Floats:
     """Least and largest x (n, 2) of the CoM with room to spare [m]; infinite where nothing holds.
 
     Args:
-        course: The terrain.
+        path: The wheel-centre curve.
         friction: Between wheels and terrain.
         wheels: (n, 2) arc lengths of front and rear wheels.
         spare: Room wanted, or half of what there is [m].
     """
-    a, b = rooms(course, wheels, friction).T
+    a, b = _core.com_intervals(path.native, wheels, friction).T
     held = a <= b
     room = np.minimum(spare, np.where(held, b - a, 0.0) / 2)
     # Where no CoM is held at all (both wheels on one wall), moving it is of no use.

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright import _core
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.robot.symbolic import dimensions
@@ -14,15 +15,14 @@ from stairwright.terrain.profile import height_at
 from stairwright.terrain.wheel_path import WheelPath
 
 from .nlp import Layout
-from .pose_search import TRIES, Found, Place, PoseSearch
+from .pose_search import ENOUGH, TRIES, WANTED_MARGIN, ContactPair, Found, PoseSearch, Rules
 from .solver import Bounds, Solution, pose_solver
-from .sqp.places import room
-from .sqp.search import ENOUGH, PULLS, WANTED, Rules
 from .terrain_window import SIZES, cell_vector, cells, curve_window
 from .weights import CriticalWeights
 
 Floats = NDArray[np.float64]
 
+_SHIFTS = 3  # times that the reference is moved until the CoM has room
 _FACE = 2e-3  # m past a corner, where the face ahead alone carries the wheel
 _BESIDE = 0.35  # m of ground before the rear and after the front wheel that legs can meet
 
@@ -42,7 +42,7 @@ class CasadiSearch(PoseSearch):
         middle, half = joints.mean(axis=1), np.ptp(joints, axis=1) / 2 - 0.02
         self._inner = np.stack([middle - half, middle + half], axis=1)
 
-    def search(self, place: Place, gentle: bool = True) -> list[Found]:
+    def search(self, place: ContactPair, gentle: bool = True) -> list[Found]:
         """All solved poses with the front wheel at a place; see `PoseSearch.search`."""
         found: list[Found] = []
         places = self.rear_places(place, gentle)
@@ -50,7 +50,7 @@ class CasadiSearch(PoseSearch):
             one = self.solve(place, rear, start=found[-1].solution.x if found else None)
             if one.solution.solved:
                 found.append(one)
-                if sum(other.margin >= 0.99 * WANTED for other in found) >= ENOUGH:
+                if sum(other.margin >= 0.99 * WANTED_MARGIN for other in found) >= ENOUGH:
                     break
         if not found:
             hard = [self.solve(place, rear, patient=True) for rear in places[:TRIES]]
@@ -59,7 +59,7 @@ class CasadiSearch(PoseSearch):
 
     def solve(
         self,
-        place: Place,
+        place: ContactPair,
         rear: float,
         *,
         patient: bool = False,
@@ -71,7 +71,7 @@ class CasadiSearch(PoseSearch):
         x_ref = float(self.path.centres(np.array([place.front, rear]))[:, 0].mean())
         bounds = _bounds(rules or self.rules, place, rear)
         found: Found | None = None
-        for _ in range(PULLS):
+        for _ in range(_SHIFTS):
             reference = self.reference(x_ref)
             starts = [
                 self._guess(place, rear, reference),
@@ -107,14 +107,14 @@ class CasadiSearch(PoseSearch):
         """Parameters of the terrain, and the number of ground cells among them."""
         curves = [curve_window(self.path, s)[0].ravel() for s in (front, rear)]
         x = self.path.centres(np.array([front, rear]))[:, 0]
-        beside = _BESIDE * self.size
+        beside = _BESIDE * self.scale
         ground = cell_vector(cells(self.path.vertices, x.min() - beside, x.max() + beside))
         vector = np.concatenate([*curves, *(part.ravel() for part in ground)])
         return vector, len(ground[0])
 
     def _guess(
         self,
-        place: Place,
+        place: ContactPair,
         rear: float,
         reference: Floats,
         pitch: float | None = None,
@@ -135,34 +135,39 @@ class CasadiSearch(PoseSearch):
         q = np.clip(q, self._inner[:, 0], self._inner[:, 1])
         return np.array([x, z, pitch, *q, place.front, rear])
 
-    def _com_shift(self, solution: Solution, place: Place) -> tuple[float, float]:
-        """Least shift of the CoM that gives it the room wanted, and the room that it has [m]."""
+    def _com_shift(self, solution: Solution, place: ContactPair) -> tuple[float, float]:
+        """Least shift of the CoM that gives it the margin wanted, and its margin [m]."""
         if not solution.solved:
             return 0.0, -np.inf
         x = solution.x
         x_c, z_c, pitch = (np.asarray(value) for value in x[:3])
         frames = kinematics.forward(self.robot, x_c, z_c, pitch, x[3:7])
         com = float(kinematics.com(self.robot, x_c, z_c, frames)[0])
-        low, high = room(self.course, x[7], x[8], self.friction)
+        low, high = self._interval(x[7], x[8])
         # Just after the first pose the face alone carries the front wheel; on the way down it still
         # does just before the second one, and there the CoM has the least time to move on.
         if place.ahead or not place.climbs:
             on_face = x[7] + _FACE if place.ahead else place.face
-            a, b = room(self.course, on_face, x[8], self.friction)
+            a, b = self._interval(on_face, x[8])
             if max(low, a) <= min(high, b):
                 low, high = max(low, a), min(high, b)
         if low > high:
             return 0.0, -np.inf
-        spare = min(WANTED, (high - low) / 2)
+        spare = min(WANTED_MARGIN, (high - low) / 2)
         wanted = min(max(com, low + spare), high - spare)
         return wanted - com, min(com - low, high - com)
 
+    def _interval(self, front: float, rear: float) -> tuple[float, float]:
+        wheels = np.array([[front, rear]])
+        low, high = _core.com_intervals(self.path.native, wheels, self.friction)[0].tolist()
+        return low, high
 
-def _bounds(rules: Rules, place: Place, rear: float) -> Bounds:
+
+def _bounds(rules: Rules, place: ContactPair, rear: float) -> Bounds:
     """Bounds with the front wheel fixed and the rear one free near `rear`."""
     lower, upper = rules.lower.copy(), rules.upper.copy()
     lower[7] = upper[7] = place.front
-    lower[8] = max(place.rear[0], rear - rules.box)
-    upper[8] = max(lower[8], min(place.rear[1], rear + rules.box))
-    hip = rules.hip if place.climbs else -np.inf
-    return Bounds(lower, upper, rules.clearance, rules.apart, hip)
+    lower[8] = max(place.rear[0], rear - _core.REAR_SPACING / 2)
+    upper[8] = max(lower[8], min(place.rear[1], rear + _core.REAR_SPACING / 2))
+    behind = rules.behind if place.climbs else -np.inf
+    return Bounds(lower, upper, rules.clearance, rules.legs_distance, behind)

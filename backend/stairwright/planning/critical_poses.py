@@ -25,7 +25,7 @@ from .joining import motion_problem
 from .path.course import NoStand, Stand, find_stands, stand
 from .plan import Plan, Pose, Problem
 from .pose_locations import Obstacle, find_obstacles, front_places
-from .pose_search import Found, Place, PoseSearch
+from .pose_search import ContactPair, Found, PoseSearch
 from .poses import complete_poses
 from .solver import now
 from .timing import pose_times
@@ -133,8 +133,8 @@ def _solve(
         else:
             span, up = (rear, end.wheels[1]), obstacle.height > 0
             places = (
-                Place(first, span, True, obstacle.steepest, up, before),
-                Place(second, span, False, obstacle.steepest, up, before),
+                ContactPair(first, span, True, obstacle.steepest, up, before),
+                ContactPair(second, span, False, obstacle.steepest, up, before),
             )
             both = search.best_pair(*places, after, balance)
             for place, one in zip(places, both, strict=True):
@@ -162,9 +162,9 @@ def _rest(search: PoseSearch, obstacles: list[Obstacle], k: int) -> Stand | None
     if k + 1 == len(obstacles):
         return None
     hips = search.robot.hips
-    rear = obstacles[k].end + TAIL * search.size
+    rear = obstacles[k].end + TAIL * search.scale
     front = rear + hips.front[0] - hips.rear[0]
-    room = obstacles[k + 1].begin - TAIL * search.size
+    room = obstacles[k + 1].begin - TAIL * search.scale
     return stand(search.path, search.robot, front, rear) if front <= room else None
 
 

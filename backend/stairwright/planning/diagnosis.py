@@ -8,15 +8,14 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright import _core
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
 
 from .path.course import NoStand
 from .plan import Limit, Pose, Problem
-from .pose_search import APART, CLEARANCE, Place, PoseSearch
-from .sqp.places import rooms
-from .sqp.search import Rules
+from .pose_search import CLEARANCE, LEGS_DISTANCE, ContactPair, PoseSearch, Rules
 
 Floats = NDArray[np.float64]
 
@@ -62,7 +61,7 @@ def statics_limit(friction: float, pose: Pose) -> Limit | None:
     return None
 
 
-def diagnose(search: PoseSearch, place: Place) -> Problem:
+def diagnose(search: PoseSearch, place: ContactPair) -> Problem:
     """Why no pose exists with the front wheel at a place.
 
     One kind of constraint at a time is relaxed, at every place of the rear wheel, until a pose
@@ -74,9 +73,9 @@ def diagnose(search: PoseSearch, place: Place) -> Problem:
     if len(rears) == 0:
         return _no_rear_place(search, place, at)
     trials: list[tuple[str, float, Callable[[Rules, float], Rules]]] = [
-        ("clearance", 0.2, lambda r, d: r._replace(clearance=CLEARANCE - d, apart=APART - d)),
+        ("clearance", 0.2, _approach),
         ("joint_limit", 1.5, _widen),
-        ("reach", 0.5, lambda r, d: r._replace(hip=-d)),
+        ("reach", 0.5, lambda r, d: r._replace(behind=-d)),
     ]
     found: list[tuple[float, str, float]] = []
     for kind, most, relax in trials:
@@ -109,7 +108,7 @@ def diagnose(search: PoseSearch, place: Place) -> Problem:
     return Problem(kind="reach", at=at, progress=0.0, message=text, limit=limit)
 
 
-def _no_rear_place(search: PoseSearch, place: Place, at: tuple[float, float]) -> Problem:
+def _no_rear_place(search: PoseSearch, place: ContactPair, at: tuple[float, float]) -> Problem:
     """No ground within reach holds the rear wheel: too far away, or too slippery."""
     path, friction = search.path, search.friction
     behind = min(place.rear[1], place.front, place.face) - search.span[0]
@@ -119,7 +118,8 @@ def _no_rear_place(search: PoseSearch, place: Place, at: tuple[float, float]) ->
     near = gap <= search.span[1]
 
     def holds(mu: float) -> NDArray[np.bool_]:
-        spans = rooms(search.course, np.stack([np.full(len(s), place.face), s], axis=1), mu)
+        wheels = np.stack([np.full(len(s), place.face), s], axis=1)
+        spans = _core.com_intervals(path.native, wheels, mu)
         held: NDArray[np.bool_] = spans[:, 0] <= spans[:, 1]
         return held
 
@@ -181,6 +181,10 @@ def _slope(search: PoseSearch, s: float) -> float:
     return abs(math.atan2(normal[0], normal[1]))
 
 
+def _approach(rules: Rules, amount: float) -> Rules:
+    return rules._replace(clearance=CLEARANCE - amount, legs_distance=LEGS_DISTANCE - amount)
+
+
 def _widen(rules: Rules, amount: float) -> Rules:
     lower, upper = rules.lower.copy(), rules.upper.copy()
     lower[3:7] -= amount
@@ -190,7 +194,7 @@ def _widen(rules: Rules, amount: float) -> Rules:
 
 def _least(
     search: PoseSearch,
-    place: Place,
+    place: ContactPair,
     rears: Floats,
     relax: Callable[[Rules, float], Rules],
     most: float,

@@ -17,17 +17,17 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright import _core
 from stairwright.errors import InputError
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
+from stairwright.statics.contact import GRAVITY
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
 from .balance_way import ROOM, com_ways, eased_shift
 from .plan import Plan
-from .pose_search import PoseSearch
+from .pose_search import BETWEEN, PoseSearch
 from .reference import Reference
-from .sqp.nearest import BETWEEN
-from .supports import contact_forces, weight_of
 from .weights import CriticalWeights
 
 Floats = NDArray[np.float64]
@@ -85,7 +85,7 @@ def reference(
         com=com,
         normals=normals,
         contacts=contacts,
-        forces=contact_forces(weight_of(robot), com[:, 0], contacts, normals),
+        forces=robot.mass * GRAVITY * _core.resting_forces(com[:, 0], contacts, normals),
     )
 
 
@@ -124,7 +124,7 @@ def _on_curve(
     where none reaches, the wheels leave the curve, with joints between those beside.
     """
     search = PoseSearch(plan.robot_description, path, plan.friction, CriticalWeights())
-    ways = com_ways(search.course, search.friction, s, ROOM)
+    ways = com_ways(search.path, search.friction, s, ROOM)
     anywhere = np.tile([-np.inf, np.inf], (len(s), 1))
     sound, solved = search.sound(np.concatenate([trunk, s], axis=1), anywhere)
     com = _com(search.robot, trunk, np.where(np.isfinite(solved), solved, q))[:, 0]
@@ -156,7 +156,7 @@ def _moved(
     First at every few samples, its change linear between them; then where that does not do.
     """
     count = len(trunk)
-    edges = com_ways(search.course, search.friction, s, 0.0)
+    edges = com_ways(search.path, search.friction, s, 0.0)
     asked = np.flatnonzero(~sound | (shift != 0.0))
     coarse = asked[(np.arange(len(asked)) % _COARSE == 0) | ~np.isin(asked + 1, asked)]
     fixed = np.union1d(coarse, np.flatnonzero(sound & (shift == 0.0)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from stairwright import _core
 from stairwright.terrain.wheel_path import wheel_path
 
 from .certificate import judge
@@ -11,8 +12,6 @@ from .interpolation import reference
 from .motion import Motion
 from .plan import Certificate, Check, Plan, Problem, ProblemKind
 from .reference import Reference
-from .sqp.cells import make_course
-from .sqp.places import rooms
 
 # Room for the centre of mass: of 490 random stairs climbed with more every rollout succeeds, of
 # those with less none does.
@@ -53,7 +52,7 @@ def motion_problem(plan: Plan) -> Problem | None:
 def _thin_balance(plan: Plan, samples: Reference) -> Problem | None:
     """Where the centre of mass has least room along the motion, if that is too little."""
     path = wheel_path(plan.terrain, plan.robot_description.wheel.radius)
-    low, high = rooms(make_course(path), samples.wheel_progress, plan.friction).T
+    low, high = _core.com_intervals(path.native, samples.wheel_progress, plan.friction).T
     room = np.minimum(samples.com[:, 0] - low, high - samples.com[:, 0])
     i = int(np.argmin(room))
     if room[i] >= STEADY:

@@ -4,37 +4,66 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright import _core
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
 from .solver import Solution
-from .sqp import places, search
-from .sqp.cells import make_course
-from .sqp.joined import imbalance
-from .sqp.nearest import nearest
-from .sqp.search import COST, ENOUGH, GRID, MARGIN, TOLERANCE, TURN, VIOLATION, WANTED, Rules, Wish
-from .sqp.state import make_body
 from .weights import CriticalWeights
 
 Floats = NDArray[np.float64]
 
 CLEARANCE = 0.012  # m between trunk or links and the terrain at a critical pose
-APART = 0.006  # m between front and rear leg
+BETWEEN = _core.CLEARANCE_BETWEEN  # m; the same between critical poses, where room is scarce
+LEGS_DISTANCE = 0.006  # m between front and rear leg
+WANTED_MARGIN = _core.WANTED_MARGIN  # m of CoM margin beyond which other things decide
+ENOUGH = _core.ENOUGH_POSES  # poses with that margin; then the search ends
 TRIES = 4  # places where many first guesses are tried when the usual ones find nothing
-FREE = 1e3  # m; a bound that bounds nothing
-_TIPPED = 20.0  # 1/m; what lost balance on the way weighs against room for the CoM
-_TURN = 0.06  # 1/rad^2; what turning the joints weighs against room for the CoM
+_FREE = 1e3  # m; a bound that bounds nothing
+_TIPPED = 20.0  # 1/m; what lost balance on the way weighs against CoM margin
+_TURN = 0.06  # 1/rad^2; what turning the joints weighs against CoM margin
 _NOTHING = np.full(5, np.nan)
 _ANYWHERE = np.array([[-np.inf, np.inf]])
 
 
+class Rules(NamedTuple):
+    """What all poses of one plan keep. SI units.
+
+    Attributes:
+        friction: Between wheels and terrain.
+        weights: (7,) of eq 17.
+        lower, upper: (9,) bounds of x, z, pitch, joints, arc lengths; those of the wheels are
+            filled in for each pose.
+        clearance: Of trunk and links from the ground.
+        legs_distance: Of the front leg from the rear one.
+        behind: Of the rear contact behind the rear hip (eq 20).
+        exact_links: Keep whole links clear, not only the collision points.
+    """
+
+    friction: float
+    weights: Floats
+    lower: Floats
+    upper: Floats
+    clearance: float
+    legs_distance: float
+    behind: float
+    exact_links: bool
+
+    @property
+    def native(self) -> _core.PoseRules:
+        """The same for the native core."""
+        return _core.PoseRules(*self)
+
+
 @dataclass(frozen=True)
-class Place:
+class ContactPair:
     """Where a pose is wanted: arc lengths [m].
 
     Attributes:
@@ -60,13 +89,12 @@ class Place:
         """Pitch and joints (5,) of the pose before [rad]."""
         return self.before[2:7]
 
-    @property
-    def wish(self) -> Wish:
-        """The same for compiled code."""
-        return Wish(
-            float(self.front), float(self.rear[0]), float(self.rear[1]),
-            self.ahead, float(self.face), self.climbs, self.posture,
-        )  # fmt: skip
+    @cached_property
+    def native(self) -> _core.ContactPair:
+        """The same for the native core."""
+        return _core.ContactPair(
+            self.front, self.rear, self.ahead, self.face, self.climbs, self.posture
+        )
 
 
 @dataclass(frozen=True)
@@ -75,7 +103,7 @@ class Found:
 
     Attributes:
         solution: Variables and cost.
-        margin: Room for the CoM [m], also with the face ahead alone.
+        margin: CoM margin [m], also with the face ahead alone.
         turn: Sum of squares of the turns of pitch and joints since the pose before [rad^2].
     """
 
@@ -85,42 +113,46 @@ class Found:
 
     @property
     def score(self) -> float:
-        """Room for the CoM up to `WANTED`, and among poses with room the nearest posture."""
-        return min(self.margin, WANTED) / WANTED - _TURN * self.turn
+        """CoM margin up to `WANTED_MARGIN`, and among poses with that the nearest posture."""
+        return min(self.margin, WANTED_MARGIN) / WANTED_MARGIN - _TURN * self.turn
 
 
 class PoseSearch:
-    """Solves poses of one robot on one terrain, with the compiled solver."""
+    """Solves poses of one robot on one terrain, with the native solver."""
 
     def __init__(
         self, robot: Robot, path: WheelPath, friction: float, weights: CriticalWeights
     ) -> None:
         self.robot, self.path, self.friction = robot, path, friction
-        self.body, self.course = make_body(robot), make_course(path)
-        self.standing = self.body.standing
-        self.size = (robot.thigh.length + robot.calf.length) / 0.4
+        self.problem = pose_problem(robot, path)
+        self.standing = self.problem.standing
+        self.scale = (robot.thigh.length + robot.calf.length) / 0.4
         w = weights
         # Inside the limits by more than what solvers leave open.
         joints = kinematics.limits(robot) + np.array([1e-5, -1e-5])
         self.rules = Rules(
             friction=friction,
             weights=np.array([w.com_x, w.com_z, w.pitch, *[w.posture] * 4]),
-            lower=np.array([-FREE, -FREE, -math.pi, *joints[:, 0], 0.0, 0.0]),
-            upper=np.array([FREE, FREE, math.pi, *joints[:, 1], 0.0, 0.0]),
+            lower=np.array([-_FREE, -_FREE, -math.pi, *joints[:, 0], 0.0, 0.0]),
+            upper=np.array([_FREE, _FREE, math.pi, *joints[:, 1], 0.0, 0.0]),
             clearance=CLEARANCE,
-            apart=APART,
-            hip=0.0,
-            links=w.exact_links,
-            box=GRID / 2,
+            legs_distance=LEGS_DISTANCE,
+            behind=0.0,
+            exact_links=w.exact_links,
         )
+        self._native_rules = self.rules.native
         reach = robot.thigh.length + robot.calf.length
         wheelbase = robot.hips.front[0] - robot.hips.rear[0]
-        self.span = (2 * robot.wheel.radius + APART, 2 * reach + wheelbase)
+        self.span = (2 * robot.wheel.radius + LEGS_DISTANCE, 2 * reach + wheelbase)
         self._usual = 1.4 * wheelbase
         self._lost: dict[bytes, float] = {}  # balance lost between two poses, once judged
 
     def best_pair(
-        self, first: Place, second: Place, after: Floats | None = None, balance: bool = True
+        self,
+        first: ContactPair,
+        second: ContactPair,
+        after: Floats | None = None,
+        balance: bool = True,
     ) -> tuple[Found | None, Found | None]:
         """The poses before and after a face; the rear wheel crosses no steep ground between.
 
@@ -145,7 +177,7 @@ class PoseSearch:
                         if after is not None:
                             lost += self.imbalance(later.solution.x, after)
                     value = one.score + (later.score if later else -10.0) - _TIPPED * lost
-                    if later is not None and lost == 0.0 and later.margin >= 0.99 * WANTED:
+                    if later is not None and lost == 0.0 and later.margin >= 0.99 * WANTED_MARGIN:
                         return one, later
                     if best is None or value > best[0]:
                         best = value, one, later
@@ -153,7 +185,7 @@ class PoseSearch:
                 break
         return (best[1], best[2]) if best else (None, None)
 
-    def _later(self, one: Found, second: Place, gentle: bool) -> list[Found | None]:
+    def _later(self, one: Found, second: ContactPair, gentle: bool) -> list[Found | None]:
         """Poses that may follow `one`, best first; a list of None where there are none."""
         rear = float(one.solution.x[8])
         stop = min(self._steep_ahead(rear), second.rear[1]) if gentle else second.rear[1]
@@ -161,7 +193,7 @@ class PoseSearch:
         found = sorted(self.search(place, gentle), key=lambda other: -other.score)
         return [*found[:ENOUGH]] or [None]
 
-    def search(self, place: Place, gentle: bool = True) -> list[Found]:
+    def search(self, place: ContactPair, gentle: bool = True) -> list[Found]:
         """All solved poses with the front wheel at a place, one for each rear wheel place tried.
 
         Args:
@@ -169,16 +201,15 @@ class PoseSearch:
             gentle: Rest the rear wheel only on ground that holds it alone.
         """
         rears = self.rear_places(place, gentle)
-        x, numbers = np.empty((len(rears), 9)), np.empty((len(rears), 4))
-        count = search.search(self.body, self.course, self.rules, place.wish, rears, x, numbers)
-        if count:
-            return [_found(x[i], numbers[i]) for i in range(count)]
+        found = self.problem.critical_poses(self._native_rules, place.native, rears)
+        if found:
+            return [_found(one) for one in found]
         hard = [self.solve(place, float(rear), patient=True) for rear in rears[:TRIES]]
         return [one for one in hard if one.solution.solved]
 
     def solve(
         self,
-        place: Place,
+        place: ContactPair,
         rear: float,
         *,
         patient: bool = False,
@@ -191,15 +222,11 @@ class PoseSearch:
             place: Where.
             rear: Arc length [m].
             patient: Try many first guesses where the usual ones find nothing.
-            rules: Bounds other than those of the plan.
+            rules: Rules other than those of the plan.
             start: (9,) a first guess before the usual ones.
         """
-        x, numbers = np.empty(9), np.empty(4)
-        search.solve_at(
-            self.body, self.course, rules or self.rules, place.wish, rear, _start(start), patient,
-            x, numbers,
-        )  # fmt: skip
-        return _found(x, numbers)
+        kept = self._native_rules if rules is None else rules.native
+        return _found(self.problem.critical_pose(kept, place.native, rear, _start(start), patient))
 
     def nearest(
         self,
@@ -218,17 +245,15 @@ class PoseSearch:
             start: (9,) another first guess.
             com: Least and largest x of the centre of mass [m].
         """
-        x = np.empty(9)
-        value, violation = nearest(
-            self.body, self.course, self.rules, wheels, wanted, com, _start(start), x
+        return _solution(
+            self.problem.nearest_pose(self._native_rules, wheels, wanted, com, _start(start))
         )
-        return Solution(x, float(value), float(violation), "sqp")
 
     def imbalance(self, begin: Floats, end: Floats) -> float:
         """By how much the CoM lies outside balance between two poses (9,), at worst [m]."""
         key = begin.tobytes() + end.tobytes()
         if key not in self._lost:
-            self._lost[key] = float(imbalance(self.body, self.course, self.rules, begin, end))
+            self._lost[key] = self.problem.balance_lost(self._native_rules, begin, end)
         return self._lost[key]
 
     def clear(self, trunk: tuple[float, float, float], wheels: tuple[float, float]) -> bool:
@@ -246,26 +271,32 @@ class PoseSearch:
             coms: (n, 2) least and largest x of the centre of mass [m].
             clearance: Of trunk and links from the terrain [m].
         """
-        joints = np.empty((len(poses), 4))
-        rules = self.rules._replace(clearance=clearance)
-        slack = search.slacks(self.body, self.course, rules, poses, coms, joints)
-        return slack >= -TOLERANCE, joints
+        rules = self.rules._replace(clearance=clearance).native
+        slack, joints = self.problem.pose_slacks(rules, poses, coms)
+        return slack >= -_core.SOLVED, joints
 
-    def rear_places(self, place: Place, gentle: bool = False) -> Floats:
+    def rear_places(self, place: ContactPair, gentle: bool = False) -> Floats:
         """Arc lengths of the rear wheel where ground and friction allow a pose, likeliest first."""
-        found: Floats = places.rear_places(
-            self.course, float(place.front), float(place.face), float(place.rear[0]),
-            float(place.rear[1]), self.span, GRID * self.size, self._usual, self.friction,
-            self.size, gentle,
+        return _core.rear_places(
+            self.path.native, place.front, place.face, place.rear, self.span, self._usual,
+            _core.REAR_SPACING * self.scale, self.friction, self.scale, gentle,
         )  # fmt: skip
-        return found
 
     def settled(self, s: float) -> bool:
         """Whether a wheel at `s` rests on ground that holds it, well past any that does not."""
-        return bool(places.settled(self.course, float(s), self.friction, self.size))
+        return _core.rests(self.path.native, s, self.friction, self.scale)
 
     def _steep_ahead(self, s: float) -> float:
-        return float(places.steep_ahead(self.course, s, self.friction, self.size))
+        return _core.steep_ahead(self.path.native, s, self.friction, self.scale)
+
+
+def pose_problem(robot: Robot, path: WheelPath) -> _core.PoseProblem:
+    """Pose optimisation for a robot on a terrain, in the native core."""
+    points, size = robot.collision_points, robot.trunk.size
+    trunk = np.array(points.trunk, float) * (size[0], size[2])
+    return _core.PoseProblem(
+        _core.Terrain(path.vertices), path.native, robot.native, trunk, points.thigh, points.calf
+    )
 
 
 def _start(x: Floats | None) -> Floats:
@@ -273,6 +304,9 @@ def _start(x: Floats | None) -> Floats:
     return _NOTHING if x is None else np.concatenate([x[:3], x[7:]])
 
 
-def _found(x: Floats, numbers: Floats) -> Found:
-    solution = Solution(x, float(numbers[COST]), float(numbers[VIOLATION]), "sqp")
-    return Found(solution, float(numbers[MARGIN]), float(numbers[TURN]))
+def _solution(found: _core.PoseSolution) -> Solution:
+    return Solution(found.x, found.cost, found.violation, "sqp")
+
+
+def _found(pose: _core.CriticalPose) -> Found:
+    return Found(_solution(pose.solution), pose.margin, pose.turn)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stairwright/poses/lagrangian.hpp"
 #include "stairwright/poses/quadratic_program.hpp"
 
 namespace stairwright::poses {
@@ -19,74 +20,9 @@ constexpr double kFall = 0.8;
 constexpr int kHalvings = 8;
 constexpr int kMemory = 6;  // iterations; a step must better the worst of so many (Grippo, Lampariello, Lucidi 1986)
 constexpr Unknowns kLongest = {0.15, 0.15, 0.5, 0.05, 0.05};  // m, m, rad, m, m; of one step
+constexpr double kFarthest = 10.0;  // m and rad; rows that meet only beyond it contradict each other here
 constexpr double kLeastCurvature = 1e-3;
 constexpr double kRelaxed = 1e4;  // cost of what linearised constraints lack where they contradict each other
-
-using GradientY = std::array<double, kUnknowns>;
-using HessianY = std::array<GradientY, kUnknowns>;
-
-// Gradient by y from the gradient by u.
-GradientY reduce(const PoseState& st, const GradientU& gu) {
-    GradientY out;
-    for (int k = 0; k < kUnknowns; ++k) {
-        out[k] = gu[k < 3 ? k : 4 + k];
-        for (int a = 0; a < 4; ++a) out[k] += gu[3 + a] * st.link_turns[a][k];
-    }
-    return out;
-}
-
-// Rows that held the last step back, and their multipliers.
-struct ActiveRows {
-    std::vector<Constraint> rows;
-    std::vector<double> multipliers;
-};
-
-// Curvature of "the wheel is on the curve" with the multiplier that its leg's angles imply.
-void add_wheel_curvature(const PoseModel& model, const PoseState& st, int leg, const GradientU& gu, HessianU& hessian) {
-    const PosePoint& wheel = st.points[model.wheel[leg]];
-    const int upper = 1 + 2 * leg;
-    const Vec2 a = {wheel.arms[upper].z, -wheel.arms[upper].x}, b = {wheel.arms[upper + 1].z, -wheel.arms[upper + 1].x};
-    const double det = cross(a, b), g1 = gu[2 + upper], g2 = gu[3 + upper];
-    const Vec2 multiplier = {(g1 * b.z - g2 * a.z) / det, (a.x * g2 - b.x * g1) / det};
-    for (const int angle : {0, upper, upper + 1}) hessian[2 + angle][2 + angle] += dot(multiplier, wheel.arms[angle]);
-    hessian[7 + leg][7 + leg] -= st.curvature[leg] * (multiplier.z * st.tangent[leg].x - multiplier.x * st.tangent[leg].z);
-}
-
-// Gradient of the cost and Hessian of the Lagrangian by y.
-void lagrangian(const PoseModel& model, const PoseTask& task, const PoseState& st, const ActiveRows& active, GradientY& g,
-                HessianY& h) {
-    GradientU gu{};
-    HessianU hu{};
-    for (int k = 0; k < 7; ++k) {
-        const double w = 2.0 * task.weights[k];
-        const double error = (k < 3 ? st.y[k] : st.q[k - 3]) - task.reference[k];
-        gu[k] += w * error;
-        hu[k][k] += w;
-        if (k < 3) continue;
-        // Joint = angle of its link minus angle of the link that it turns against.
-        const int j = k == 3 || k == 5 ? 2 : k - 1;
-        gu[j] -= w * error;
-        hu[j][j] += w;
-        hu[k][j] -= w;
-        hu[j][k] -= w;
-    }
-    g = reduce(st, gu);
-    for (std::size_t k = 0; k < active.rows.size(); ++k) {
-        const GradientU row = gradient(st, active.rows[k]);
-        for (int i = 0; i < kU; ++i) gu[i] -= active.multipliers[k] * row[i];
-        add_curvature(st, active.rows[k], -active.multipliers[k], hu);
-    }
-    for (int leg = 0; leg < 2; ++leg) add_wheel_curvature(model, st, leg, gu, hu);
-    // H = Z' Hu Z, where Z holds the turns of the link angles and ones elsewhere.
-    std::array<GradientY, kU> half;
-    for (int i = 0; i < kU; ++i) half[i] = reduce(st, hu[i]);
-    for (int k = 0; k < kUnknowns; ++k) {
-        for (int j = 0; j < kUnknowns; ++j) {
-            h[k][j] = half[k < 3 ? k : 4 + k][j];
-            for (int a = 0; a < 4; ++a) h[k][j] += st.link_turns[a][k] * half[3 + a][j];
-        }
-    }
-}
 
 struct Step {
     Unknowns by{};
@@ -114,6 +50,7 @@ Step quadratic_step(const PoseState& st, const GradientY& g, const HessianY& h, 
     Step out;
     QpVector d;
     out.relaxed = program.solve(d, out.multipliers) != QpStatus::kSolved;
+    for (int i = 0; i < n; ++i) out.relaxed = out.relaxed || !(std::abs(d[i]) < kFarthest);
     if (out.relaxed) {
         // One more unknown: how much all rows give way, dear and never negative.
         const std::size_t m = near.rows.size();
@@ -143,13 +80,13 @@ ActiveRows active_rows(const Constraints& near, const std::vector<double>& multi
 }
 
 // Move the trunk of a first guess to where both legs reach their wheels; false if nowhere.
-bool within_reach(const PoseWorld& world, Unknowns& y, PoseState& st) {
+bool within_reach(const PoseProblem& problem, Unknowns& y, PoseState& st) {
     for (int round = 0; round < 20; ++round) {
         bool moved = false;
         const Turn pitch = Turn::by(y[2]);
         for (int k = 0; k < 2; ++k) {
-            const LegModel& model = world.robot.robot.legs[k];
-            const Vec2 off = Vec2{y[0], y[1]} + pitch * model.leg.hip - world.path.centre(y[3 + k]);
+            const LegModel& model = problem.robot.robot.legs[k];
+            const Vec2 off = Vec2{y[0], y[1]} + pitch * model.leg.hip - problem.path.centre(y[3 + k]);
             const double d = norm(off), spare = 0.02 * (model.reach.most - model.reach.least);
             const double want = std::min(std::max(d, model.reach.least + spare), model.reach.most - spare);
             if (std::abs(d - want) <= 1e-9) continue;
@@ -160,7 +97,7 @@ bool within_reach(const PoseWorld& world, Unknowns& y, PoseState& st) {
         }
         if (!moved) break;
     }
-    return place(world.robot, world.path, y, st);
+    return place(problem.robot, problem.path, y, st);
 }
 
 Unknowns moved_by(const Unknowns& y, double share, const Unknowns& step) {
@@ -186,21 +123,21 @@ double cost(const PoseTask& task, const PoseState& st) {
     return total;
 }
 
-PoseSolution solve_pose(const PoseWorld& world, const PoseTask& task, const Unknowns& start) {
-    PoseState st(world.robot), trial(world.robot);
+PoseSolution solve_pose(const PoseProblem& problem, const PoseTask& task, const Unknowns& start) {
+    PoseState st(problem.robot), trial(problem.robot);
     Unknowns y = start;
     for (int k = 0; k < 2; ++k) y[3 + k] = std::min(std::max(y[3 + k], task.lower[7 + k]), task.upper[7 + k]);
     PoseSolution out;
     out.x.fill(std::numeric_limits<double>::quiet_NaN());
     double sum = 0.0;
     for (const double value : y) sum += value;
-    if (!std::isfinite(sum) || !within_reach(world, y, st)) return out;
+    if (!std::isfinite(sum) || !within_reach(problem, y, st)) return out;
     std::vector<int> free = {0, 1, 2};
     for (int k = 0; k < 2; ++k)
         if (task.upper[7 + k] > task.lower[7 + k]) free.push_back(3 + k);
 
     Constraints near, other;
-    collect(world.robot, world.cells, task, st, near);
+    collect(problem.robot, problem.cells, task, st, near);
     double value = cost(task, st), penalty = 1.0, closest = kInfinity;
     ActiveRows active;
     int since = 0;
@@ -210,7 +147,7 @@ PoseSolution solve_pose(const PoseWorld& world, const PoseTask& task, const Unkn
         ++out.iterations;
         GradientY g;
         HessianY h;
-        lagrangian(world.robot, task, st, active, g, h);
+        lagrangian(problem.robot, task, st, active, g, h);
         const Step step = quadratic_step(st, g, h, near, free);
         active = active_rows(near, step.multipliers, free.size() + 1);
         const double size = largest(step.by), worst = std::max(0.0, -near.least);
@@ -234,8 +171,8 @@ PoseSolution solve_pose(const PoseWorld& world, const PoseTask& task, const Unkn
         bool accepted = false;
         double cost_there = 0.0;
         for (int k = 0; k < kHalvings && !accepted; ++k) {
-            if (place(world.robot, world.path, moved_by(y, shorten, step.by), trial)) {
-                collect(world.robot, world.cells, task, trial, other);
+            if (place(problem.robot, problem.path, moved_by(y, shorten, step.by), trial)) {
+                collect(problem.robot, problem.cells, task, trial, other);
                 cost_there = cost(task, trial);
                 const double merit = cost_there + penalty * std::max(0.0, -other.least);
                 accepted = merit <= reference + 1e-4 * shorten * std::min(slope, 0.0) + 1e-14;

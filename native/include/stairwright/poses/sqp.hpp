@@ -18,16 +18,19 @@ struct PoseSolution {
     int iterations = 0;
 };
 
-// Robot and terrain of pose problems.
-struct PoseWorld {
-    const PoseModel& robot;
-    const WheelPath& path;
-    const std::vector<Cell>& cells;
+// One robot on one terrain.
+struct PoseProblem {
+    PoseProblem(const Terrain& terrain, const WheelPath& path, const Robot& robot, const CollisionPoints& points)
+        : terrain(terrain), path(path), robot(robot, points), cells(terrain_cells(terrain.vertices())) {}
+
     const Terrain& terrain;
+    const WheelPath& path;
+    PoseModel robot;
+    std::vector<Cell> cells;
 };
 
 // Minimise the cost of eq 17 under eqs 18-22 from one first guess.
-PoseSolution solve_pose(const PoseWorld& world, const PoseTask& task, const Unknowns& start);
+PoseSolution solve_pose(const PoseProblem& problem, const PoseTask& task, const Unknowns& start);
 
 // Eq 17.
 double cost(const PoseTask& task, const PoseState& state);

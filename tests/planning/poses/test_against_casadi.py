@@ -1,25 +1,24 @@
-"""The compiled solver and the plain CasADi form find the same optimum of the same problem."""
+"""The native solver and the plain CasADi form find the same optimum of the same problem."""
 
 import numpy as np
 import pytest
 
 import stairwright as sw
+from stairwright import _core
 from stairwright.planning.casadi_search import CasadiSearch
-from stairwright.planning.clearance import clearance, legs_apart
 from stairwright.planning.nlp import Layout
 from stairwright.planning.pose_locations import find_obstacles
-from stairwright.planning.pose_search import Place, PoseSearch
+from stairwright.planning.pose_search import ContactPair, PoseSearch
 from stairwright.planning.solver import Bounds, pose_solver
-from stairwright.planning.sqp.rows import Task
-from stairwright.planning.sqp.solve import solve_pose
 from stairwright.planning.weights import CriticalWeights
 from stairwright.robot.symbolic import dimensions
 from stairwright.terrain.wheel_path import wheel_path
 from tests.planning.drawn import random_profile
+from tests.shapely_checker import check
 
 
 def both(seed, links, count=6):
-    """Pairs of solutions (compiled x, cost, violation; CasADi's) of random problems."""
+    """Pairs of solutions (ours: x, cost, violation; CasADi's) of random problems."""
     random = np.random.default_rng(seed)
     robot = sw.load_robot(sw.robots()[seed % 2])
     path = wheel_path(random_profile(seed), robot.wheel.radius)
@@ -39,10 +38,11 @@ def both(seed, links, count=6):
         start = np.concatenate([wanted, [front, rear]])
         numbers = np.concatenate([wanted, rules.weights, dimensions(robot), window])
         theirs = pose_solver(layout, links, cells).solve(numbers, bounds, [start])
-        task = Task(wanted, rules.weights, lower, upper, 0.012, 0.006, 0.0, links, -np.inf, np.inf)
-        x = np.empty(9)
-        cost, violation, _ = solve_pose(search.body, search.course, task, start[[0, 1, 2, 7, 8]], x)
-        yield search, (x, cost, violation), theirs
+        task = _core.PoseTask(
+            wanted, rules.weights, lower, upper, 0.012, 0.006, 0.0, links, (-np.inf, np.inf)
+        )
+        ours = search.problem.solve(task, start[[0, 1, 2, 7, 8]])
+        yield search, (ours.x, ours.cost, ours.violation), theirs
 
 
 @pytest.mark.parametrize("seed", range(16))
@@ -52,9 +52,9 @@ def test_whole_links(seed):
         if violation > 1e-6:
             continue
         trunk, q = (float(x[0]), float(x[1]), float(x[2])), x[3:7]
-        gap, _ = clearance(search.robot, search.path.vertices, trunk, q)
-        assert gap >= 0.012 - 1e-6
-        assert legs_apart(search.robot, trunk, q) >= 0.006 - 1e-6
+        verdict = check(search.robot, search.path.vertices, *trunk, q)
+        assert verdict.clearance >= 0.012 - 1e-6
+        assert verdict.legs_apart >= 0.006 - 1e-6
 
 
 @pytest.mark.parametrize("links", [True, False])
@@ -79,7 +79,7 @@ def test_same_poses(name):
     ours, theirs = (kind(robot, path, 0.6, weights) for kind in (PoseSearch, CasadiSearch))
     obstacle = find_obstacles(path, 0.3, path.length - 0.3)[0]
     before = np.array([0.0, 0.33, 0.0, *ours.standing, 0.5, 0.25])
-    place = Place(obstacle.begin, (0.3, path.length), True, obstacle.steepest, True, before)
+    place = ContactPair(obstacle.begin, (0.3, path.length), True, obstacle.steepest, True, before)
     rears = ours.rear_places(place, True)
     same = 0
     for rear in rears:
