@@ -82,6 +82,9 @@ def _add_planning(command: argparse.ArgumentParser) -> None:
     command.add_argument("--friction", type=float, metavar="F", help="the terrain's by default")
     command.add_argument("--method", choices=METHODS, help="(path)")
     command.add_argument(
+        "--solver", choices=("native", "ipopt"), help="of the poses of critical (native)"
+    )
+    command.add_argument(
         "--weight", action="append", default=[], metavar="NAME=VALUE", help="of the planner"
     )
 

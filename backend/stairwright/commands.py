@@ -164,6 +164,7 @@ def _plan(source: str, given: Arguments) -> Plan:
         friction=given.friction,
         method=method,
         weights=_settings(given.weight, "weights"),
+        solver=given.solver,
     )
 
 
@@ -177,7 +178,7 @@ def _plan_or_file(given: Arguments) -> Plan:
         if path.suffix.lower() == ".npz" or _schema(path) != "terrain":
             document = load(path)
             if isinstance(document, Plan):
-                for name in ("robot", "method", "weight"):
+                for name in ("robot", "method", "solver", "weight"):
                     if getattr(given, name):
                         raise InputError("the plan says it already", (name,))
                 return document

@@ -14,9 +14,11 @@ from stairwright.robot.symbolic import dimensions
 from stairwright.terrain.profile import height_at
 from stairwright.terrain.wheel_path import WheelPath
 
+from .extra_terms import NONE, ExtraTerms
 from .nlp import Layout
 from .pose_search import ENOUGH, TRIES, WANTED_MARGIN, ContactPair, Found, PoseSearch, Rules
-from .solver import Bounds, Solution, pose_solver
+from .solution import Solution
+from .solver import Bounds, pose_solver
 from .terrain_window import SIZES, cell_vector, cells, curve_window
 from .weights import CriticalWeights
 
@@ -28,15 +30,30 @@ _BESIDE = 0.35  # m of ground before the rear and after the front wheel that leg
 
 
 class CasadiSearch(PoseSearch):
-    """Solves the same poses as `PoseSearch` with CasADi, one call at a time."""
+    """Solves the same poses as `PoseSearch` with CasADi, one call at a time.
+
+    Args:
+        robot, path, friction, weights: See `PoseSearch`.
+        extra: Cost terms and constraints of the user; they hold at the poses found.
+        first: The solver tried first: ``daqp`` (an SQP with it, then IPOPT) or ``ipopt``.
+    """
 
     def __init__(
-        self, robot: Robot, path: WheelPath, friction: float, weights: CriticalWeights
+        self,
+        robot: Robot,
+        path: WheelPath,
+        friction: float,
+        weights: CriticalWeights,
+        extra: ExtraTerms = NONE,
+        first: str = "daqp",
     ) -> None:
         super().__init__(robot, path, friction, weights)
+        self.repeats = not extra  # the user's terms may depend on the place
         points = robot.collision_points
         layout = Layout(tuple(points.trunk), tuple(points.thigh), tuple(points.calf))
-        self._solvers = {n: pose_solver(layout, weights.exact_links, n) for n in SIZES}
+        self._solvers = {
+            n: pose_solver(layout, weights.exact_links, n, extra, first) for n in SIZES
+        }
         self._dimensions = dimensions(robot)
         joints = kinematics.limits(robot)
         middle, half = joints.mean(axis=1), np.ptp(joints, axis=1) / 2 - 0.02

@@ -10,14 +10,16 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
-from stairwright.terrain.wheel_path import wheel_path
+from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
 from .assembly import assemble
 from .diagnosis import diagnose, no_stand, statics_problem
@@ -27,11 +29,11 @@ from .plan import Plan, Pose, Problem
 from .pose_locations import Obstacle, find_obstacles, front_places
 from .pose_search import ContactPair, Found, PoseSearch
 from .poses import complete_poses
-from .solver import now
 from .timing import pose_times
 from .weights import CriticalWeights
 
 Floats = NDArray[np.float64]
+PoseSearcher = Callable[[Robot, WheelPath, float, CriticalWeights], PoseSearch]
 
 TAIL = 0.15  # m between an obstacle and a standing wheel, for legs of 0.4 m
 CONGRUENT = 1e-6  # m; moved poses of a uniform flight must fit the terrain this well
@@ -42,7 +44,7 @@ def plan_critical(
     robot: Robot,
     friction: float,
     weights: CriticalWeights,
-    solver: type[PoseSearch] = PoseSearch,
+    solver: PoseSearcher = PoseSearch,
     certified: bool = True,
 ) -> Plan:
     """Initial pose, two optimal poses per obstacle, final pose.
@@ -59,14 +61,21 @@ def plan_critical(
         The plan; infeasible with a problem where a pose has no solution or no equilibrium. The
         poses found before it are kept.
     """
-    started = now()
+    started = perf_counter()
     try:
         path = wheel_path(terrain, robot.wheel.radius)
         begin, end = find_stands(terrain, robot, path)
     except NoStand as error:
         stop = no_stand(terrain, robot, error)
         return assemble(
-            "critical", terrain, robot, friction, weights, [], stop, seconds=now() - started
+            "critical",
+            terrain,
+            robot,
+            friction,
+            weights,
+            [],
+            stop,
+            seconds=perf_counter() - started,
         )
     search = solver(robot, path, friction, weights)
     obstacles = find_obstacles(path, begin.wheels[1], end.wheels[0])
@@ -92,7 +101,7 @@ def plan_critical(
         problem,
         critical=[i for i, knot in enumerate(knots) if knot.optimal],
         certified=certified,
-        seconds=now() - started,
+        seconds=perf_counter() - started,
     )
     if problem is not None or plan.certificate is None:
         return plan
@@ -127,7 +136,7 @@ def _solve(
         rest = _rest(search, obstacles, k)
         following = end if k + 1 == len(obstacles) else rest
         after = None if following is None else _variables(_standing(search, following))
-        moved = _moved_pair(search, obstacles, pairs, k) if len(pairs) > 1 else None
+        moved = _moved_pair(search, obstacles, pairs, k)
         if moved is not None and moved[0].wheels[1] >= rear:
             pair = moved
         else:
@@ -182,7 +191,7 @@ def _moved_pair(
     search: PoseSearch, obstacles: list[Obstacle], pairs: list[tuple[_Knot, _Knot]], k: int
 ) -> tuple[_Knot, _Knot] | None:
     """The last pair moved to obstacle `k`, if the flight is uniform there; else None."""
-    if not obstacles[k].same_as(obstacles[k - 1]):
+    if not search.repeats or len(pairs) < 2 or not obstacles[k].same_as(obstacles[k - 1]):
         return None
     way = obstacles[k].begin - obstacles[k - 1].begin
     path = search.path

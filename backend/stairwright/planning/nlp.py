@@ -17,13 +17,14 @@ from numpy.typing import NDArray
 
 from stairwright.robot.symbolic import DIMENSIONS, Point, Shape, Skeleton, between, forward
 
+from .extra_terms import NONE, ExtraTerms, SymbolicPose
 from .separation import CellBlock, box_gap, link_gap, point_gap, segment_gap
 from .terrain_window import CORNERS, EDGES, PIECES
 
 Floats = NDArray[np.float64]
 
 VARIABLES = ("x_c", "z_c", "pitch", "q1", "q2", "q3", "q4", "s_front", "s_rear")
-WHEEL, HIP, GROUND, SELF = "wheel", "hip", "ground", "self"
+WHEEL, HIP, GROUND, SELF, EXTRA = "wheel", "hip", "ground", "self", "extra"
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Problem:
     Attributes:
         nlp: Dictionary of x, p, f, g.
         rows: (m,) kind of each constraint: `WHEEL` (equal to 0), `HIP` (at least 0), `GROUND`
-            and `SELF` (distances in m, at least their bound).
+            and `SELF` (distances in m, at least their bound), `EXTRA` (the user's, at least 0).
     """
 
     nlp: dict[str, Any]
@@ -50,7 +51,7 @@ class Problem:
 
 
 @lru_cache(maxsize=16)
-def build(layout: Layout, links: bool, cells: int) -> Problem:
+def build(layout: Layout, links: bool, cells: int, extra: ExtraTerms = NONE) -> Problem:
     """The problem with the collision points of `layout`, or with exact links.
 
     Args:
@@ -58,6 +59,7 @@ def build(layout: Layout, links: bool, cells: int) -> Problem:
         links: Keep whole links (capsules) and the trunk (a box) clear of the terrain, instead of
             the points alone; the points lie on them.
         cells: Number of convex cells of ground.
+        extra: Cost terms and constraints of the user.
     """
     X = ca.SX.sym("X", len(VARIABLES))
     reference = ca.SX.sym("reference", 7)  # x, z, pitch, q
@@ -90,6 +92,10 @@ def build(layout: Layout, links: bool, cells: int) -> Problem:
 
     error = X[:7] - reference
     cost = ca.dot(weights * error, error)  # eq 17, with the posture terms that make it unique
+    if extra:
+        symbolic = SymbolicPose.of(X, reference, pose)
+        cost += extra.cost_of(symbolic)
+        rows.extend((EXTRA, value) for value in extra.constraints_of(symbolic))
     p = ca.vertcat(
         reference,
         weights,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,6 @@ from .diagnosis import no_stand, statics_limit
 from .path.course import NoStand, find_stands
 from .plan import Limit, Plan, Pose, Problem
 from .poses import complete_poses
-from .solver import now
 from .timing import pose_times
 from .weights import NominalWeights
 
@@ -41,14 +41,21 @@ def plan_nominal(terrain: Terrain, robot: Robot, friction: float, weights: Nomin
         The plan. Where the standing pose would touch the terrain or tip, the status is infeasible
         and the problem names the first such place; the poses are listed nevertheless.
     """
-    started = now()
+    started = perf_counter()
     try:
         path = wheel_path(terrain, robot.wheel.radius)
         begin, end = find_stands(terrain, robot, path)
     except NoStand as error:
         stop = no_stand(terrain, robot, error)
         return assemble(
-            "nominal", terrain, robot, friction, weights, [], stop, seconds=now() - started
+            "nominal",
+            terrain,
+            robot,
+            friction,
+            weights,
+            [],
+            stop,
+            seconds=perf_counter() - started,
         )
     wheels = _roll(path, _wheelbase(robot), begin.wheels, end.wheels[0])
     poses = _poses(robot, path, friction, wheels, weights.speed)
@@ -56,7 +63,14 @@ def plan_nominal(terrain: Terrain, robot: Robot, friction: float, weights: Nomin
     if problem is None and wheels[-1, 0] < end.wheels[0] - STEP:
         problem = _out_of_reach(poses[-1])
     return assemble(
-        "nominal", terrain, robot, friction, weights, poses, problem, seconds=now() - started
+        "nominal",
+        terrain,
+        robot,
+        friction,
+        weights,
+        poses,
+        problem,
+        seconds=perf_counter() - started,
     )
 
 

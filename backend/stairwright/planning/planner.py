@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from typing import Any, get_args
+from functools import partial
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from stairwright.arguments import as_friction
 from stairwright.documents import Model
@@ -16,7 +17,12 @@ from stairwright.terrain.profile import Terrain
 from .plan import Method, Plan
 from .weights import parse_weights
 
+if TYPE_CHECKING:
+    from .critical_poses import PoseSearcher
+    from .extra_terms import ExtraConstraints, ExtraCost
+
 Source = str | os.PathLike[str] | Mapping[str, Any]
+PoseSolver = Literal["native", "ipopt"]
 
 
 def plan(
@@ -27,6 +33,9 @@ def plan(
     weights: Mapping[str, float] | Model | None = None,
     *,
     certified: bool = True,
+    solver: PoseSolver | None = None,
+    extra_cost: ExtraCost | None = None,
+    extra_constraints: ExtraConstraints | None = None,
 ) -> Plan:
     """Plan the poses of `robot` over `terrain`.
 
@@ -39,6 +48,10 @@ def plan(
         weights: Cost weights by name, see `stairwright.planning.weights`.
         certified: Check single poses and the motion between them; without, ``critical`` is sooner.
             A path is always certified.
+        solver: What solves the poses of ``critical``: ``native``, or ``ipopt``, which solves the
+            same problem written in CasADi. By default ``native``; with terms of yours ``ipopt``.
+        extra_cost: Of ``critical``: gives, for a `SymbolicPose`, a CasADi scalar to add to eq 17.
+        extra_constraints: Of ``critical``: gives CasADi scalars that shall not be negative.
 
     Returns:
         The plan; infeasible terrain gives a plan with a `problem`, never an exception.
@@ -54,6 +67,16 @@ def plan(
     machine = _within("robot", load_robot, robot)
     mu = ground.friction if friction is None else as_friction(friction)
     chosen = parse_weights(method, weights)
+    if solver not in (None, *get_args(PoseSolver)):
+        there = ", ".join(get_args(PoseSolver))
+        raise InputError(f"unknown solver {solver!r}; there are: {there}", ("solver",))
+    for field, value in (
+        ("solver", solver),
+        ("extra_cost", extra_cost),
+        ("extra_constraints", extra_constraints),
+    ):
+        if value is not None and method != "critical":
+            raise InputError("belongs to the method critical", (field,))
     if method == "path":
         from .path.planner import plan_path
 
@@ -61,10 +84,28 @@ def plan(
     if method == "critical":
         from .critical_poses import plan_critical
 
-        return plan_critical(ground, machine, mu, chosen, certified=certified)
+        search = _pose_search(solver, extra_cost, extra_constraints)
+        return plan_critical(ground, machine, mu, chosen, search, certified)
     from .nominal import plan_nominal
 
     return plan_nominal(ground, machine, mu, chosen)
+
+
+def _pose_search(
+    solver: PoseSolver | None, cost: ExtraCost | None, constraints: ExtraConstraints | None
+) -> PoseSearcher:
+    """What solves the poses of ``critical``."""
+    extra = cost is not None or constraints is not None
+    if solver == "native" and extra:
+        raise InputError("terms of yours are in CasADi, which ipopt solves", ("solver",))
+    if solver == "ipopt" or extra:
+        from .casadi_search import CasadiSearch
+        from .extra_terms import ExtraTerms
+
+        return partial(CasadiSearch, extra=ExtraTerms(cost, constraints), first="ipopt")
+    from .pose_search import PoseSearch
+
+    return PoseSearch
 
 
 def _within(field: str, load: Any, source: Any) -> Any:

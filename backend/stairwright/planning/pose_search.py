@@ -15,7 +15,7 @@ from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
-from .solver import Solution
+from .solution import Solution
 from .weights import CriticalWeights
 
 Floats = NDArray[np.float64]
@@ -125,6 +125,7 @@ class PoseSearch:
     ) -> None:
         self.robot, self.path, self.friction = robot, path, friction
         self.problem = pose_problem(robot, path)
+        self.repeats = True  # poses of a uniform flight may be moved along
         self.standing = self.problem.standing
         self.scale = (robot.thigh.length + robot.calf.length) / 0.4
         w = weights

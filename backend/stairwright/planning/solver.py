@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,11 +11,12 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from .nlp import GROUND, HIP, SELF, WHEEL, Layout, Problem, build
+from .extra_terms import NONE, ExtraTerms
+from .nlp import EXTRA, GROUND, HIP, SELF, WHEEL, Layout, Problem, build
+from .solution import Solution
 
 Floats = NDArray[np.float64]
 
-TOLERANCE = 1e-6  # m and rad; a solution violates no constraint by more
 _SQP = {
     "max_iter": 30,
     "tol_pr": 1e-8,
@@ -66,29 +66,16 @@ class Bounds:
     hip: float
 
 
-@dataclass(frozen=True)
-class Solution:
-    """A solved pose: variables (9,), cost, and by how much the worst constraint is violated."""
-
-    x: Floats
-    cost: float
-    violation: float
-    solver: str
-
-    @property
-    def solved(self) -> bool:
-        """Whether all constraints hold."""
-        return self.violation <= TOLERANCE
-
-
 class PoseSolver:
     """The problem of one collision layout with its solvers, which are made when first needed."""
 
-    def __init__(self, layout: Layout, links: bool, cells: int) -> None:
-        self.problem: Problem = build(layout, links, cells)
+    def __init__(
+        self, layout: Layout, links: bool, cells: int, extra: ExtraTerms, first: str
+    ) -> None:
+        self.problem: Problem = build(layout, links, cells, extra)
+        self._first = first
         self._kinds = np.array(self.problem.rows)
         self._solvers: dict[str, Any] = {}
-        self._patient = np.isin(self._kinds, [HIP, GROUND, SELF])
 
     def solve(
         self, parameters: Floats, bounds: Bounds, starts: list[Floats], patient: bool = True
@@ -131,14 +118,15 @@ class PoseSolver:
 
     def _ladder(self, starts: list[Floats], patient: bool) -> Iterator[tuple[str, Floats]]:
         for start in starts:
-            yield "daqp", start
+            yield self._first, start
         if not patient:
             return
         random = np.random.default_rng(0)
         spread = np.array([0.08, 0.08, 0.35, 0.4, 0.3, 0.4, 0.3, 0.03, 0.03])
         for _ in range(3):
-            yield "daqp", starts[0] + spread * random.standard_normal(9)
-        yield "ipopt", starts[0]
+            yield self._first, starts[0] + spread * random.standard_normal(9)
+        if self._first != "ipopt":
+            yield "ipopt", starts[0]
 
     def _solver(self, name: str) -> Any:
         if name not in self._solvers:
@@ -148,17 +136,24 @@ class PoseSolver:
 
     def _constraint_bounds(self, bounds: Bounds) -> tuple[Floats, Floats]:
         least = {WHEEL: 0.0, HIP: bounds.hip, GROUND: bounds.clearance, SELF: bounds.apart}
+        least[EXTRA] = 0.0
         lower = np.array([least[kind] for kind in self.problem.rows])
         upper = np.where(self._kinds == WHEEL, 0.0, np.inf)
         return lower, upper
 
 
 @lru_cache(maxsize=16)
-def pose_solver(layout: Layout, links: bool, cells: int) -> PoseSolver:
-    """The process's solver for a collision layout and a number of ground cells: built once."""
-    return PoseSolver(layout, links, cells)
+def pose_solver(
+    layout: Layout,
+    links: bool,
+    cells: int,
+    extra: ExtraTerms = NONE,
+    first: str = "daqp",
+) -> PoseSolver:
+    """The process's solver for a collision layout and a number of ground cells: built once.
 
-
-def now() -> float:
-    """Seconds of a clock that only runs forward."""
-    return time.perf_counter()
+    Args:
+        layout, links, cells, extra: See `nlp.build`.
+        first: Tried first: ``daqp`` (an SQP with it, then IPOPT) or ``ipopt``.
+    """
+    return PoseSolver(layout, links, cells, extra, first)
