@@ -1,6 +1,8 @@
 #include "stairwright/smoothing/refine.hpp"
 
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -117,6 +119,13 @@ void bind_smoothing(nb::module_& m) {
             return std::pair(rows(found.nodes), arrays(found.margins));
         }, nb::arg("ends"), nb::arg("poses"), nb::arg("spacing"), nb::arg("held") = 1,
            "Rows (s_front, s_rear, x, z, pitch) of the nodes, and their margins by name.")
+        .def("cost", [](const RefineProblem& problem, const Nodes& path) {
+            const smoothing::PathCost found = smoothing::path_cost(problem, nodes(path));
+            const smoothing::CostTerms& t = found.terms;
+            const std::map<std::string, double> terms = {{"com_margin", t.com_margin}, {"clearance", t.clearance},
+                                                         {"torque", t.torque}, {"smoothness", t.smoothness}, {"pitch", t.pitch}};
+            return std::pair(found.total, terms);
+        }, nb::arg("nodes"), "What the smoothing makes small, and the quantity of each weight by name.")
         .def("margins", [](const RefineProblem& p, const Nodes& path) {
             return arrays(smoothing::node_margins(p.terrain, p.path, p.robot, nodes(path), p.friction));
         }, nb::arg("nodes"));

@@ -128,12 +128,12 @@ double legs_distance(const RobotModel& robot, const std::array<LegPoints, 2>& le
 }
 
 PoseGeometry pose_geometry(const Terrain& terrain, const RobotModel& robot, const Body& body,
-                           const WheelCentres& wheels, double query_radius) {
+                           const WheelCentres& wheels, QueryRadii radii) {
     PoseGeometry out;
     out.posture = make_posture(robot, body, wheels);
     out.joints = pose_joints(robot, body.pitch, out.posture);
-    out.trunk = trunk_clearance(terrain, robot, body, query_radius);
-    out.links = links_clearance(terrain, robot, out.posture, query_radius);
+    out.trunk = trunk_clearance(terrain, robot, body, radii.trunk);
+    out.links = links_clearance(terrain, robot, out.posture, radii.links);
     out.legs = legs_distance(robot, out.posture.legs);
     return out;
 }

@@ -59,16 +59,50 @@ class PathWeights(Model):
     """What the path planner trades off along the course."""
 
     com_margin: float = _weight(
-        1.0, 0.01, 100.0, "1", "CoM margin", "Room for the centre of mass inside the friction cones"
+        1.0,
+        0.01,
+        100.0,
+        "1",
+        "CoM margin",
+        "Makes small what the centre of mass lacks to 60 mm of margin where a wheel may be 20 mm "
+        "late [m, rms along the path, for legs of 0.4 m]",
     )
     clearance: float = _weight(
-        1.0, 0.01, 100.0, "1", "Clearance", "Distance of trunk and links from the terrain"
+        1.0,
+        0.01,
+        100.0,
+        "1",
+        "Clearance",
+        "Makes small what the trunk lacks to 60 mm above the terrain, and links to what level "
+        "ground gives them [m, rms along the path, for legs of 0.4 m]",
     )
-    torque: float = _weight(1.0, 0.01, 100.0, "1", "Torque", "Low static joint torque")
+    torque: float = _weight(
+        1.0,
+        0.01,
+        100.0,
+        "1",
+        "Torque",
+        "Makes static torque of the leg joints small "
+        "[share of the motors' torque, rms along the path]",
+    )
     smoothness: float = _weight(
-        1.0, 0.01, 100.0, "1", "Smoothness", "Even motion of the trunk along the course"
+        1.0,
+        0.01,
+        100.0,
+        "1",
+        "Smoothness",
+        "Makes motion of the trunk small: travel per travel of the wheels, bends included "
+        "[1, rms along the path]",
     )
-    pitch: float = _weight(1.0, 0.01, 100.0, "1", "Pitch", "Trunk near the terrain's slope")
+    pitch: float = _weight(
+        1.0,
+        0.01,
+        100.0,
+        "1",
+        "Pitch",
+        "Makes small how far the pitch is off 0.8 of the slope between the wheels "
+        "[rad, rms along the path]",
+    )
     speed: float = _SPEED
 
 

@@ -51,6 +51,11 @@ double links_clearance(const Terrain& terrain, const RobotModel& robot, const Po
 // Distance of the front from the rear leg in one plane: thighs, calves, wheels; negative if they touch.
 double legs_distance(const RobotModel& robot, const std::array<LegPoints, 2>& legs);
 
+// Clearances beyond these are not told apart [m].
+struct QueryRadii {
+    double trunk = 0.0, links = 0.0;
+};
+
 // Everything of one pose that needs no forces.
 struct PoseGeometry {
     Posture posture;
@@ -58,6 +63,6 @@ struct PoseGeometry {
     double trunk = 0.0, links = 0.0, legs = 0.0;  // clearances [m]
 };
 PoseGeometry pose_geometry(const Terrain& terrain, const RobotModel& robot, const Body& body,
-                           const WheelCentres& wheels, double query_radius);
+                           const WheelCentres& wheels, QueryRadii radii);
 
 }  // namespace stairwright

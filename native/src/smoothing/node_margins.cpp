@@ -71,7 +71,7 @@ std::vector<NodeMargins> node_margins(const Terrain& terrain, const WheelPath& p
         const auto [s, body] = nodes[k];
         NodeMargins& node = out[k];
         const WheelCentres wheels = {path.centre(s.front), path.centre(s.rear)};
-        node.geometry = pose_geometry(terrain, robot, body, wheels, kQueryRadius);
+        node.geometry = pose_geometry(terrain, robot, body, wheels, {kQueryRadius, kQueryRadius});
         const double com_x = node.geometry.posture.com.x;
         const std::array<WheelContacts, 2> contacts = {wheel_contacts(path, s.front, friction),
                                                        wheel_contacts(path, s.rear, friction)};

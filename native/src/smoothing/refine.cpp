@@ -4,18 +4,16 @@
 #include <cmath>
 
 #include "stairwright/smoothing/densify.hpp"
+#include "stairwright/smoothing/objective.hpp"
+#include "stairwright/smoothing/resample.hpp"
 #include "stairwright/smoothing/smoothing.hpp"
 
 namespace stairwright::smoothing {
 
 namespace {
 
-constexpr double kClearance = 0.016;  // m; clearance that the smoothing aims at
 constexpr int kIterations = 40;
 constexpr std::size_t kFewestNodes = 40;
-constexpr double kUsualSpacing = 0.015;  // m; of nodes that the weights were chosen with
-
-using Column = std::vector<double>;
 
 // Nodes as columns: front and rear arc length, trunk x, z, pitch.
 std::array<Column, 5> columns(std::span<const Node> nodes) {
@@ -30,31 +28,6 @@ std::array<Column, 5> columns(std::span<const Node> nodes) {
 std::vector<Node> nodes_of(const std::array<Column, 5>& c) {
     std::vector<Node> out(c[0].size());
     for (std::size_t k = 0; k < out.size(); ++k) out[k] = {{c[0][k], c[1][k]}, {c[2][k], c[3][k], c[4][k]}};
-    return out;
-}
-
-// Path parameter of lattice poses: wheel travel and `swing` times the trunk's.
-Column path_parameter(std::span<const Node> poses, double swing) {
-    Column u = {0.0};
-    for (std::size_t k = 1; k < poses.size(); ++k) {
-        const Node &a = poses[k - 1], &b = poses[k];
-        const double rolled = 0.5 * (std::abs(b.s.front - a.s.front) + std::abs(b.s.rear - a.s.rear));
-        const double moved = norm({b.body.x - a.body.x, b.body.z - a.body.z}) + 0.25 * std::abs(b.body.pitch - a.body.pitch);
-        u.push_back(u.back() + (std::hypot(rolled, swing * moved) + 1e-9));
-    }
-    return u;
-}
-
-std::vector<Node> resample(std::span<const Node> poses, const Column& u, std::size_t count) {
-    std::vector<Node> out;
-    const double step = u.back() / static_cast<double>(count - 1);
-    std::size_t k = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double at = i + 1 == count ? u.back() : step * static_cast<double>(i);
-        while (k + 2 < u.size() && u[k + 1] <= at) ++k;
-        out.push_back(between(poses[k], poses[k + 1], (at - u[k]) / (u[k + 1] - u[k])));
-    }
-    out.back() = poses.back();
     return out;
 }
 
@@ -89,25 +62,6 @@ void keep_rising(Column& s, double first, double last) {
     for (double& at : s) at = highest = std::max(highest, std::clamp(at, first, last));
 }
 
-// `share` is the nodes' spacing over the usual one: weights of a sum over nodes scale with it.
-Objective objective(const RefineProblem& problem, const NodeSpacing& spacing, double share) {
-    const double size = problem.robot.scale(), root = std::sqrt(share);
-    const PathWeights& w = problem.weights;
-    Objective o;
-    o.com = {0.02, 100.0 * root};
-    o.reserve = {0.02 * size, 50.0 * root * std::sqrt(w.com_margin)};
-    o.lagged = {0.06 * size, 15.0 * root * std::sqrt(w.com_margin)};
-    o.trunk = o.links = {kClearance, 150.0 * root * std::sqrt(w.clearance)};
-    o.reach = {0.006 * size, 150.0 * root * std::sqrt(w.clearance)};
-    o.legs = {0.011, 150.0 * root};
-    o.joints = {0.05, 30.0 * root};
-    o.pitch_weight = 0.05 * root * std::sqrt(w.pitch);
-    o.height_weight = 0.3 * root;
-    o.height = problem.standing_height;
-    o.evenness = {20.0 * w.smoothness / share, 600.0 * spacing.softness * w.smoothness / (share * share * share), 0.25 * size};
-    return o;
-}
-
 }  // namespace
 
 RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends, std::span<const Node> poses,
@@ -132,13 +86,14 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
     const std::vector<double> changes = contact_changes(problem.path, nodes);
     const std::vector<NodeIntervals> intervals =
         intervals_along(problem.path, nodes, changes, problem.friction, problem.reserve, problem.lag);
-    std::vector<WheelCentres> wheels;
+    std::vector<WheelCentres> wheels, contacts;
     std::vector<Body> bodies;
     for (const auto& [s, body] : nodes) {
         wheels.push_back({problem.path.centre(s.front), problem.path.centre(s.rear)});
+        contacts.push_back({problem.path.contact(s.front), problem.path.contact(s.rear)});
         bodies.push_back(body);
     }
-    const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, intervals, fixed,
+    const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, intervals, fixed,
                                      objective(problem, spacing, hop / kUsualSpacing)};
     smooth(smoothing, bodies, kIterations);
     for (std::size_t k = 0; k < n; ++k) nodes[k].body = bodies[k];

@@ -7,55 +7,76 @@ namespace stairwright::smoothing {
 
 namespace {
 
-constexpr double kHard = 600.0;  // weight of what must not be violated
 constexpr double kStep = 1e-5;   // m and rad; of finite differences
 
+double shortfall(double value, const MarginTerm& term) { return term.weight * std::max(0.0, term.target - value); }
+
 // Pull towards the term's target, and hard away from less than `least`.
-double hinge(double value, const MarginTerm& term, double least) {
-    return term.weight * std::max(0.0, term.target - value) + kHard * std::max(0.0, least - value);
+double hinge(double value, const MarginTerm& term, double hard, double least) {
+    return term.weight * std::max(0.0, term.target - value) + hard * std::max(0.0, least - value);
 }
 
 // Both sides of one CoM interval.
-void com_residuals(double x, const Interval& interval, const MarginTerm& term, bool hard, double* out) {
+void com_residuals(double x, const Interval& interval, const MarginTerm& term, double hard, double* out) {
     // A narrow interval cannot give the target on both sides: aim at its middle.
     const double target = std::min(term.target, 0.45 * std::max(0.0, interval.upper - interval.lower));
     const double below = x - interval.lower, above = interval.upper - x;
     out[0] = term.weight * std::max(0.0, target - below);
     out[1] = term.weight * std::max(0.0, target - above);
-    if (hard) {
-        out[0] += kHard * std::max(0.0, 0.25 * target - below);
-        out[1] += kHard * std::max(0.0, 0.25 * target - above);
+    out[0] += hard * std::max(0.0, 0.25 * target - below);
+    out[1] += hard * std::max(0.0, 0.25 * target - above);
+}
+
+// Static torques of the leg joints over their limits, front thigh, front calf, rear thigh, rear calf. Each wheel pair
+// carries its share of the weight by its lever: the gentlest forces take a hundred times as long and differ on walls only.
+void torque_residuals(const SmoothingProblem& problem, std::size_t node, const Posture& posture, double* out) {
+    const auto& [front, rear] = problem.contacts[node];
+    const double lever = std::max(front.x - rear.x, 0.05);
+    const double share = std::clamp((posture.com.x - rear.x) / lever, 0.0, 1.0);
+    const double half_weight = 0.5 * problem.robot.mass * kGravity, weight = problem.objective.torque_weight;
+    for (const int pair : {kFront, kRear}) {
+        const Leg& leg = problem.robot.legs[pair].leg;
+        const Contact contact{problem.contacts[node][pair], {0.0, 1.0}};
+        const ContactForce force{0.0, half_weight * (pair == kFront ? share : 1.0 - share)};
+        const LegTorques torques = static_torques(leg, posture.legs[pair], contact, force);
+        *out++ = weight * torques.thigh / leg.thigh_motor.torque;
+        *out++ = weight * torques.calf / leg.calf_motor.torque;
     }
 }
 
 }  // namespace
 
-double query_radius(const Objective& objective) { return std::max(objective.trunk.target, objective.links.target); }
+QueryRadii query_radii(const Objective& o) {
+    return {std::max(o.trunk.target, o.trunk_room.target), std::max(o.links.target, o.links_room.target)};
+}
 
 Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry) {
     const Objective& o = problem.objective;
     const NodeIntervals& interval = problem.intervals[node];
     const double x = geometry.posture.com.x;
     Residuals r;
-    com_residuals(x, interval.full, o.com, true, &r[kComLow]);
-    com_residuals(x, interval.reserve, o.reserve, false, &r[kReserveLow]);
-    com_residuals(x, interval.lagged, o.lagged, false, &r[kLaggedLow]);
-    r[kTrunk] = hinge(geometry.trunk, o.trunk, 0.002);
-    r[kLinks] = hinge(geometry.links, o.links, 0.004);
-    r[kLegs] = hinge(geometry.legs, o.legs, 0.007);
-    r[kJoints] = hinge(geometry.joints.slack, o.joints, 0.004);
-    r[kReach] = hinge(geometry.posture.reach_slack, o.reach, 0.0005);
+    com_residuals(x, interval.full, o.com, o.hard, &r[kComLow]);
+    com_residuals(x, interval.reserve, o.reserve, 0.0, &r[kReserveLow]);
+    com_residuals(x, interval.lagged, o.lagged, 0.0, &r[kLaggedLow]);
+    r[kTrunk] = hinge(geometry.trunk, o.trunk, o.hard, 0.002);
+    r[kLinks] = hinge(geometry.links, o.links, o.hard, 0.004);
+    r[kLegs] = hinge(geometry.legs, o.legs, o.hard, 0.007);
+    r[kJoints] = hinge(geometry.joints.slack, o.joints, o.hard, 0.004);
+    r[kReach] = hinge(geometry.posture.reach_slack, o.reach, o.hard, 0.0005);
+    r[kTrunkRoom] = shortfall(geometry.trunk, o.trunk_room);
+    r[kLinksRoom] = shortfall(geometry.links, o.links_room);
     const auto& [front, rear] = problem.wheels[node];
     const double slope = std::atan2(front.z - rear.z, front.x - rear.x);
     r[kPitch] = (body.pitch + o.slope_share * slope) * o.pitch_weight;
     r[kHeight] = (body.z - 0.5 * (front.z + rear.z) - o.height) * o.height_weight;
+    torque_residuals(problem, node, geometry.posture, &r[kFrontThigh]);
     return r;
 }
 
 NodeJacobian differentiate(const SmoothingProblem& problem, std::size_t node, const Body& body,
                            const PoseGeometry& geometry, const Residuals& at) {
     constexpr std::array<double Body::*, 3> axes = {&Body::x, &Body::z, &Body::pitch};
-    const double query = query_radius(problem.objective);
+    const QueryRadii radii = query_radii(problem.objective);
     NodeJacobian out;
     PoseGeometry moved = geometry;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -64,8 +85,8 @@ NodeJacobian differentiate(const SmoothingProblem& problem, std::size_t node, co
         moved.posture = make_posture(problem.robot, x, problem.wheels[node]);
         // What is far enough from its limits stays so; most of the time goes here.
         if (at[kJoints] > 0.0) moved.joints = pose_joints(problem.robot, x.pitch, moved.posture);
-        if (at[kTrunk] > 0.0) moved.trunk = trunk_clearance(problem.terrain, problem.robot, x, query);
-        if (at[kLinks] > 0.0) moved.links = links_clearance(problem.terrain, problem.robot, moved.posture, query);
+        if (at[kTrunk] > 0.0 || at[kTrunkRoom] > 0.0) moved.trunk = trunk_clearance(problem.terrain, problem.robot, x, radii.trunk);
+        if (at[kLinks] > 0.0 || at[kLinksRoom] > 0.0) moved.links = links_clearance(problem.terrain, problem.robot, moved.posture, radii.links);
         if (at[kLegs] > 0.0) moved.legs = legs_distance(problem.robot, moved.posture.legs);
         const Residuals r = residuals(problem, node, x, moved);
         for (int m = 0; m < kResiduals; ++m) out[a][m] = (r[m] - at[m]) * (1.0 / kStep);

@@ -5,17 +5,18 @@
 
 namespace stairwright::smoothing {
 
-// Order of a node's residuals; all but the last two are never negative.
+// Order of a node's residuals; the first ones, up to kHinges, are never negative.
 enum Residual {
     kComLow, kComHigh, kReserveLow, kReserveHigh, kLaggedLow, kLaggedHigh,
-    kTrunk, kLinks, kLegs, kJoints, kReach, kPitch, kHeight, kResiduals,
+    kTrunk, kLinks, kLegs, kJoints, kReach, kTrunkRoom, kLinksRoom,
+    kPitch, kHeight, kFrontThigh, kFrontCalf, kRearThigh, kRearCalf, kResiduals,
 };
 inline constexpr int kHinges = kPitch;
 
 using Residuals = std::array<double, kResiduals>;
 using NodeJacobian = std::array<Residuals, 3>;  // by x, z, pitch
 
-double query_radius(const Objective& objective);  // nothing farther away pulls [m]
+QueryRadii query_radii(const Objective& objective);  // nothing farther away pulls [m]
 
 Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry);
 NodeJacobian differentiate(const SmoothingProblem& problem, std::size_t node, const Body& body,

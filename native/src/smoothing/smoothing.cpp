@@ -45,7 +45,7 @@ double limited(double step) { return std::min(kLongestStep, std::max(-kLongestSt
 class Smoother {
   public:
     Smoother(const SmoothingProblem& problem, std::span<Body> nodes)
-        : problem_(problem), nodes_(nodes), query_(query_radius(problem.objective)),
+        : problem_(problem), nodes_(nodes), radii_(query_radii(problem.objective)),
           evenness_(problem.objective.evenness.hessian(nodes.size())), geometry_(nodes.size()),
           residuals_(nodes.size()), fresh_(nodes.size()), seen_(nodes.size()), best_(nodes.begin(), nodes.end()),
           hessian_(evenness_), uneven_(3 * nodes.size()), gradient_(3 * nodes.size()) {}
@@ -79,7 +79,7 @@ class Smoother {
         for (std::size_t k = 0; k < nodes_.size() && cost < least_ * kNewCost; ++k) {
             fresh_[k] = has_moved(nodes_[k], seen_[k].body);
             if (fresh_[k]) {
-                geometry_[k] = pose_geometry(problem_.terrain, problem_.robot, nodes_[k], problem_.wheels[k], query_);
+                geometry_[k] = pose_geometry(problem_.terrain, problem_.robot, nodes_[k], problem_.wheels[k], radii_);
                 residuals_[k] = residuals(problem_, k, nodes_[k], geometry_[k]);
             } else {
                 residuals_[k] = extrapolate(seen_[k].residuals, seen_[k].jacobian, seen_[k].body, nodes_[k]);
@@ -125,7 +125,7 @@ class Smoother {
 
     const SmoothingProblem& problem_;
     std::span<Body> nodes_;
-    double query_;
+    QueryRadii radii_;
     BandMatrix evenness_;
     std::vector<PoseGeometry> geometry_;
     std::vector<Residuals> residuals_;

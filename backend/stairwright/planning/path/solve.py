@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -136,9 +137,17 @@ class Course(Question):
     def solve(self, pool: Executor) -> Solved | Blocked:
         """Climb the ladder until a path passes the certificate and is not needlessly thin.
 
+        Weights say which path, never whether: where they find none the default ones are tried.
+
         Args:
             pool: Who tries the rungs of one step.
         """
+        found = self._climb(pool)
+        if isinstance(found, Solved) or self.unweighted is None:
+            return found
+        return self.unweighted.solve(pool)
+
+    def _climb(self, pool: Executor) -> Solved | Blocked:
         best: Solved | None = None
         blocked: list[Blocked] = []
         ends: tuple[Place, ...] = ()
@@ -206,12 +215,43 @@ class Course(Question):
         return hope if isinstance(hope, Solved) or hope.opened else bold
 
     def attempt(self, rung: Rung) -> Solved | Blocked:
-        """What comes of one rung."""
+        """What comes of one rung.
+
+        With weights of the user's the lattice is searched for them and for the default ones, and
+        the path that costs less is taken: heavy weights lead the lattice, whose costs are rougher
+        than those of the smoothing, to places that the smoothing cannot make as good.
+        """
         still_wanted()
         finding = self.find(rung.fine, rung.bounds, not rung.probe, rung.roll_back)
         if rung.probe:
             return Blocked(None, finding.quality > 0)
-        return Blocked(finding.reached, False) if finding.s is None else self.finish(finding)
+        if finding.s is None:
+            return Blocked(finding.reached, False)
+        answers = [self.finish(finding)]
+        if self.unweighted is not None:
+            usual = self.unweighted.find(rung.fine, rung.bounds, roll_back=rung.roll_back)
+            if usual.s is not None:
+                answers += [self.finish(usual), self.unweighted.finish(usual)]
+        return min(answers, key=self.cost)
+
+    def cost(self, answer: Solved | Blocked) -> float:
+        """What the weights make of a path; infinite where there is none."""
+        if isinstance(answer, Blocked):
+            return np.inf
+        return self._path_cost(answer.nodes)[0]
+
+    def cost_terms(self, nodes: Refined) -> dict[str, float]:
+        """The quantity that each weight makes small, by the weight's name; see `PathWeights`."""
+        return self._path_cost(nodes)[1]
+
+    def _path_cost(self, nodes: Refined) -> tuple[float, dict[str, float]]:
+        return self.refine_problem.cost(np.hstack([nodes.s, nodes.body]))
+
+    @cached_property
+    def unweighted(self) -> Course | None:
+        """The same question with default weights, if these are others."""
+        usual = PathWeights(speed=self.weights.speed)
+        return None if usual == self.weights else replace(self, weights=usual, searches={})
 
     def partial(self) -> tuple[Way, Place | None]:
         """The way as far as it goes, and where wheels end: nothing where they cannot even start."""

@@ -2,8 +2,8 @@
 //
 //   minimise  sum_k |r(body_k)|^2 + rate sum |d body|^2 + curvature sum |dd body|^2
 //
-// where r holds, per node, how far each margin is below its target, the pitch's distance from what it follows, and the
-// height's from the standing height.
+// where r holds, per node, how far each margin is below its target, what clearance lacks to the room wanted, joint
+// torques, the pitch's distance from what it follows, and the height's from the standing height.
 #pragma once
 
 #include <span>
@@ -14,7 +14,7 @@
 
 namespace stairwright::smoothing {
 
-// A margin is drawn to its target with this weight; nothing draws it beyond.
+// A quantity is drawn to its target with this weight; nothing draws it beyond.
 struct MarginTerm {
     double target = 0.0, weight = 0.0;
 };
@@ -25,6 +25,9 @@ struct Objective {
     MarginTerm trunk, links, legs;  // clearances [m]
     MarginTerm joints;              // joint ranges [rad]
     MarginTerm reach;               // hip-wheel distances [m]
+    MarginTerm trunk_room, links_room;  // clearances beyond what is safe [m]
+    double torque_weight = 0.0;     // of each leg joint's torque over its limit
+    double hard = 600.0;            // of what must not be violated
     double pitch_weight = 0.0;      // of pitch + slope_share * slope [1/rad]
     double slope_share = 0.8;       // of the slope between the wheels that the pitch follows
     double height_weight = 0.0;     // of the height above the wheels' mean [1/m]
@@ -36,6 +39,7 @@ struct SmoothingProblem {
     const Terrain& terrain;
     const RobotModel& robot;
     std::span<const WheelCentres> wheels;
+    std::span<const WheelCentres> contacts;  // where the wheels touch
     std::span<const NodeIntervals> intervals;
     std::vector<bool> fixed;  // nodes that must not move
     Objective objective;

@@ -1,0 +1,109 @@
+#include "stairwright/smoothing/objective.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "residuals.hpp"
+#include "stairwright/smoothing/densify.hpp"
+#include "stairwright/smoothing/resample.hpp"
+
+namespace stairwright::smoothing {
+
+namespace {
+
+constexpr double kClearance = 0.016;  // m; clearance that is safe
+constexpr double kTrunkClearance = 0.06;   // m of trunk clearance beyond which more is worth nothing, for legs of 0.4 m
+// Of the cost terms at a user's weight of 1, per node.
+constexpr double kComWeight = 15.0;     // 1/m
+constexpr double kRoomWeight = 2.0;     // 1/m, of trunk and links
+constexpr double kTorqueWeight = 0.3;
+constexpr double kPitchWeight = 0.05;   // 1/rad
+constexpr double kRateWeight = 20.0;    // 1/m^2, of the squared step from node to node
+constexpr double kBend = 0.082;         // m; how much bends count against motion
+constexpr double kHardWeight = 600.0;
+
+// Clearance of a calf's end above level ground: more cannot be had on any.
+double calf_end_clearance(const RobotModel& robot) {
+    double out = std::numeric_limits<double>::infinity();
+    for (const LegModel& leg : robot.legs)
+        for (const Capsule& c : leg.leg.calf.shape) out = std::min(out, leg.leg.wheel.radius - c.radius);
+    return std::max(out, kClearance);
+}
+
+template <typename Value>
+double root_mean(std::span<const Residuals> rows, double weight, Value value) {
+    double total = 0.0;
+    for (const Residuals& r : rows) total += value(r);
+    return std::sqrt(total / static_cast<double>(rows.size())) / std::max(weight, 1e-12);
+}
+
+double square(double x) { return x * x; }
+
+}  // namespace
+
+Objective objective(const RefineProblem& problem, const NodeSpacing& spacing, double share) {
+    const double size = problem.robot.scale(), root = std::sqrt(share);
+    const PathWeights& w = problem.weights;
+    Objective o;
+    o.com = {0.02, 100.0 * root};
+    o.reserve = {0.02 * size, 50.0 * root};
+    o.lagged = {0.06 * size, kComWeight * root * std::sqrt(w.com_margin)};
+    o.trunk = o.links = {kClearance, 150.0 * root};
+    o.reach = {0.006 * size, 150.0 * root};
+    const double room = kRoomWeight * root * std::sqrt(w.clearance);
+    o.trunk_room = {kTrunkClearance * size, room};
+    o.links_room = {calf_end_clearance(problem.robot), room};
+    o.torque_weight = kTorqueWeight * root * std::sqrt(w.torque);
+    o.hard = kHardWeight;
+    o.legs = {0.011, 150.0 * root};
+    o.joints = {0.05, 30.0 * root};
+    o.pitch_weight = kPitchWeight * root * std::sqrt(w.pitch);
+    o.height_weight = 0.3 * root;
+    o.height = problem.standing_height;
+    const double bend = kBend / kUsualSpacing, even = kRateWeight * w.smoothness;
+    o.evenness = {even / share, even * bend * bend * spacing.softness / (share * share * share), 0.25 * size};
+    return o;
+}
+
+PathCost path_cost(const RefineProblem& problem, std::span<const Node> path) {
+    const NodeSpacing spacing;
+    const Column u = path_parameter(path, spacing.swing);
+    const double step = kUsualSpacing * problem.robot.scale();
+    const std::size_t count = std::max<std::size_t>(20, static_cast<std::size_t>(u.back() / step));
+    const std::vector<Node> nodes = resample(path, u, count);
+    const std::vector<double> changes = contact_changes(problem.path, nodes);
+    const std::vector<NodeIntervals> intervals =
+        intervals_along(problem.path, nodes, changes, problem.friction, problem.reserve, problem.lag);
+    std::vector<WheelCentres> wheels, contacts;
+    std::vector<Body> bodies;
+    for (const auto& [s, body] : nodes) {
+        wheels.push_back({problem.path.centre(s.front), problem.path.centre(s.rear)});
+        contacts.push_back({problem.path.contact(s.front), problem.path.contact(s.rear)});
+        bodies.push_back(body);
+    }
+    const double share = u.back() / static_cast<double>(count - 1) / kUsualSpacing;
+    const Objective o = objective(problem, spacing, share);
+    const SmoothingProblem at{problem.terrain, problem.robot, wheels, contacts, intervals, {}, o};
+    std::vector<Residuals> rows;
+    PathCost out;
+    for (std::size_t k = 0; k < count; ++k) {
+        const PoseGeometry geometry = pose_geometry(problem.terrain, problem.robot, bodies[k], wheels[k], query_radii(o));
+        rows.push_back(residuals(at, k, bodies[k], geometry));
+        for (const double r : rows.back()) out.total += r * r;
+    }
+    std::vector<double> gradient(3 * count);
+    const double uneven = o.evenness.cost(bodies, gradient);
+    out.total += uneven;
+    CostTerms& terms = out.terms;
+    terms.com_margin = root_mean(rows, o.lagged.weight, [](const Residuals& r) { return square(r[kLaggedLow]) + square(r[kLaggedHigh]); });
+    terms.clearance = root_mean(rows, o.trunk_room.weight, [](const Residuals& r) { return square(r[kTrunkRoom]) + square(r[kLinksRoom]); });
+    terms.torque = root_mean(rows, 2.0 * o.torque_weight, [](const Residuals& r) {
+        return square(r[kFrontThigh]) + square(r[kFrontCalf]) + square(r[kRearThigh]) + square(r[kRearCalf]);
+    });
+    terms.pitch = root_mean(rows, o.pitch_weight, [](const Residuals& r) { return square(r[kPitch]); });
+    terms.smoothness = std::sqrt(uneven / static_cast<double>(count) / (o.evenness.rate * share * share)) / kUsualSpacing;
+    return out;
+}
+
+}  // namespace stairwright::smoothing
