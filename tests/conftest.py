@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import httpx
 import pytest
@@ -40,6 +40,13 @@ CHROMIUM_FLAGS = (
     "--disable-quic",
     "--no-first-run",
 )
+
+# Playwright waits for functions by `eval`, which the page's policy forbids; see test_policy.py
+TAB: dict[str, Any] = {
+    "viewport": {"width": 1440, "height": 900},
+    "accept_downloads": True,
+    "bypass_csp": True,
+}
 
 
 def pytest_configure() -> None:
@@ -159,7 +166,5 @@ def browser(browser_path: str) -> Iterator[Browser]:
 @pytest.fixture
 def page(browser: Browser, server: Server) -> Iterator[Page]:
     """An empty tab with a profile of its own; `page.goto("/")` opens the product."""
-    with browser.new_context(
-        base_url=server.url, viewport={"width": 1440, "height": 900}, accept_downloads=True
-    ) as context:
+    with browser.new_context(**TAB, base_url=server.url) as context:
         yield context.new_page()

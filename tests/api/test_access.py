@@ -13,7 +13,7 @@ import pytest
 import websockets
 from websockets.asyncio.client import connect
 
-from stairwright.api.middleware import same_site
+from stairwright.api.origins import same_site
 from stairwright.api.settings import Settings
 from stairwright.errors import InputError
 from tests.conftest import Server

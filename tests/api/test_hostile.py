@@ -109,7 +109,7 @@ def test_another_content_type(api: httpx.Client, kind: str) -> None:
 def test_wrong_methods_and_places(api: httpx.Client) -> None:
     wrong = api.request("PATCH", "/terrains/flat")
     refused(wrong, 405)
-    assert wrong.headers["allow"] == "DELETE, GET, PUT"
+    assert wrong.headers["allow"] == "DELETE, GET, HEAD, PUT"
     refused(api.get("/nothing"), 404)
     refused(api.get("/jobs/j-0"), 404)
     refused(api.get("/jobs/j-0/events"), 404)

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.conftest import TAB
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Locator, Page, ViewportSize
 
@@ -148,7 +150,7 @@ def product(page: Page) -> Iterator[Product]:
 @pytest.fixture(scope="module")
 def shared(browser: Browser, server: Server) -> Iterator[Product]:
     """One page for a module's tests that do not need a first visit: opening one is dear."""
-    with browser.new_context(base_url=server.url, viewport=DESK, accept_downloads=True) as context:
+    with browser.new_context(**TAB, base_url=server.url) as context:
         opened = Product(context.new_page()).open()
         yield opened
 
@@ -170,5 +172,5 @@ def product_with_scene(page: Page) -> Product:
 def second(browser: Browser, server: Server) -> Iterator[Product]:
     """Another user on another machine."""
     context: BrowserContext
-    with browser.new_context(base_url=server.url, viewport=DESK) as context:
+    with browser.new_context(**TAB, base_url=server.url) as context:
         yield Product(context.new_page())

@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any
 import httpx
 import pytest
 
+from tests.conftest import TAB
+
 from .conftest import DESK, PATIENCE, TERRAIN, Product
 
 if TYPE_CHECKING:
@@ -257,7 +259,7 @@ def test_a_killed_server_loses_nothing(browser: Browser, tmp_path: Path) -> None
         port = int(probe.getsockname()[1])
     process = _serve(port, tmp_path / "data")
     try:
-        with browser.new_context(viewport={"width": 1440, "height": 900}) as context:
+        with browser.new_context(**TAB) as context:
             product = Product(context.new_page()).open(f"http://127.0.0.1:{port}/")
             scene = product.page.locator("iframe").get_attribute("src")
             _kill(process)

@@ -51,7 +51,7 @@ class Site:
 
         @app.websocket("/scene/{name}")
         async def socket(websocket: WebSocket, name: str) -> None:
-            await proxy_websocket(websocket, self.sessions[name].port)
+            await proxy_websocket(websocket, self.sessions[name].address)
 
         config = uvicorn.Config(
             app,

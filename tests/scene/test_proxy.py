@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 
 import msgspec
 import pytest
@@ -12,7 +13,7 @@ import uvicorn
 import viser
 import websockets
 from fastapi import FastAPI, WebSocket
-from websockets.asyncio.client import connect
+from websockets.asyncio.client import connect, unix_connect
 
 from stairwright.scene.proxy import forwards, origin_allowed, proxy_websocket
 from stairwright.scene.session import SceneSession
@@ -35,11 +36,11 @@ def address(session) -> Iterator[str]:
 
     @app.websocket("/scene/one")
     async def one(websocket: WebSocket) -> None:
-        await proxy_websocket(websocket, session.port, {"http://editor.example"})
+        await proxy_websocket(websocket, session.address, {"http://editor.example"})
 
     @app.websocket("/scene/gone")
     async def gone(websocket: WebSocket) -> None:
-        await proxy_websocket(websocket, 1)
+        await proxy_websocket(websocket, Path("/nowhere"))
 
     server = uvicorn.Server(uvicorn.Config(app, host="127.0.0.1", port=0, log_level="warning"))
     thread = threading.Thread(target=server.run, daemon=True)
@@ -53,10 +54,14 @@ def address(session) -> Iterator[str]:
 
 
 def talk(address: str, *, origin: str | None = None, send: tuple[bytes, ...] = ()) -> dict:
+    options = {"subprotocols": [PROTOCOL], "origin": origin, "max_size": None}
+    direct = address.startswith("/")
+
     async def run() -> dict:
-        async with connect(
-            address, subprotocols=[PROTOCOL], origin=origin, max_size=None, proxy=None
-        ) as socket:
+        connecting = (
+            unix_connect(address, **options) if direct else connect(address, proxy=None, **options)
+        )
+        async with connecting as socket:
             for message in send:
                 await socket.send(message)
             first = await asyncio.wait_for(socket.recv(), 20)
@@ -99,7 +104,7 @@ def test_a_share_tunnel_cannot_be_asked_for(address, session, monkeypatch):
     talk(f"{address}/one", send=(request, b"\xc1 not msgpack", request))
     assert not asked.wait(0.5)
     # The same request straight to viser does reach it: the proxy is what holds it back.
-    talk(f"ws://127.0.0.1:{session.port}", send=(request,))
+    talk(str(session.address), send=(request,))
     assert asked.wait(20)
 
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import socket
+import tempfile
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -38,10 +41,36 @@ def wait_for(check) -> None:
     assert check()
 
 
-def test_listens_on_loopback_only(session):
-    assert session._server.get_host() == "127.0.0.1"
-    with socket.create_connection(("127.0.0.1", session.port), timeout=5):
-        pass
+def ports() -> int:
+    """TCP ports that this process listens on."""
+    descriptors = Path("/proc/self/fd")
+    ours = {str(each.readlink()) for each in descriptors.iterdir() if each.is_symlink()}
+    tables = [
+        Path(f"/proc/self/net/{name}").read_text().splitlines()[1:] for name in ("tcp", "tcp6")
+    ]
+    listening = [line.split() for table in tables for line in table if line.split()[3] == "0A"]
+    return sum(f"socket:[{fields[9]}]" in ours for fields in listening)
+
+
+def test_nobody_else_gets_in():
+    before = ports()
+    session = SceneSession("s")
+    try:
+        assert ports() == before
+        folder = session.address.parent.stat()
+        assert (folder.st_mode & 0o777, folder.st_uid) == (0o700, os.getuid())
+        with socket.socket(socket.AF_UNIX) as ours:
+            ours.connect(str(session.address))
+    finally:
+        session.close()
+
+
+def test_a_scene_that_finds_no_room_says_so_at_once(monkeypatch, tmp_path):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / ("x" * 100)))
+    Path(tempfile.gettempdir()).mkdir()
+    with pytest.raises(OSError, match="too long"):
+        SceneSession("s")
+    assert list(Path(tempfile.gettempdir()).iterdir()) == []
 
 
 def test_shows_terrain_robot_ghosts_paths_and_margins(session, plan):
@@ -177,15 +206,13 @@ def example_weights() -> list[str]:
     return list(PathWeights.model_fields)
 
 
-def test_closing_frees_port_and_threads(plan):
+def test_closing_frees_socket_and_threads(plan):
     session = SceneSession("s")
     session.show(plan=plan)
-    port = session.port
     session.close()
     session.close()
     assert not any(t.name == "scene-player" and t.is_alive() for t in threading.enumerate())
-    with pytest.raises(OSError), socket.create_connection(("127.0.0.1", port), timeout=2):
-        pass
+    assert not session.address.parent.exists()
 
 
 def test_terrain_with_two_thousand_points_is_drawn(session):

@@ -5,12 +5,19 @@ from __future__ import annotations
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
-from fastapi import APIRouter, FastAPI
+from fastapi import APIRouter, Depends, FastAPI
 
 from stairwright import __version__
 
 from . import openapi, problems
-from .middleware import PREFIX, Compress, Gate, LimitBody, Observe
+from .attempts import Attempts
+from .gate import Gate
+from .head import Head
+from .headers import SecurityHeaders
+from .hosts import Hosts
+from .middleware import PREFIX, Compress, LimitBody, Observe
+from .origins import Cors
+from .queries import known_query
 from .routes import (
     health,
     jobs,
@@ -52,7 +59,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         version=__version__,
         description=DESCRIPTION,
         openapi_url=f"{PREFIX}/openapi.json",
-        docs_url=f"{PREFIX}/docs",
+        docs_url=None,
         redoc_url=None,
         lifespan=lifespan,
         responses=problems.describe(400, 401, 403, 413, 422),
@@ -66,16 +73,21 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.add_middleware(
         LimitBody, limit=settings.body_limit, upload_limit=settings.upload_limit + 65536
     )
-    app.add_middleware(Gate, token=settings.token, origins=settings.allowed_origins)
+    app.add_middleware(Head)
+    origins, attempts = settings.allowed_origins, Attempts(settings.token_attempts)
+    app.add_middleware(Gate, token=settings.token, origins=origins, attempts=attempts)
+    app.add_middleware(Cors, origins=origins)
+    app.add_middleware(Hosts, allowed=settings.allowed_hosts)
+    app.add_middleware(SecurityHeaders)
     app.add_middleware(Observe, metrics=services.metrics)
-    api = APIRouter(prefix=PREFIX)
+    api = APIRouter(prefix=PREFIX, dependencies=[Depends(known_query)])
     for routes in (health, tuning, robots, terrains, plans, live, rollouts, jobs, sessions):
         api.include_router(routes.router)
     app.include_router(api)
     app.include_router(health.router, include_in_schema=False)
     app.include_router(health.metrics_router)
     app.include_router(scene.router)
-    page.mount(app, settings.page)
+    page.mount(app, settings.page, f"{PREFIX}/docs")
     return app
 
 

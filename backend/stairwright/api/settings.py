@@ -12,6 +12,8 @@ from typing import Any
 from stairwright.errors import InputError
 from stairwright.resources import data_folder
 
+from . import addresses
+
 LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
 
 
@@ -54,6 +56,24 @@ class Settings:
     )
     origins: str = field(
         default="", metadata=_about("further web origins that may call, separated by spaces")
+    )
+    hosts: str = field(
+        default="",
+        metadata=_about("names it answers to besides this machine's own, separated by spaces"),
+    )
+    proxies: str = field(
+        default="",
+        metadata=_about("addresses or networks whose X-Forwarded-For and -Proto are believed"),
+    )
+    token_attempts: int = field(
+        default=10, metadata=_about("different wrong tokens a minute from one address", 1)
+    )
+    connections: int = field(default=256, metadata=_about("connections from one address", 1))
+    receive_timeout: float = field(
+        default=20.0, metadata=_about("time for a request to arrive; long bodies get more, s", 0.1)
+    )
+    keep_alive: int = field(
+        default=30, metadata=_about("a connection without requests is closed after this, s", 1)
     )
     plan_workers: int = field(
         default_factory=lambda: min(4, _cores()),
@@ -104,11 +124,23 @@ class Settings:
             low, value = each.metadata["low"], getattr(self, each.name)
             if low is not None and not value >= low:
                 raise InputError(f"STAIRWRIGHT_{each.name.upper()} must be at least {low:g}")
+        # Each of these raises for what it cannot read.
+        _ = self.allowed_origins, self.allowed_hosts, self.trusted_proxies
 
     @property
     def allowed_origins(self) -> frozenset[str]:
         """Web origins allowed besides the service's own."""
-        return frozenset(self.origins.split())
+        return frozenset(map(addresses.origin, self.origins.split()))
+
+    @property
+    def allowed_hosts(self) -> frozenset[str]:
+        """Names that requests may be addressed to."""
+        return LOOPBACK | {self.host} | set(map(addresses.host, self.hosts.split()))
+
+    @property
+    def trusted_proxies(self) -> tuple[addresses.Network, ...]:
+        """Where X-Forwarded-For and X-Forwarded-Proto are believed."""
+        return tuple(map(addresses.network, self.proxies.split()))
 
     @classmethod
     def from_env(cls, environ: Mapping[str, str] | None = None, **given: Any) -> Settings:

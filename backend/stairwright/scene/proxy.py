@@ -1,4 +1,4 @@
-"""WebSocket between a browser and a session's viser server on loopback.
+"""WebSocket between a browser and a session's viser server behind its Unix socket.
 
 Checks the Origin (viser takes any), offers the client's subprotocols (viser checks its version by
 them), and drops the request for a public share tunnel that any viewer could make.
@@ -9,11 +9,12 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Collection, Mapping
+from pathlib import Path
 from typing import Any, Protocol
 
 import msgspec
 import websockets
-from websockets.asyncio.client import ClientConnection, connect
+from websockets.asyncio.client import ClientConnection, unix_connect
 from websockets.typing import Subprotocol
 
 log = logging.getLogger(__name__)
@@ -74,16 +75,16 @@ def forwards(message: bytes | str) -> bool:
 
 
 async def proxy_websocket(
-    websocket: BrowserSocket, port: int, allowed_origins: Collection[str] = ()
+    websocket: BrowserSocket, address: Path, allowed_origins: Collection[str] = ()
 ) -> None:
-    """Serve one viewer: connect `websocket` (not yet accepted) with viser at loopback `port`.
+    """Serve one viewer: connect `websocket` (not yet accepted) with viser at `address`.
 
     viser's client asks for its page's address without the closing slash, so that the route needs
     both forms: ``/scene/{id}`` and ``/scene/{id}/``.
 
     Args:
         websocket: The browser's side.
-        port: `SceneSession.port`.
+        address: `SceneSession.address`.
         allowed_origins: Origins beside the page's own host, e.g. ``http://localhost:5173``.
     """
     headers = websocket.headers
@@ -92,12 +93,11 @@ async def proxy_websocket(
         return
     offered = [Subprotocol(name) for name in websocket.scope.get("subprotocols", [])]
     try:
-        upstream = await connect(
-            f"ws://127.0.0.1:{port}",
+        upstream = await unix_connect(
+            str(address),
             subprotocols=offered or None,
             compression=None,
             max_size=None,
-            proxy=None,
             open_timeout=5,
             ping_interval=None,
         )

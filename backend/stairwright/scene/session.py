@@ -1,4 +1,4 @@
-"""One browser session's scene: a viser server on loopback, what it shows, and its playback."""
+"""One browser session's scene: a viser server of its own, what it shows, and its playback."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import logging
 import threading
 import time as clock
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import rich
-import viser
 
 from stairwright.documents import parse
 from stairwright.errors import InputError
@@ -24,6 +24,7 @@ from .motion import Motion, from_plan, from_rollout
 from .palette import palette
 from .panel import Panel
 from .player import Player
+from .private_server import PrivateServer
 from .stage import Stage, check_layers
 
 log = logging.getLogger(__name__)
@@ -58,10 +59,8 @@ class SceneSession:
         self._closed = False
         # viser announces each server on the terminal; a service that opens many must not.
         rich.get_console().quiet = True
-        # Loopback and a port of the system's choice: the only way in is our own proxy.
-        self._server = viser.ViserServer(
-            host="127.0.0.1", port=0, label="Stairwright", verbose=False
-        )
+        self._private = PrivateServer("Stairwright")
+        self._server = self._private.viser
         self._server.scene.world_axes.visible = False
         self._stage = Stage(self._server.scene)
         self._player = Player(self._frame)
@@ -71,9 +70,9 @@ class SceneSession:
         self._server.on_client_connect(self._welcome)
 
     @property
-    def port(self) -> int:
-        """Port of the loopback server that the proxy connects to."""
-        return int(self._server.get_port())
+    def address(self) -> Path:
+        """The Unix socket that the proxy connects to."""
+        return self._private.address
 
     @property
     def clients(self) -> int:
@@ -217,7 +216,7 @@ class SceneSession:
                 return
             self._closed = True
         self._player.close()
-        self._server.stop()
+        self._private.close()
 
     # -------------------------------------------------------------------------------------------
 

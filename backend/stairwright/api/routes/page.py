@@ -6,12 +6,16 @@ from pathlib import Path
 
 from fastapi import FastAPI
 from starlette.exceptions import HTTPException
-from starlette.responses import PlainTextResponse, Response
+from starlette.requests import Request
+from starlette.responses import PlainTextResponse, RedirectResponse, Response
 from starlette.routing import Match, Mount
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
-NOT_BUILT = "The page is not built. In a checkout: ./dev build. REST works: /api/v1/docs\n"
+from stairwright.api.headers import PAGE_POLICY
+
+NOT_BUILT = "The page is not built. In a checkout: ./dev build. REST works: /api/v1/openapi.json\n"
+DOCS = "docs.html"
 
 
 class Page(StaticFiles):
@@ -26,7 +30,8 @@ class Page(StaticFiles):
 
     async def get_response(self, path: str, scope: Scope) -> Response:
         """One file, or a sentence if the page has not been built."""
-        if path == "." and not (self.folder / "index.html").is_file():
+        document = {".": "index.html", DOCS: DOCS}.get(path)
+        if document and not (self.folder / document).is_file():
             return PlainTextResponse(NOT_BUILT, 503)
         if "\0" in path:
             raise HTTPException(404)
@@ -34,8 +39,7 @@ class Page(StaticFiles):
         forever = path.startswith("assets/") and response.status_code == 200
         cache = "public, max-age=31536000, immutable" if forever else "no-cache"
         response.headers["cache-control"] = cache
-        response.headers["x-content-type-options"] = "nosniff"
-        response.headers["referrer-policy"] = "same-origin"
+        response.headers["content-security-policy"] = PAGE_POLICY
         return response
 
 
@@ -50,6 +54,11 @@ class _PageRoute(Mount):
         return super().matches(scope)
 
 
-def mount(app: FastAPI, folder: Path) -> None:
-    """Serve the page at /; must come after all other routes."""
+def mount(app: FastAPI, folder: Path, docs: str) -> None:
+    """Serve the page at /, and from `docs` lead to the API's; must come after all other routes."""
+
+    async def lead_to_docs(_: Request) -> Response:
+        return RedirectResponse(f"/{DOCS}")
+
+    app.add_route(docs, lead_to_docs, include_in_schema=False)
     app.router.routes.append(_PageRoute("/", Page(folder), name="page"))

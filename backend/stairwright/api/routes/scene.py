@@ -27,9 +27,9 @@ async def client(session_id: str, services: Service) -> Response:
     page = await run_in_threadpool(scene.client_html, f"/scene/{session_id}/")
     headers = {
         "cache-control": "no-store",
+        # Who may frame it, which the policy within the document cannot say.
         "content-security-policy": "frame-ancestors 'self'",
         "referrer-policy": "no-referrer",  # the address is the secret
-        "x-content-type-options": "nosniff",
     }
     return HTMLResponse(page, headers=headers)
 
@@ -47,4 +47,4 @@ async def proxy(websocket: WebSocket, session_id: str) -> None:
     from stairwright.scene.proxy import proxy_websocket
 
     origin = websocket.headers.get("origin")
-    await proxy_websocket(websocket, scene.port, {origin} if origin else set())
+    await proxy_websocket(websocket, scene.address, {origin} if origin else set())
