@@ -8,7 +8,6 @@ import ipaddress
 import json
 import resource
 import socket
-import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -16,7 +15,6 @@ from urllib.parse import urlsplit
 
 import httpx
 import pytest
-import uvicorn
 import websockets
 from starlette.responses import PlainTextResponse
 from starlette.types import Receive, Scope, Send
@@ -25,6 +23,7 @@ from websockets.asyncio.client import connect
 from stairwright.api.addresses import Network
 from stairwright.api.connections import Bounds, bounded
 from tests.conftest import Server
+from tests.in_process import served
 
 Start = Callable[..., contextlib.AbstractContextManager[Server]]
 LIMIT = 20
@@ -167,22 +166,12 @@ def test_connections_are_bounded_in_all(proxies: tuple[Network, ...]) -> None:
         await PlainTextResponse("here")(scope, receive, send)
 
     bounds = Bounds(patience=60.0, per_address=12 if proxies else 100, total=30, proxies=proxies)
-    config = uvicorn.Config(
-        application, port=0, http=bounded(bounds), lifespan="off", log_level="warning"
-    )
-    server = uvicorn.Server(config)
-    thread = threading.Thread(target=server.run, daemon=True)
-    thread.start()
-    while not server.started:
-        thread.join(0.02)
-    port = server.servers[0].sockets[0].getsockname()[1]
-    held = [
-        socket.create_connection(("127.0.0.1", port), PATIENCE, (f"127.0.0.{k % 90 + 2}", 0))
-        for k in range(200)
-    ]
-    assert httpx.get(f"http://127.0.0.1:{port}", timeout=PATIENCE).text == "here"
-    assert len(server.server_state.connections) <= 30
-    server.should_exit = True
-    thread.join(PATIENCE)
+    with served(application, http=bounded(bounds)) as (server, port):
+        held = [
+            socket.create_connection(("127.0.0.1", port), PATIENCE, (f"127.0.0.{k % 90 + 2}", 0))
+            for k in range(200)
+        ]
+        assert httpx.get(f"http://127.0.0.1:{port}", timeout=PATIENCE).text == "here"
+        assert len(server.server_state.connections) <= 30
     for connection in held:
         connection.close()

@@ -11,12 +11,15 @@ from urllib.parse import urlsplit
 import httpx
 import pytest
 import websockets
+from starlette.responses import PlainTextResponse
+from starlette.types import Receive, Scope, Send
 from websockets.asyncio.client import connect
 
-from stairwright.api.hosts import host_name
+from stairwright.api.hosts import Hosts, host_name
 from stairwright.api.settings import Settings
 from stairwright.errors import InputError
 from tests.conftest import CHROMIUM_FLAGS, Server
+from tests.in_process import served
 
 Start = Callable[..., contextlib.AbstractContextManager[Server]]
 
@@ -122,7 +125,17 @@ def test_names_that_are_none_are_refused_at_the_start(hosts: str) -> None:
         Settings(hosts=hosts)
 
 
-def test_the_address_it_is_bound_to() -> None:
+def test_the_address_that_a_request_reaches() -> None:
+    async def application(scope: Scope, receive: Receive, send: Send) -> None:
+        await PlainTextResponse("here")(scope, receive, send)
+
+    with served(Hosts(application, {"localhost"}), host="0.0.0.0") as (_, port):
+        for host, status in (("127.0.0.5", 200), ("127.0.0.6", 421), ("localhost", 200)):
+            answer = httpx.get(f"http://127.0.0.5:{port}", headers={"host": f"{host}:{port}"})
+            assert answer.status_code == status, host
+
+
+def test_names_as_they_are_written() -> None:
     settings = Settings(host="192.168.1.7", token="correct-horse", hosts="A.example")
     assert {"192.168.1.7", "a.example", "localhost"} <= settings.allowed_hosts
     assert host_name("[FD00::7]:8000") == "fd00::7"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import time
 from collections.abc import Callable, Iterator
 
 import httpx
@@ -151,6 +152,18 @@ def test_attempts_are_forgotten_after_a_minute() -> None:
     assert len(attempts._wrong) <= 4096
 
 
+def logged(server: Server, request: str) -> list[dict[str, object]]:
+    """Lines of the log about a request; they are written after it is answered."""
+    end = time.monotonic() + 20.0
+    while time.monotonic() < end:
+        whole = server.log.read_text().rpartition("\n")[0]
+        lines = [json.loads(line) for line in whole.splitlines()]
+        if found := [line for line in lines if line.get("request") == request]:
+            return found
+        time.sleep(0.05)
+    return []
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("proxies", "believed"), [("", False), ("127.0.0.0/8", True)])
 def test_forwarded_addresses_only_from_named_proxies(
@@ -166,9 +179,7 @@ def test_forwarded_addresses_only_from_named_proxies(
     with start_server(**settings) as server:
         opened = httpx.get(server.url, params={"token": TOKEN}, headers=forwarded)
         assert ("secure" in opened.headers["set-cookie"].lower()) == believed
-        lines = [json.loads(line) for line in server.log.read_text().splitlines()[:-1]]
-        lines += [json.loads(server.log.read_text().splitlines()[-1])]
-        (mine,) = [line for line in lines if line.get("request") == "forwarded"]
+        (mine,) = logged(server, "forwarded")
         assert mine["client"] == ("203.0.113.9" if believed else "127.0.0.1")
 
 

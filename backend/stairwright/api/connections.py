@@ -58,6 +58,8 @@ class BoundedProtocol(HttpToolsProtocol):
     """Uvicorn's protocol within `bounds`, which `bounded` sets."""
 
     bounds: ClassVar[Bounds]
+    _arriving: bool
+    _in_body: bool
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Make room for the connection, or say that there is none."""

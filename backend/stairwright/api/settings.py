@@ -135,7 +135,7 @@ class Settings:
     @property
     def allowed_hosts(self) -> frozenset[str]:
         """Names that requests may be addressed to."""
-        return LOOPBACK | {self.host} | set(map(addresses.host, self.hosts.split()))
+        return LOOPBACK | {self.host.lower()} | set(map(addresses.host, self.hosts.split()))
 
     @property
     def trusted_proxies(self) -> tuple[addresses.Network, ...]:
