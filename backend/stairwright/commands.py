@@ -22,12 +22,12 @@ Command = Callable[[Arguments], str | None]
 def plan_command(given: Arguments) -> str | None:
     """`stairwright plan`."""
     if given.output:
-        from .export.formats import PLAN_FORMATS, by_ending
+        from .export.table import PLAN_FORMATS, by_ending
 
         by_ending(PLAN_FORMATS, given.output, "plan")  # complains before the work, not after it
     plan = _plan(given.terrain, given)
     if given.output:
-        plan.save(given.output)
+        plan.save(given.output, given.rate)
     else:
         print(summary.of_plan(plan))
     return _obstacle(plan)
@@ -40,7 +40,7 @@ def rollout_command(given: Arguments) -> str | None:
     if given.trials is not None:
         return _trials(given)
     if given.output:
-        from .export.formats import ROLLOUT_FORMATS, by_ending
+        from .export.table import ROLLOUT_FORMATS, by_ending
 
         by_ending(ROLLOUT_FORMATS, given.output, "rollout")
     plan = _plan_or_file(given)
@@ -94,7 +94,7 @@ def export_command(given: Arguments) -> str | None:
     """`stairwright export`."""
     from .export.formats import convert
 
-    convert(given.file, given.format, given.output)
+    convert(given.file, given.format, given.output, given.rate)
     return None
 
 
