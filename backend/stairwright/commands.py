@@ -24,7 +24,10 @@ def plan_command(given: Arguments) -> str | None:
     if given.output:
         from .export.table import PLAN_FORMATS, by_ending
 
-        by_ending(PLAN_FORMATS, given.output, "plan")  # complains before the work, not after it
+        # Complaints come before the work, not after it.
+        by_ending(PLAN_FORMATS, given.output, "plan").check_rate(given.rate)
+    elif given.rate is not None:
+        raise InputError("is for a plan that is written to a file", ("rate",))
     plan = _plan(given.terrain, given)
     if given.output:
         plan.save(given.output, given.rate)

@@ -188,7 +188,9 @@ def test_joints_bear_the_robots_own_names() -> None:
     names = {"FL_thigh": "front_left/hip_pitch", "RR_wheel": "rear_right/wheel"}
     document = plan.robot_description.model_dump(mode="json")
     robot = type(plan.robot_description).model_validate({**document, "joint_names": names})
-    topics = messages(PLAN_FORMATS["mcap"].write(plan.model_copy(update={"robot_description": robot})))
+    topics = messages(
+        PLAN_FORMATS["mcap"].write(plan.model_copy(update={"robot_description": robot}))
+    )
     ((_, legs),), ((_, wheels),) = topics["/joint_trajectory"], topics["/wheel_trajectory"]
     assert list(legs.joint_names)[:2] == ["front_left/hip_pitch", "FL_calf"]
     assert list(wheels.joint_names) == ["FL_wheel", "FR_wheel", "RL_wheel", "rear_right/wheel"]

@@ -66,7 +66,7 @@ def test_kinematics_and_dynamics_are_the_simulators(robot) -> None:
         full = []
         for model, data in ((ours, a), (theirs, b)):
             matrix = np.zeros((model.nv, model.nv))
-            mujoco.mj_fullM(model, matrix, data.qM)
+            mujoco.mj_fullM(model, data, matrix)
             full.append(matrix - np.diag(model.dof_armature))
         np.testing.assert_allclose(full[1][np.ix_(dofs, dofs)], full[0], atol=1e-9)
         np.testing.assert_allclose(b.qfrc_bias[dofs], a.qfrc_bias, atol=1e-9)

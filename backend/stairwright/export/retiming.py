@@ -33,7 +33,7 @@ from stairwright.errors import InputError
 Floats = NDArray[np.float64]
 
 KNOT_SPACING = 0.02  # s
-MOST_POINTS = 500_000
+MOST_POINTS = 250_000
 _TURNING, _SPEEDING = 0.9, 0.5  # of the accelerations, for corners and for changing the pace
 _CLOSER = 3  # looks at the corners that count at the pace found before
 _CELLS = 4  # of the path per knot spacing

@@ -48,16 +48,25 @@ class Format(Generic[D]):
         Raises:
             InputError: If this document cannot be written so, or `rate` is none of the format's.
         """
+        self.check_rate(rate)
         module, function = self.writer.split(".")
         write = getattr(importlib.import_module(f".{module}", __package__), function)
         if self.rated:
-            rate = USUAL_RATE if rate is None else rate
-            if not LEAST_RATE <= rate <= MOST_RATE:
-                raise InputError(f"must lie between {LEAST_RATE:g} and {MOST_RATE:g} Hz", ("rate",))
-            return bytes(write(document, rate))
-        if rate is not None:
-            raise InputError("this format has no rate: it holds no timed commands", ("rate",))
+            return bytes(write(document, USUAL_RATE if rate is None else rate))
         return bytes(write(document))
+
+    def check_rate(self, rate: float | None) -> None:
+        """Refuse a rate that the format does not have.
+
+        Raises:
+            InputError: If there is no such rate.
+        """
+        if rate is None:
+            return
+        if not self.rated:
+            raise InputError("this format has no rate: it holds no timed commands", ("rate",))
+        if not LEAST_RATE <= rate <= MOST_RATE:
+            raise InputError(f"must lie between {LEAST_RATE:g} and {MOST_RATE:g} Hz", ("rate",))
 
 
 _JSON, _CSV, _XML = "application/json", "text/csv; charset=utf-8", "application/xml"
