@@ -38,7 +38,13 @@ export function DownloadMenu() {
         <>
           {!isEmpty.value && <Profile close={close} />}
           {shown && (
-            <Exports title="Plan" kind="plans" id={shown.id} formats={formats?.plan ?? []} close={close} />
+            <Exports
+              title="Plan"
+              kind="plans"
+              id={shown.id}
+              formats={formats?.plan ?? []}
+              close={close}
+            />
           )}
           {result ? (
             <Exports
