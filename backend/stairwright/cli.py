@@ -10,6 +10,7 @@ from typing import NoReturn
 
 from . import __version__
 from .errors import InputError
+from .export.table import FORMATS, USUAL_RATE, names
 
 DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 METHODS = ("path", "critical", "nominal")
@@ -41,7 +42,8 @@ def parser() -> argparse.ArgumentParser:
     plan = commands.add_parser("plan", help="plan the poses over a terrain")
     plan.add_argument("terrain", metavar="TERRAIN", help="a preset's name, or a file")
     _add_planning(plan)
-    plan.add_argument("-o", "--output", metavar="FILE", help="json, csv, npz, mcap or mjcf")
+    plan.add_argument("-o", "--output", metavar="FILE", help=names("plan"))
+    _add_rate(plan)
 
     rollout = commands.add_parser("rollout", help="carry a plan out in simulation")
     rollout.add_argument("source", metavar="PLAN-or-TERRAIN", help="a plan's file, or a terrain")
@@ -56,11 +58,15 @@ def parser() -> argparse.ArgumentParser:
     rollout.add_argument(
         "--workers", type=int, metavar="N", help="share trials among so many; default: all cores"
     )
-    rollout.add_argument("-o", "--output", metavar="FILE", help="json, csv, npz, mcap or html")
+    rollout.add_argument("-o", "--output", metavar="FILE", help=names("rollout"))
 
-    export = commands.add_parser("export", help="write a plan or rollout in another format")
-    export.add_argument("file", metavar="FILE", help="a plan or rollout, json or npz")
-    export.add_argument("--format", metavar="F", help="json, csv, npz, mcap, mjcf or html")
+    export = commands.add_parser("export", help="write a plan, rollout or robot in another format")
+    export.add_argument(
+        "file", metavar="FILE", help="a plan or rollout (json, npz), or a robot (yaml, its name)"
+    )
+    kinds = "; ".join(f"{kind}: {names(kind)}" for kind in FORMATS)
+    export.add_argument("--format", metavar="F", help=f"{kinds}; the output's ending by default")
+    _add_rate(export)
     export.add_argument("-o", "--output", metavar="FILE", required=True)
 
     certify = commands.add_parser("certify", help="check a plan independently and exactly")
@@ -86,6 +92,12 @@ def _add_planning(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument(
         "--weight", action="append", default=[], metavar="NAME=VALUE", help="of the planner"
+    )
+
+
+def _add_rate(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--rate", type=float, metavar="HZ", help=f"of the joint commands in mcap ({USUAL_RATE:g})"
     )
 
 

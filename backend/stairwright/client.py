@@ -90,6 +90,10 @@ class Client:
         """All robots."""
         return [parse(Robot, each) for each in self._json("GET", "/robots")]
 
+    def export_robot(self, name: str, file_format: str) -> bytes:
+        """A robot as a file: urdf or mjcf."""
+        return self._export("robots", name, file_format)
+
     def terrains(self) -> list[Terrain]:
         """All terrains, presets first."""
         return [_terrain(each) for each in self._json("GET", "/terrains")]
@@ -139,9 +143,9 @@ class Client:
         """A stored plan."""
         return parse(Plan, self._json("GET", f"/plans/{_quoted(plan_id)}"))
 
-    def export_plan(self, plan_id: str, file_format: str) -> bytes:
-        """A stored plan as a file: json, csv, npz, mcap or mjcf."""
-        return self._export("plans", plan_id, file_format)
+    def export_plan(self, plan_id: str, file_format: str, rate: float | None = None) -> bytes:
+        """A stored plan as a file; `rate` is that of the joint commands in mcap [Hz]."""
+        return self._export("plans", plan_id, file_format, rate)
 
     # ------------------------------------------------------------------ rollouts
 
@@ -238,14 +242,15 @@ class Client:
         return parse(Rollout, self._json("GET", f"/rollouts/{_quoted(rollout_id)}"))
 
     def export_rollout(self, rollout_id: str, file_format: str) -> bytes:
-        """A stored rollout as a file: json, csv, npz, mcap or html."""
+        """A stored rollout as a file."""
         return self._export("rollouts", rollout_id, file_format)
 
     # ------------------------------------------------------------------
 
-    def _export(self, kind: str, name: str, file_format: str) -> bytes:
+    def _export(self, kind: str, name: str, file_format: str, rate: float | None = None) -> bytes:
         path = f"/{kind}/{_quoted(name)}/export"
-        return self._send("GET", path, params={"format": file_format}).content
+        params = {"format": file_format} | ({} if rate is None else {"rate": str(rate)})
+        return self._send("GET", path, params=params).content
 
     def _json(self, method: str, path: str, **options: Any) -> Any:
         return self._send(method, path, **options).json()

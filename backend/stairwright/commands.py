@@ -22,12 +22,15 @@ Command = Callable[[Arguments], str | None]
 def plan_command(given: Arguments) -> str | None:
     """`stairwright plan`."""
     if given.output:
-        from .export.formats import PLAN_FORMATS, by_ending
+        from .export.table import PLAN_FORMATS, by_ending
 
-        by_ending(PLAN_FORMATS, given.output, "plan")  # complains before the work, not after it
+        # Complaints come before the work, not after it.
+        by_ending(PLAN_FORMATS, given.output, "plan").check_rate(given.rate)
+    elif given.rate is not None:
+        raise InputError("is for a plan that is written to a file", ("rate",))
     plan = _plan(given.terrain, given)
     if given.output:
-        plan.save(given.output)
+        plan.save(given.output, given.rate)
     else:
         print(summary.of_plan(plan))
     return _obstacle(plan)
@@ -40,7 +43,7 @@ def rollout_command(given: Arguments) -> str | None:
     if given.trials is not None:
         return _trials(given)
     if given.output:
-        from .export.formats import ROLLOUT_FORMATS, by_ending
+        from .export.table import ROLLOUT_FORMATS, by_ending
 
         by_ending(ROLLOUT_FORMATS, given.output, "rollout")
     plan = _plan_or_file(given)
@@ -94,7 +97,7 @@ def export_command(given: Arguments) -> str | None:
     """`stairwright export`."""
     from .export.formats import convert
 
-    convert(given.file, given.format, given.output)
+    convert(given.file, given.format, given.output, given.rate)
     return None
 
 

@@ -13,7 +13,9 @@ from pathlib import Path
 import pytest
 
 from stairwright.cli import main
+from stairwright.export.table import FORMATS
 from stairwright.library import robots, terrains
+from stairwright.resources import data_folder
 
 CURB = '{"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}'
 WALL = '{"points": [[-1.0, 0], [0, 0], [0, 3], [1, 3]]}'
@@ -75,7 +77,7 @@ def test_a_plan_is_summed_up_or_written(curb: Path, plan: Path) -> None:
 @pytest.mark.slow
 def test_a_plan_is_certified_exported_and_rolled_out(plan: Path) -> None:
     assert "passed" in run("certify", plan)
-    for name in ("csv", "npz", "mcap", "mjcf"):
+    for name in ("csv", "npz", "mcap", "mjcf", "urdf"):
         out = plan.with_suffix(f".{name}")
         run("export", plan, "--format", name, "-o", out)
         assert out.stat().st_size > 500
@@ -84,6 +86,29 @@ def test_a_plan_is_certified_exported_and_rolled_out(plan: Path) -> None:
     run("rollout", plan, "--seed", "4", "-o", rollout)
     assert json.loads(rollout.read_text())["seed"] == 4
     run("export", rollout, "--format", "html", "-o", plan.with_name("run.html"))
+
+
+def test_a_robot_and_a_plan_for_ros_are_written(curb: Path, plan: Path, tmp_path: Path) -> None:
+    out = tmp_path / "robot.urdf"
+    run("export", "a1_wheeled_x", "--format", "urdf", "-o", out)
+    by_name = out.read_bytes()
+    run("export", data_folder("robots") / "a1_wheeled_x.yaml", "-o", out)
+    assert out.read_bytes() == by_name
+    run("plan", curb, "--robot", "a1_wheeled_x", "-o", out)
+    assert out.read_bytes() == by_name
+    for rate in ("20", "200"):
+        mcap = tmp_path / f"at-{rate}.mcap"
+        run("export", plan, "-o", mcap, "--rate", rate)
+    sizes = [(tmp_path / f"at-{rate}.mcap").stat().st_size for rate in ("20", "200")]
+    assert sizes[1] > 2 * sizes[0]
+    run("plan", curb, "-o", tmp_path / "plan.mcap", "--rate", "50")
+
+
+def test_the_help_names_every_format() -> None:
+    for command, kinds in (("plan", ["plan"]), ("rollout", ["rollout"]), ("export", FORMATS)):
+        told = run(command, "--help")
+        for kind in kinds:
+            assert all(name in told for name in FORMATS[kind])
 
 
 @pytest.mark.slow
@@ -135,6 +160,11 @@ def test_what_cannot_be_done_is_status_1(tmp_path: Path) -> None:
         ("rollout", "flat", "--seed", "-1"),
         ("certify", "missing.json"),
         ("export", "missing.json", "-o", "x.csv"),
+        ("export", "a1_wheeled", "-o", "x.csv"),
+        ("export", "a1_wheeled", "-o", "x.urdf", "--rate", "50"),
+        ("plan", "flat", "-o", "x.mcap", "--rate", "5"),
+        ("plan", "flat", "--rate", "50"),
+        ("plan", "flat", "-o", "x.mcap", "--rate", "fast"),
         ("serve", "--host", "0.0.0.0"),
         ("serve", "--port", "99999"),
         ("bench", "--repeat", "0"),

@@ -11,8 +11,6 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
-from mcap.reader import make_reader
-from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
 from stairwright.errors import InputError
@@ -20,6 +18,7 @@ from stairwright.export.formats import PLAN_FORMATS, convert, load_plan, save_pl
 from stairwright.planning.plan import Plan
 from stairwright.robot import kinematics
 from stairwright.robot.description import JOINTS
+from tests.export.mcap_reading import messages, metadata, world
 from tests.scene.example import example_plan
 
 
@@ -68,43 +67,26 @@ def test_npz_holds_arrays_and_metadata(plan, tmp_path):
     assert load_plan(tmp_path / "plan.npz") == plan
 
 
-def test_mcap_is_read_by_mcap_ros2_support(plan):
-    content = PLAN_FORMATS["mcap"].write(plan)
-    reader = make_reader(io.BytesIO(content), decoder_factories=[DecoderFactory()])
-    messages = [(channel.topic, m) for _, channel, _, m in reader.iter_decoded_messages()]
-    (trajectory,) = [m for topic, m in messages if topic == "/joint_trajectory"]
-    assert trajectory.joint_names == list(JOINTS)
-    assert len(trajectory.points) == len(plan.poses)
-    for point, pose in zip(trajectory.points, plan.poses, strict=True):
-        after = point.time_from_start
-        assert after.sec + after.nanosec * 1e-9 == pytest.approx(pose.time, abs=1e-9)
-        assert list(point.positions[0:2]) == list(pose.q[0:2])
-        assert list(point.positions[9:11]) == list(pose.q[2:4])
-    (metadata,) = reader.iter_metadata()
-    assert metadata.metadata["robot_hash"] == plan.robot_hash
-    assert metadata.metadata["terrain_hash"] == plan.terrain_hash
-    transforms = [m for topic, m in messages if topic == "/tf"]
-    trunk = transforms[5].transforms[0]
-    assert (trunk.header.frame_id, trunk.child_frame_id) == ("world", "trunk")
-    # xyzw on this side: pitch about y is 2 atan2(y, w).
-    turn = trunk.transform.rotation
-    assert 2 * np.arctan2(turn.y, turn.w) == pytest.approx(plan.poses[5].pitch)
+def test_mcap_tells_where_it_comes_from(plan):
+    about = metadata(PLAN_FORMATS["mcap"].write(plan))
+    assert about["robot_hash"] == plan.robot_hash
+    assert about["terrain_hash"] == plan.terrain_hash
+    assert json.loads(about["joint_order"]) == list(JOINTS)
 
 
-def test_mcap_transforms_chain_to_the_wheel_centres(plan):
-    content = PLAN_FORMATS["mcap"].write(plan)
-    reader = make_reader(io.BytesIO(content), decoder_factories=[DecoderFactory()])
-    tf = [m for _, c, _, m in reader.iter_decoded_messages() if c.topic == "/tf"][11]
-    frames = {"world": np.eye(4)}
-    for stamped in tf.transforms:
-        local = np.eye(4)
-        q, p = stamped.transform.rotation, stamped.transform.translation
-        mujoco_matrix = np.zeros(9)
-        mujoco.mju_quat2Mat(mujoco_matrix, np.array([q.w, q.x, q.y, q.z]))
-        local[:3, :3], local[:3, 3] = mujoco_matrix.reshape(3, 3), (p.x, p.y, p.z)
-        frames[stamped.child_frame_id] = frames[stamped.header.frame_id] @ local
-    for name, (x, z) in zip(("FR_wheel", "RL_wheel"), plan.poses[11].wheels, strict=True):
-        np.testing.assert_allclose(frames[name][[0, 2], 3], (x, z), atol=1e-12)
+def test_mcap_goes_from_the_first_pose_to_the_last(plan):
+    topics = messages(PLAN_FORMATS["mcap"].write(plan))
+    for index in (0, -1):
+        pose, (_, tf) = plan.poses[index], topics["/tf"][index]
+        trunk = tf.transforms[0]
+        assert (trunk.header.frame_id, trunk.child_frame_id) == ("world", "trunk")
+        # xyzw on this side: pitch about y is 2 atan2(y, w).
+        turn = trunk.transform.rotation
+        assert 2 * np.arctan2(turn.y, turn.w) == pytest.approx(pose.pitch)
+        for name, centre in zip(("FR_wheel", "RL_wheel"), pose.wheels, strict=True):
+            np.testing.assert_allclose(world(tf, name)[[0, 2], 3], centre, atol=1e-9)
+        position = np.array(topics["/joint_states"][index][1].position)
+        np.testing.assert_allclose(position[[0, 1, 9, 10]], pose.q, atol=1e-9)
 
 
 def test_mcap_is_read_by_rosbags(plan, tmp_path):
@@ -112,9 +94,11 @@ def test_mcap_is_read_by_rosbags(plan, tmp_path):
     with AnyReader([tmp_path / "plan.mcap"]) as reader:
         topics = {c.topic: c for c in reader.connections}
         assert topics["/joint_trajectory"].msgtype == "trajectory_msgs/msg/JointTrajectory"
+        assert topics["/terrain"].msgtype == "visualization_msgs/msg/Marker"
+        assert topics["/path"].msgtype == "nav_msgs/msg/Path"
         ((connection, _, raw),) = reader.messages([topics["/joint_trajectory"]])
         trajectory = reader.deserialize(raw, connection.msgtype)
-    np.testing.assert_allclose(trajectory.points[3].positions[:2], plan.poses[3].q[:2])
+    np.testing.assert_allclose(trajectory.points[0].positions[:2], plan.poses[0].q[:2], atol=1e-9)
 
 
 def test_mjcf_keyframes_are_the_poses(plan, tmp_path):
@@ -179,11 +163,11 @@ def test_mjcf_masses_are_the_robots(plan):
 
 def test_standing_pose_needs_the_torques_of_its_weight():
     """On flat ground with vertical forces the knee carries the load at its lever."""
-    from stairwright.export.mjcf_file import static_torques
+    from stairwright.export.mjcf_file import holding_torques
 
     plan = example_plan(count=5)
     robot, pose = plan.robot_description, plan.poses[0]
-    torques = static_torques(robot, pose).reshape(4, 3)
+    torques = holding_torques(robot, pose).reshape(4, 3)
     frames = kinematics.forward(robot, pose.x_c, pose.z_c, pose.pitch, np.array(pose.q))
     lever = pose.contacts[0][0] - frames.knees[0, 0]
     own = robot.calf.com * (pose.wheels[0][0] - frames.knees[0, 0]) * robot.calf.mass
@@ -195,7 +179,7 @@ def test_standing_pose_needs_the_torques_of_its_weight():
 
 @pytest.mark.parametrize("name", ["plan", "plan.html", "plan.txt"])
 def test_unknown_ending_names_the_valid_ones(plan, tmp_path, name):
-    with pytest.raises(InputError, match=r"\.json, \.csv, \.npz, \.mcap, \.mjcf"):
+    with pytest.raises(InputError, match=r"\.json, \.csv, \.npz, \.mcap, \.mjcf, \.urdf"):
         save_plan(plan, tmp_path / name)
     assert not (tmp_path / name).exists()
 

@@ -8,8 +8,6 @@ import json
 
 import numpy as np
 import pytest
-from mcap.reader import make_reader
-from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
 from stairwright.errors import InputError
@@ -22,6 +20,7 @@ from stairwright.export.formats import (
 )
 from stairwright.robot.description import JOINTS
 from stairwright.simulation.result import Rollout
+from tests.export.mcap_reading import messages
 from tests.scene.example import example_plan, example_rollout
 
 
@@ -77,14 +76,10 @@ def test_npz_round_trip_without_the_plan(run, tmp_path):
 
 def test_mcap_joint_states_and_transforms(run):
     content = ROLLOUT_FORMATS["mcap"].write(run)
-    reader = make_reader(io.BytesIO(content), decoder_factories=[DecoderFactory()])
-    topics: dict[str, list] = {}
-    for _, channel, raw, message in reader.iter_decoded_messages():
-        topics.setdefault(channel.topic, []).append((raw.log_time, message))
-    assert set(topics) == {"/joint_states", "/tf", "/joint_trajectory"}
+    topics = messages(content)
     assert len(topics["/joint_states"]) == len(topics["/tf"]) == len(run.series)
     stamp, state = topics["/joint_states"][40]
-    assert stamp * 1e-9 == pytest.approx(run.series.time[40], abs=1e-9)
+    assert stamp == pytest.approx(run.series.time[40], abs=1e-9)
     assert list(state.name) == list(JOINTS)
     np.testing.assert_array_equal(state.position, run.series.q[40])
     np.testing.assert_array_equal(state.effort, run.series.torque[40])

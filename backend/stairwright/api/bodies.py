@@ -10,6 +10,7 @@ from pydantic import AliasChoices, BeforeValidator, Discriminator, Field, Strict
 from stairwright.arguments import MOST_FRICTION, MOST_SEED
 from stairwright.documents import Model
 from stairwright.errors import InputError
+from stairwright.export.table import Kind as Exported
 from stairwright.planning.plan import Method, Plan
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -209,11 +210,19 @@ Generation = Annotated[
 ]
 
 
+class ExportFormat(Model):
+    """A format of files."""
+
+    name: str
+    note: str = Field(description="what it is for, in a few words")
+
+
 class SettingsDocument(Model):
     """JSON Schemas of everything that can be tuned; each property has bounds, unit and scale."""
 
     weights: dict[Method, dict[str, Any]]
     controller: dict[str, Any]
+    exports: dict[Exported, list[ExportFormat]]
 
 
 class StoredEntry(Model):

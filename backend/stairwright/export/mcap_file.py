@@ -1,65 +1,138 @@
-"""MCAP for ROS 2 and Foxglove, written without ROS.
+"""MCAP for ROS 2 and Foxglove: the robot, the terrain, and how the one moves on the other.
 
-A plan is one ``trajectory_msgs/JointTrajectory`` and the trunk's transforms; a rollout is joint
-states, transforms of every link, and the desired trajectory. Quaternions are xyzw here and only
-here. Times count from zero.
+Both files hold ``/robot_description`` (URDF), ``/tf_static``, ``/tf``, ``/joint_states``,
+``/terrain`` (a Marker) and ``/path`` (of the trunk): a viewer shows the robot on its terrain with
+nothing else set up. A plan adds the commands that its robot's controllers take, see
+`joint_commands`; a rollout what was asked of the joints. Quaternions are xyzw here and only here.
+Times count from zero; joints bear the robot's own names.
 """
 
 from __future__ import annotations
 
-import io
 import json
-from typing import Any
 
 import numpy as np
-from mcap.writer import Writer
 from numpy.typing import NDArray
-from rosbags.typesys import Stores, get_typestore
 
-from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
 from stairwright.robot import spatial
 from stairwright.robot.description import JOINTS, LEGS, Robot
 from stairwright.simulation.result import Rollout
+from stairwright.terrain.profile import Terrain
 
 from .columns import FRAMES, UNITS, plan_arrays
+from .joint_commands import JointCommands, joint_commands
+from .mcap_bag import Bag, stamp
+from .urdf_file import FIXED_FRAMES, TRUNK, robot_urdf
 
 Floats = NDArray[np.float64]
-WORLD, TRUNK = "world", "trunk"
-MOST_SECONDS = 2**31 - 1  # builtin_interfaces/Time holds 32 bits
-_TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
-_JOINT_STATE = "sensor_msgs/msg/JointState"
-_TF = "tf2_msgs/msg/TFMessage"
+WORLD = "world"
+STATE_RATE = 50.0  # Hz; a plan's joint states and transforms, at most
+MOST_STATES = 20_000  # of a plan
+TERRAIN_HALF_WIDTH = 0.5  # m
+TERRAIN_DEPTH = 0.1  # m below the lowest point
+TERRAIN_COLOUR = (0.62, 0.65, 0.70, 1.0)
+_WHEELS = slice(2, 12, 3)
+_LEGS = [j for j in range(12) if j % 3 != 2]
 
 
-def plan_mcap(plan: Plan) -> bytes:
-    """``/joint_trajectory`` (all poses), ``/tf`` (every link at each pose)."""
-    arrays = plan_arrays(plan)
+def plan_mcap(plan: Plan, rate: float) -> bytes:
+    """A plan and its commands, `rate` of them a second [Hz].
+
+    Raises:
+        InputError: If the plan lasts too long.
+    """
+    for pose in plan.poses:
+        stamp(pose.time)
+    plan_arrays(plan)  # complains about poses that are not this robot's
     robot = plan.robot_description
-    position, quaternion, joints = spatial.lift(
-        robot, arrays["trunk"], arrays["q"], arrays["wheel_progress"]
-    )
-    bag = _Bag({"id": plan.id, "method": plan.method, **_about(plan)})
-    bag.trajectory("/joint_trajectory", arrays["time"], joints)
-    bag.transforms(robot, arrays["time"], position, quaternion, joints)
+    about = {"id": plan.id, "method": plan.method, "rate": repr(float(rate)), **_about(plan)}
+    bag = Bag(about)
+    _scenery(bag, robot, plan.terrain)
+    if len(plan.poses) < 2:  # nothing moves
+        return bag.finish()
+    made = joint_commands(plan, rate)
+    _commands(bag, robot, made)
+    step = max(1, round(rate / STATE_RATE), -(-len(made.time) // MOST_STATES))
+    shown = np.union1d(np.arange(0, len(made.time), step), len(made.time) - 1)
+    time, position, turn = made.time[shown], made.base_position[shown], made.base_quaternion[shown]
+    q, dq, effort = made.position[shown], made.velocity[shown], made.effort[shown]
+    bag.path("/path", WORLD, time, position, turn)
+    bag.joint_states("/joint_states", robot.ros_joints, time, q, dq, effort)
+    _transforms(bag, robot, time, position, turn, q)
     return bag.finish()
 
 
 def rollout_mcap(rollout: Rollout) -> bytes:
-    """``/joint_states``, ``/tf``, and ``/joint_trajectory`` (what was asked of the joints)."""
-    s = rollout.series
-    bag = _Bag(
-        {
-            "id": rollout.id,
-            "plan_id": rollout.plan_id,
-            "outcome": rollout.outcome,
-            **_about(rollout),
-        }
-    )
-    bag.trajectory("/joint_trajectory", s.time, s.q_desired)
-    bag.joint_states("/joint_states", s.time, s.q, s.dq, s.torque)
-    bag.transforms(rollout.robot_description, s.time, s.base_position, s.base_quaternion, s.q)
+    """A rollout as it was simulated."""
+    s, robot = rollout.series, rollout.robot_description
+    about = {"id": rollout.id, "plan_id": rollout.plan_id, "outcome": rollout.outcome}
+    bag = Bag({**about, **_about(rollout)})
+    _scenery(bag, robot, rollout.terrain)
+    bag.trajectory("/joint_trajectory", robot.ros_joints, s.time, positions=s.q_desired)
+    bag.path("/path", WORLD, s.time, s.base_position, s.base_quaternion)
+    bag.joint_states("/joint_states", robot.ros_joints, s.time, s.q, s.dq, s.torque)
+    _transforms(bag, robot, s.time, s.base_position, s.base_quaternion, s.q)
     return bag.finish()
+
+
+def _commands(bag: Bag, robot: Robot, made: JointCommands) -> None:
+    """What ros2_control's joint_trajectory_controller takes.
+
+    The first point comes one period after the start, still at rest: where there are velocities
+    alone, the controller integrates them from the state that it finds.
+    """
+    legs = [robot.ros_joints[j] for j in _LEGS]
+    fields = {
+        "positions": made.position[1:, _LEGS],
+        "velocities": made.velocity[1:, _LEGS],
+        "accelerations": made.acceleration[1:, _LEGS],
+    }
+    bag.trajectory(
+        "/joint_trajectory", legs, made.time[1:], **fields, effort=made.effort[1:, _LEGS]
+    )
+    # Controllers without an effort interface refuse trajectories that have efforts.
+    bag.trajectory("/joint_trajectory_without_effort", legs, made.time[1:], **fields)
+    wheels, speeds = robot.ros_joints[_WHEELS], made.velocity[1:, _WHEELS]
+    bag.trajectory("/wheel_trajectory", wheels, made.time[1:], velocities=speeds)
+
+
+def _scenery(bag: Bag, robot: Robot, terrain: Terrain) -> None:
+    """What does not move: the robot's description, its fixed frames, and the terrain."""
+    bag.text("/robot_description", robot_urdf(robot).decode())
+    at = np.zeros((1, len(FIXED_FRAMES), 3))
+    level = np.tile([1.0, 0.0, 0.0, 0.0], (1, len(FIXED_FRAMES), 1))
+    frames = [(TRUNK, frame) for frame in FIXED_FRAMES]
+    bag.transforms("/tf_static", np.zeros(1), frames, at, level, keep=True)
+    bag.triangles("/terrain", WORLD, terrain_triangles(terrain), TERRAIN_COLOUR)
+
+
+def _transforms(
+    bag: Bag, robot: Robot, time: Floats, position: Floats, quaternion: Floats, q: Floats
+) -> None:
+    """``/tf``: world to trunk, trunk to thigh to calf to wheel of each leg."""
+    offsets = np.zeros((len(time), 13, 3))
+    offsets[:, 0] = position
+    offsets[:, 1::3] = spatial.hip_offsets(robot)
+    offsets[:, 2::3, 2], offsets[:, 3::3, 2] = -robot.thigh.length, -robot.calf.length
+    turns = np.concatenate([quaternion[:, None], spatial.quaternion_y(np.asarray(q))], axis=1)
+    parents = [p for leg in LEGS for p in (TRUNK, f"{leg}_thigh", f"{leg}_calf")]
+    frames = [(WORLD, TRUNK), *zip(parents, JOINTS, strict=True)]
+    bag.transforms("/tf", time, frames, offsets, turns)
+
+
+def terrain_triangles(terrain: Terrain) -> Floats:
+    """Corners (3 n, 3) of triangles [m]: the surface, and the cut faces on both sides."""
+    p = terrain.vertices
+    left, right = (np.insert(p, 1, y, axis=1) for y in (TERRAIN_HALF_WIDTH, -TERRAIN_HALF_WIDTH))
+    floor = float(p[:, 1].min()) - TERRAIN_DEPTH
+    quads = [(right, left)]  # each between two lines of points along the terrain
+    for side in (left, right):
+        below = side.copy()
+        below[:, 2] = floor
+        quads.append((below, side))
+    strips = [np.stack([a[:-1], a[1:], b[1:], a[:-1], b[1:], b[:-1]], axis=1) for a, b in quads]
+    return np.concatenate(strips).reshape(-1, 3)
 
 
 def _about(document: Plan | Rollout) -> dict[str, str]:
@@ -72,96 +145,5 @@ def _about(document: Plan | Rollout) -> dict[str, str]:
         "friction": repr(document.friction),
         "units": UNITS,
         "frames": FRAMES + "; quaternions xyzw",
-        "joint_order": json.dumps(JOINTS),
+        "joint_order": json.dumps(document.robot_description.ros_joints),
     }
-
-
-class _Bag:
-    """One MCAP file in memory. Messages are encoded as CDR by rosbags."""
-
-    def __init__(self, metadata: dict[str, str]) -> None:
-        self._types = get_typestore(Stores.ROS2_HUMBLE)
-        self._out = io.BytesIO()
-        self._writer = Writer(self._out)
-        self._writer.start(profile="ros2", library="stairwright")
-        self._writer.add_metadata("stairwright", metadata)
-        self._channels: dict[str, int] = {}
-
-    def finish(self) -> bytes:
-        """The bytes of the file."""
-        self._writer.finish()  # type: ignore[no-untyped-call]
-        return self._out.getvalue()
-
-    def trajectory(self, topic: str, time: Floats, q: Floats) -> None:
-        """One JointTrajectory with a point per row of `q` (n, 12)."""
-        of = self._types.types
-        none = np.zeros(0)
-        points = [
-            of["trajectory_msgs/msg/JointTrajectoryPoint"](
-                positions=np.ascontiguousarray(row, dtype=np.float64),
-                velocities=none,
-                accelerations=none,
-                effort=none,
-                time_from_start=of["builtin_interfaces/msg/Duration"](*_stamp(t)),
-            )
-            for t, row in zip(time, q, strict=True)
-        ]
-        message = of[_TRAJECTORY](self._header(0.0, ""), list(JOINTS), points)
-        self._write(topic, _TRAJECTORY, 0.0, message)
-
-    def joint_states(self, topic: str, time: Floats, q: Floats, dq: Floats, tau: Floats) -> None:
-        """A JointState per sample: positions, velocities, efforts (n, 12)."""
-        make = self._types.types[_JOINT_STATE]
-        q, dq, tau = (np.ascontiguousarray(a, dtype=np.float64) for a in (q, dq, tau))
-        for i, t in enumerate(time):
-            message = make(self._header(t, ""), list(JOINTS), q[i], dq[i], tau[i])
-            self._write(topic, _JOINT_STATE, t, message)
-
-    def transforms(
-        self, robot: Robot, time: Floats, position: Floats, quaternion: Floats, q: Floats
-    ) -> None:
-        """A TFMessage per sample: world to trunk, trunk to thigh to calf to wheel of each leg."""
-        of = self._types.types
-        vector, turn = of["geometry_msgs/msg/Vector3"], of["geometry_msgs/msg/Quaternion"]
-        transform, stamped = (
-            of["geometry_msgs/msg/Transform"],
-            of["geometry_msgs/msg/TransformStamped"],
-        )
-        offsets = [
-            offset
-            for hip in spatial.hip_offsets(robot)
-            for offset in (hip, (0.0, 0.0, -robot.thigh.length), (0.0, 0.0, -robot.calf.length))
-        ]
-        moves = [vector(*(float(v) for v in offset)) for offset in offsets]
-        parents = [p for leg in LEGS for p in (TRUNK, f"{leg}_thigh", f"{leg}_calf")]
-        half = np.asarray(q, float) / 2
-        sines, cosines = np.sin(half), np.cos(half)
-        for i, t in enumerate(time):
-            w, x, y, z = (float(v) for v in quaternion[i])
-            place = transform(vector(*(float(v) for v in position[i])), turn(x, y, z, w))
-            links = [stamped(self._header(t, WORLD), TRUNK, place)]
-            for j, name in enumerate(JOINTS):
-                about_y = turn(0.0, float(sines[i, j]), 0.0, float(cosines[i, j]))
-                header = self._header(t, parents[j])
-                links.append(stamped(header, name, transform(moves[j], about_y)))
-            self._write("/tf", _TF, t, of[_TF](links))
-
-    def _header(self, time: float, frame: str) -> Any:
-        of = self._types.types
-        return of["std_msgs/msg/Header"](of["builtin_interfaces/msg/Time"](*_stamp(time)), frame)
-
-    def _write(self, topic: str, kind: str, time: float, message: Any) -> None:
-        if topic not in self._channels:
-            text, _ = self._types.generate_msgdef(kind, ros_version=2)
-            schema = self._writer.register_schema(kind, "ros2msg", text.encode())
-            self._channels[topic] = self._writer.register_channel(topic, "cdr", schema)
-        seconds, nanoseconds = _stamp(time)
-        stamp = seconds * 10**9 + nanoseconds
-        data = bytes(self._types.serialize_cdr(message, kind))
-        self._writer.add_message(self._channels[topic], stamp, data, stamp)
-
-
-def _stamp(time: float) -> tuple[int, int]:
-    if not 0.0 <= time < MOST_SECONDS:
-        raise InputError(f"must lie between 0 and {MOST_SECONDS} s in ROS messages", ("time",))
-    return divmod(round(float(time) * 1e9), 10**9)

@@ -18,9 +18,9 @@ from stairwright.robot.description import JOINTS, Robot
 from stairwright.robot.mujoco_model import build_spec
 
 from .columns import FRAMES, UNITS, plan_arrays
+from .static_torques import static_torques
 
 Floats = NDArray[np.float64]
-GRAVITY = 9.81  # m/s^2
 # Servos that hold a pose between two faces must hold the force inside it too: at the robot's own
 # feedback gains the wheels creep by centimetres, at three times those by millimetres.
 STIFFER = 3.0
@@ -41,7 +41,7 @@ def plan_mjcf(plan: Plan) -> bytes:
         robot, arrays["trunk"], arrays["q"], arrays["wheel_progress"]
     )
     for i, pose in enumerate(plan.poses):
-        hold = joints[i] + static_torques(robot, pose) / stiffness
+        hold = joints[i] + holding_torques(robot, pose) / stiffness
         key = spec.add_key(name=f"pose_{i}", time=pose.time)
         key.qpos = np.concatenate([position[i], quaternion[i], joints[i]])
         key.ctrl = hold
@@ -58,6 +58,14 @@ def plan_mjcf(plan: Plan) -> bytes:
     for name, text in about.items():
         spec.add_text(name=name, data=text)
     spec.compile()  # checks the model, and is needed before it can be written
+    return str(spec.to_xml()).encode()
+
+
+def robot_mjcf(robot: Robot) -> bytes:
+    """The robot alone, as it is simulated: torque motors, no ground."""
+    spec = build_spec(robot)
+    spec.add_text(name="robot_hash", data=robot.hash)
+    spec.compile()
     return str(spec.to_xml()).encode()
 
 
@@ -80,34 +88,11 @@ def _make_servos(spec: Any, robot: Robot) -> Floats:
     return np.array(stiffness)
 
 
-def static_torques(robot: Robot, pose: Pose) -> Floats:
-    """Torques (12,) [Nm] that hold `pose` at rest under its contact forces and gravity.
-
-    Each joint balances what lies beyond it: the moment about +y of a force (fx, fz) at the lever
-    (rx, rz) is ``rz fx - rx fz``. Zero without planned forces.
-    """
+def holding_torques(robot: Robot, pose: Pose) -> Floats:
+    """Torques (12,) [Nm] that hold `pose` at rest; zero without planned forces."""
     if pose.forces is None:
         return np.zeros(12)
     trunk = np.array([[pose.x_c, pose.z_c, pose.pitch]])
-    bodies = spatial.place_planar(robot, trunk, np.array([pose.q]), np.array([pose.wheel_progress]))
-    torques = np.zeros((4, 3))
-    for leg in range(4):
-        hip, knee, wheel = (p[0, leg, [0, 2]] for p in (bodies.hips, bodies.knees, bodies.wheels))
-        contact = np.array(pose.contacts[leg // 2])
-        normal = (wheel - contact) / np.hypot(*(wheel - contact))
-        along, across = (value / 2 for value in pose.forces[leg // 2])
-        force = along * np.array([normal[1], -normal[0]]) + across * normal
-        loads = [
-            (wheel, np.array([0.0, -robot.wheel.mass * GRAVITY])),
-            (knee + robot.calf.com * (wheel - knee), np.array([0.0, -robot.calf.mass * GRAVITY])),
-            (hip + robot.thigh.com * (knee - hip), np.array([0.0, -robot.thigh.mass * GRAVITY])),
-        ]
-        for j, (joint, carried) in enumerate(((hip, 3), (knee, 2), (wheel, 1))):
-            moment = _moment(contact - joint, force)
-            moment += sum(_moment(place - joint, load) for place, load in loads[:carried])
-            torques[leg, j] = -moment
-    return torques.ravel()
-
-
-def _moment(lever: Floats, force: Floats) -> float:
-    return float(lever[1] * force[0] - lever[0] * force[1])
+    q, contacts, forces = (np.array([x]) for x in (pose.q, pose.contacts, pose.forces))
+    held: Floats = static_torques(robot, trunk, q, contacts, forces)[0]
+    return held

@@ -22,6 +22,7 @@ from .gauge import Gauge
 from .live import Broadcast
 
 if TYPE_CHECKING:
+    from stairwright.export.table import Kind
     from stairwright.planning.plan import Plan
 
 Question = Mapping[str, Any]
@@ -142,24 +143,30 @@ def _plan_of(question: Question, artefacts: str) -> Plan:
     return plan
 
 
-def export(packed: bytes, kind: str, format_name: str) -> bytes:
-    """A stored plan or rollout in another format.
+def export(packed: bytes, kind: Kind, format_name: str, rate: float | None) -> bytes:
+    """A plan, rollout or robot in another format; its gzipped JSON is given.
 
     Raises:
         InputError: If this document cannot be written in that format.
     """
-    from stairwright.export.formats import PLAN_FORMATS, ROLLOUT_FORMATS
+    from stairwright.export.table import FORMATS
 
     content = gzip.decompress(packed)
-    if format_name == "json":
+    if format_name == "json" and rate is None:
         return content
+    return FORMATS[kind][format_name].write(_document(kind, content), rate)
+
+
+def _document(kind: Kind, content: bytes) -> Any:
     if kind == "plan":
         from stairwright.planning.plan import Plan
 
-        return bytes(PLAN_FORMATS[format_name].write(Plan.model_validate_json(content)))
+        return Plan.model_validate_json(content)
+    if kind == "robot":
+        return Robot.model_validate_json(content)
     from stairwright.simulation.result import Rollout
 
-    return bytes(ROLLOUT_FORMATS[format_name].write(Rollout.model_validate(orjson.loads(content))))
+    return Rollout.model_validate(orjson.loads(content))
 
 
 def warm_plans() -> None:

@@ -147,11 +147,14 @@ class Plan(Model):
         """Whether it can be tried: a path that ends at an obstruction cannot."""
         return len(self.poses) >= 2 and (self.feasible or self.method != "path")
 
-    def save(self, path: str) -> None:
-        """Write the plan; the ending of `path` picks the format (json, csv, npz, mcap, mjcf)."""
+    def save(self, path: str, rate: float | None = None) -> None:
+        """Write the plan; the ending of `path` picks the format (json, csv, npz, mcap, mjcf, urdf).
+
+        `rate` is that of the joint commands in MCAP [Hz].
+        """
         from stairwright.export.formats import save_plan  # exports lie to the right of planning
 
-        save_plan(self, path)
+        save_plan(self, path, rate)
 
 
 def plan_id(

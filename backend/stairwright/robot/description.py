@@ -8,6 +8,7 @@ forward, y left, z up, every joint turns about +y.
 from __future__ import annotations
 
 import math
+import re
 from functools import cached_property
 from typing import Annotated, Literal, NamedTuple
 
@@ -21,6 +22,7 @@ from stairwright.errors import InputError
 
 LEGS = ("FL", "FR", "RL", "RR")
 JOINTS = tuple(f"{leg}_{part}" for leg in LEGS for part in ("thigh", "calf", "wheel"))
+_ROS_NAME = re.compile(r"[A-Za-z][\w/.-]{0,99}", re.ASCII)
 PLANAR_JOINTS = ("front_thigh", "front_calf", "rear_thigh", "rear_calf")
 
 Positive = Annotated[float, Field(gt=0.0, le=1000.0)]
@@ -154,6 +156,26 @@ class CollisionPoints(Model):
         return len(self.trunk) + 2 * (len(self.thigh) + len(self.calf))
 
 
+def _joint_names(names: dict[str, str]) -> dict[str, str]:
+    """Names for some of the joints, all different from each other and from the others'."""
+    for joint, name in names.items():
+        if joint not in JOINTS:
+            raise InputError(f"no such joint; there are: {', '.join(JOINTS)}", (joint,))
+        if not _ROS_NAME.fullmatch(name):
+            raise InputError(
+                "must be a letter, then letters, digits, '_', '/', '-' or '.', 100 at most",
+                (joint,),
+            )
+    used = [names.get(joint, joint) for joint in JOINTS]
+    for joint, name in zip(JOINTS, used, strict=True):
+        if used.count(name) > 1:
+            raise InputError(f"two joints are called {name!r}", (joint,))
+    return names
+
+
+JointNames = Annotated[dict[str, str], AfterValidator(_joint_names)]
+
+
 class Robot(Model):
     """A wheel-legged robot (``stairwright/robot/1``)."""
 
@@ -170,6 +192,13 @@ class Robot(Model):
     actuators: Actuators
     gains: Gains
     collision_points: CollisionPoints
+    # Left out of documents and hashes where empty: robots without it are the ones they were.
+    joint_names: JointNames = Field(
+        default={},
+        exclude_if=lambda names: not names,
+        description="what the robot's own software calls its joints, by our names "
+        "(FL_thigh ... RR_wheel); used in ROS messages and URDF",
+    )
 
     @model_validator(mode="after")
     def _check_geometry(self) -> Robot:
@@ -194,6 +223,17 @@ class Robot(Model):
     def hash(self) -> str:
         """Hash of everything but the texts."""
         return content_hash(self.model_dump(mode="json", exclude={"description"}))
+
+    def save(self, path: str) -> None:
+        """Write the robot; the ending of `path` picks the format (urdf, mjcf)."""
+        from stairwright.export.formats import save_robot  # exports lie to the right of robots
+
+        save_robot(self, path)
+
+    @property
+    def ros_joints(self) -> tuple[str, ...]:
+        """What the robot's own software calls the 12 joints, in the contract's order."""
+        return tuple(self.joint_names.get(joint, joint) for joint in JOINTS)
 
     @property
     def mass(self) -> float:

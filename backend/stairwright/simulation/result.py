@@ -140,7 +140,7 @@ class Rollout(Model):
         return self.outcome == "success"
 
     def save(self, path: str) -> None:
-        """Write the rollout; the ending picks the format (json, csv, npz, mcap, html)."""
+        """Write the rollout; the ending picks the format (html, json, csv, npz, mcap)."""
         # Exports lie to the right of simulation.
         from stairwright.export.formats import save_rollout
 

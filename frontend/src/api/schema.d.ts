@@ -34,6 +34,8 @@ export interface paths {
         /**
          * Settings
          * @description JSON Schemas; each property has title, description, default, bounds, unit and scale.
+         *
+         *     `exports` are the formats that plans, rollouts and robots can be taken along in.
          */
         get: operations["settings_api_v1_settings_get"];
         put?: never;
@@ -76,6 +78,26 @@ export interface paths {
          * @description One robot.
          */
         get: operations["get_robot_api_v1_robots__name__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/robots/{name}/export": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Export Robot
+         * @description One robot as a file for other tools.
+         */
+        get: operations["export_robot_api_v1_robots__name__export_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -225,7 +247,7 @@ export interface paths {
         };
         /**
          * Export Plan
-         * @description One plan as a file.
+         * @description One plan as a file; urdf is its robot.
          */
         get: operations["export_plan_api_v1_plans__plan_id__export_get"];
         put?: never;
@@ -562,6 +584,19 @@ export interface components {
              * @description fractions of the calf from the knee
              */
             calf: number[];
+        };
+        /**
+         * ExportFormat
+         * @description A format of files.
+         */
+        ExportFormat: {
+            /** Name */
+            name: string;
+            /**
+             * Note
+             * @description what it is for, in a few words
+             */
+            note: string;
         };
         /**
          * FlatParameters
@@ -1101,6 +1136,14 @@ export interface components {
             actuators: components["schemas"]["Actuators"];
             gains: components["schemas"]["Gains"];
             collision_points: components["schemas"]["CollisionPoints"];
+            /**
+             * Joint Names
+             * @description what the robot's own software calls its joints, by our names (FL_thigh ... RR_wheel); used in ROS messages and URDF
+             * @default {}
+             */
+            joint_names: {
+                [key: string]: string;
+            };
         };
         /**
          * RolloutRequest
@@ -1216,6 +1259,10 @@ export interface components {
             /** Controller */
             controller: {
                 [key: string]: unknown;
+            };
+            /** Exports */
+            exports: {
+                [key: string]: components["schemas"]["ExportFormat"][];
             };
         };
         /**
@@ -1790,6 +1837,102 @@ export interface operations {
             };
             /** @description Unprocessable Entity */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    export_robot_api_v1_robots__name__export_get: {
+        parameters: {
+            query?: {
+                format?: "urdf" | "mjcf";
+            };
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The file */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/xml": string;
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -2532,7 +2675,9 @@ export interface operations {
     export_plan_api_v1_plans__plan_id__export_get: {
         parameters: {
             query?: {
-                format?: "json" | "csv" | "npz" | "mcap" | "mjcf";
+                format?: "json" | "csv" | "npz" | "mcap" | "mjcf" | "urdf";
+                /** @description of the joint commands in mcap [Hz]; 100 if empty */
+                rate?: number | null;
             };
             header?: never;
             path: {
@@ -2899,7 +3044,7 @@ export interface operations {
     export_rollout_api_v1_rollouts__rollout_id__export_get: {
         parameters: {
             query?: {
-                format?: "json" | "csv" | "npz" | "mcap" | "html";
+                format?: "html" | "json" | "csv" | "npz" | "mcap";
             };
             header?: never;
             path: {
@@ -2915,11 +3060,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
+                    "text/html": string;
                     "application/json": unknown;
                     "text/csv": string;
                     "application/x-npz": string;
                     "application/x-mcap": string;
-                    "text/html": string;
                 };
             };
             /** @description Bad Request */

@@ -100,6 +100,8 @@ export interface ProblemDetail {
   errors?: { field: string; message: string }[];
 }
 
+export type ExportFormat = Schemas["ExportFormat"];
+
 export interface SettingSchema {
   title?: string;
   description?: string;
@@ -123,6 +125,7 @@ export interface SettingsGroup {
 export interface Settings {
   weights: Partial<Record<Method, SettingsGroup>>;
   controller: SettingsGroup;
+  exports: Record<"plan" | "rollout" | "robot", ExportFormat[]>;
 }
 
 export type SettingValue = number | boolean | string;

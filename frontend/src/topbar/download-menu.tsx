@@ -1,31 +1,19 @@
 /** Every export of the profile, of the plan and of the rollout. */
 
 import { exportUrl } from "../api/client";
+import type { ExportFormat } from "../api/types";
 import { drawing, isEmpty, terrainDocument } from "../state/drawing";
 import { plan } from "../state/planning";
 import { run, runOf } from "../state/rollouts";
+import { settings } from "../state/setup";
 import { isNarrow } from "../state/view";
 import { Icon } from "../ui/icon";
 import { Menu } from "../ui/menu";
 
-const PLAN: [string, string, string][] = [
-  ["json", "JSON", "stairwright/plan/1"],
-  ["csv", "CSV", "poses, one a row"],
-  ["npz", "NPZ", "arrays for NumPy"],
-  ["mcap", "MCAP", "for Foxglove and ROS 2"],
-  ["mjcf", "MJCF", "robot and terrain"],
-];
-const ROLLOUT: [string, string, string][] = [
-  ["html", "HTML", "3-D replay in one file"],
-  ["json", "JSON", "stairwright/rollout/1"],
-  ["csv", "CSV", "series, one sample a row"],
-  ["npz", "NPZ", "arrays for NumPy"],
-  ["mcap", "MCAP", "for Foxglove and ROS 2"],
-];
-
 export function DownloadMenu() {
   const shown = plan.value;
   const result = run.value;
+  const formats = settings.value?.exports;
   const button = (
     <>
       <Icon name="download" />
@@ -50,14 +38,20 @@ export function DownloadMenu() {
         <>
           {!isEmpty.value && <Profile close={close} />}
           {shown && (
-            <Exports title="Plan" kind="plans" id={shown.id} formats={PLAN} close={close} />
+            <Exports
+              title="Plan"
+              kind="plans"
+              id={shown.id}
+              formats={formats?.plan ?? []}
+              close={close}
+            />
           )}
           {result ? (
             <Exports
               title={runOf.value ? `Rollout of the ${runOf.value}` : "Rollout"}
               kind="rollouts"
               id={result.id}
-              formats={ROLLOUT}
+              formats={formats?.rollout ?? []}
               close={close}
             />
           ) : (
@@ -95,7 +89,7 @@ interface ExportsProps {
   title: string;
   kind: "plans" | "rollouts";
   id: string;
-  formats: [string, string, string][];
+  formats: ExportFormat[];
   close: () => void;
 }
 
@@ -103,17 +97,17 @@ function Exports({ title, kind, id, formats, close }: ExportsProps) {
   return (
     <>
       <div class="head">{title}</div>
-      {formats.map(([format, name, note]) => (
+      {formats.map(({ name, note }) => (
         <a
-          key={format}
+          key={name}
           class="item"
           role="menuitem"
           tabIndex={-1}
-          href={exportUrl(kind, id, format)}
+          href={exportUrl(kind, id, name)}
           download=""
           onClick={() => setTimeout(close)}
         >
-          <b>{name}</b>
+          <b>{name.toUpperCase()}</b>
           <small>{note}</small>
         </a>
       ))}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
@@ -22,6 +22,7 @@ from stairwright.api.disconnect import CLIENT_GONE, unless_gone
 from stairwright.api.problems import describe
 from stairwright.api.responses import fresh_json, stored_json
 from stairwright.api.services import Services
+from stairwright.export.table import LEAST_RATE, MOST_RATE, PLAN_FORMATS, USUAL_RATE
 from stairwright.jobs.planning import Answer
 from stairwright.jobs.questions import PlanQuestion
 from stairwright.planning.plan import Plan
@@ -31,15 +32,19 @@ from . import stored
 
 router = APIRouter(prefix="/plans", tags=["plans"])
 PlanId = Annotated[str, Path(max_length=64, examples=["p-0123456789abcdef"])]
+if TYPE_CHECKING:
+    PlanFormat = str
+else:
+    PlanFormat = Literal[tuple(PLAN_FORMATS)]
+Rate = Annotated[
+    float | None,
+    Query(
+        ge=LEAST_RATE,
+        le=MOST_RATE,
+        description=f"of the joint commands in mcap [Hz]; {USUAL_RATE:g} if empty",
+    ),
+]
 AT_ONCE = 200  # points of a terrain that is ready sooner than a thread would be
-PlanFormat = Literal["json", "csv", "npz", "mcap", "mjcf"]
-PLAN_MEDIA = (
-    "application/json",
-    "text/csv",
-    "application/x-npz",
-    "application/x-mcap",
-    "application/xml",
-)
 
 
 def plan_question(services: Services, body: PlanRequest) -> PlanQuestion:
@@ -110,13 +115,14 @@ async def get_plan(request: Request, services: Service, plan_id: PlanId) -> Resp
 @router.get(
     "/{plan_id}/export",
     response_class=Response,
-    responses={**stored.files(PLAN_MEDIA), **describe(404, 429, 503)},
+    responses={**stored.files(PLAN_FORMATS), **describe(404, 429, 503)},
 )
 async def export_plan(
     request: Request,
     services: Service,
     plan_id: PlanId,
     format_name: Annotated[PlanFormat, Query(alias="format")] = "json",
+    rate: Rate = None,
 ) -> Response:
-    """One plan as a file."""
-    return await stored.export(request, services, "plan", plan_id, format_name)
+    """One plan as a file; urdf is its robot."""
+    return await stored.export(request, services, "plan", plan_id, format_name, rate)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import orjson
 from fastapi import APIRouter, Path, Query, Request, Response
@@ -15,6 +15,7 @@ from stairwright.api.services import Services
 from stairwright.control.settings import ControllerSettings
 from stairwright.documents import content_hash, parse
 from stairwright.errors import InputError
+from stairwright.export.table import ROLLOUT_FORMATS
 from stairwright.jobs.questions import PlanQuestion, RolloutQuestion
 from stairwright.planning.plan import Plan
 
@@ -23,15 +24,11 @@ from .jobs import job_document
 from .plans import plan_question
 
 router = APIRouter(prefix="/rollouts", tags=["rollouts"])
+if TYPE_CHECKING:
+    RolloutFormat = str
+else:
+    RolloutFormat = Literal[tuple(ROLLOUT_FORMATS)]
 RolloutId = Annotated[str, Path(max_length=64, examples=["r-0123456789abcdef"])]
-RolloutFormat = Literal["json", "csv", "npz", "mcap", "html"]
-ROLLOUT_MEDIA = (
-    "application/json",
-    "text/csv",
-    "application/x-npz",
-    "application/x-mcap",
-    "text/html",
-)
 
 
 @router.post(
@@ -122,7 +119,7 @@ async def get_rollout(request: Request, services: Service, rollout_id: RolloutId
 @router.get(
     "/{rollout_id}/export",
     response_class=Response,
-    responses={**stored.files(ROLLOUT_MEDIA), **describe(404, 429, 503)},
+    responses={**stored.files(ROLLOUT_FORMATS), **describe(404, 429, 503)},
 )
 async def export_rollout(
     request: Request,

@@ -3,23 +3,29 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Sequence
+import gzip
+import hashlib
+from collections.abc import Mapping
 from typing import Any
 
 from fastapi import Request, Response
 
 from stairwright.api.bodies import StoredEntry
-from stairwright.api.problems import Problem, not_found
+from stairwright.api.problems import not_found
 from stairwright.api.responses import models_json, not_modified, stored_json
 from stairwright.api.services import EXPORT_DEADLINE, Services
+from stairwright.documents import Model
+from stairwright.export.table import FORMATS, Format
+from stairwright.export.table import Kind as Exported
 from stairwright.jobs import work
 from stairwright.storage.documents import Entry, Kind
 
 
-def files(media_types: Sequence[str]) -> dict[int | str, dict[str, Any]]:
+def files(formats: Mapping[str, Format[Any]]) -> dict[int | str, dict[str, Any]]:
     """OpenAPI's word for a download in one of several formats."""
     binary = {"schema": {"type": "string", "format": "binary"}}
-    content = {each: {} if each == "application/json" else binary for each in media_types}
+    types = [each.media_type.split(";")[0] for each in formats.values()]
+    content = {each: {} if each == "application/json" else binary for each in types}
     return {200: {"description": "The file", "content": content}}
 
 
@@ -57,30 +63,52 @@ async def document(request: Request, services: Services, kind: Kind, document_id
 
 
 async def export(
-    request: Request, services: Services, kind: Kind, document_id: str, format_name: str
+    request: Request,
+    services: Services,
+    kind: Kind,
+    document_id: str,
+    format_name: str,
+    rate: float | None = None,
 ) -> Response:
-    """The document in another format, as a download."""
-    try:
-        from stairwright.export import formats
-    except ImportError:
-        raise Problem(503, "this service has no exports", kind="no-export") from None
-    known = formats.PLAN_FORMATS if kind == "plan" else formats.ROLLOUT_FORMATS
-    if format_name not in known:
-        raise Problem(422, f"format: there are: {', '.join(known)}", kind="bad-input")
-    chosen = known[format_name]
+    """A stored document in another format, as a download."""
     entry, packed = await load(services, kind, document_id)
-    etag = f'"{entry.digest[:32]}-{format_name}"'
-    name = f"{document_id}{'' if chosen.suffix.startswith('.') else '.'}{chosen.suffix}"
+    return await _download(
+        request, services, kind, (document_id, entry.digest[:32]), packed, format_name, rate
+    )
+
+
+async def export_document(
+    request: Request, services: Services, kind: Exported, name: str, document: Model, form: str
+) -> Response:
+    """A document that is at hand in another format, as a download."""
+    content = document.model_dump_json().encode()
+    digest = hashlib.sha256(content).hexdigest()[:32]
+    packed = gzip.compress(content, 1)
+    return await _download(request, services, kind, (name, digest), packed, form, None)
+
+
+async def _download(
+    request: Request,
+    services: Services,
+    kind: Exported,
+    called: tuple[str, str],
+    packed: bytes,
+    format_name: str,
+    rate: float | None,
+) -> Response:
+    """`packed`, of that name and digest, as a file in that format."""
+    chosen, (name, digest) = FORMATS[kind][format_name], called
+    etag = f'"{digest}-{format_name}{"" if rate is None else f"-{rate!r}"}"'
     headers = {
         "etag": etag,
         "cache-control": "no-cache",
-        "content-disposition": f'attachment; filename="{name}"',
+        "content-disposition": f'attachment; filename="{name}{chosen.suffix}"',
         "x-content-type-options": "nosniff",
     }
     if not_modified(request, etag):
         return Response(status_code=304, headers=headers)
     async with services.planning.queue.slot("export"):
         content = await services.plan_pool.run(
-            work.export, packed, kind, format_name, deadline=EXPORT_DEADLINE
+            work.export, packed, kind, format_name, rate, deadline=EXPORT_DEADLINE
         )
     return Response(content, headers=headers, media_type=chosen.media_type)

@@ -1,4 +1,4 @@
-"""What can be tuned: schemas of the planners' weights and of the controller's settings."""
+"""What can be chosen: weights, controller settings, and the formats of files."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import Any
 
 from fastapi import APIRouter
 
-from stairwright.api.bodies import SettingsDocument
+from stairwright.api.bodies import ExportFormat, SettingsDocument
 from stairwright.documents import Model
+from stairwright.export.table import FORMATS
 from stairwright.planning.weights import MODELS
 
 router = APIRouter(tags=["settings"])
@@ -17,14 +18,21 @@ router = APIRouter(tags=["settings"])
 
 @router.get("/settings")
 async def settings() -> SettingsDocument:
-    """JSON Schemas; each property has title, description, default, bounds, unit and scale."""
+    """JSON Schemas; each property has title, description, default, bounds, unit and scale.
+
+    `exports` are the formats that plans, rollouts and robots can be taken along in.
+    """
     return _document()
 
 
 @cache
 def _document() -> SettingsDocument:
     weights = {method: _flat(model) for method, model in MODELS.items()}
-    return SettingsDocument(weights=weights, controller=_controller())
+    exports = {
+        kind: [ExportFormat(name=name, note=each.note) for name, each in formats.items()]
+        for kind, formats in FORMATS.items()
+    }
+    return SettingsDocument(weights=weights, controller=_controller(), exports=exports)
 
 
 def _controller() -> dict[str, Any]:
