@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import socket
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 import httpx
@@ -20,6 +21,9 @@ from stairwright.api.settings import Settings
 from stairwright.errors import InputError
 from tests.conftest import CHROMIUM_FLAGS, Server
 from tests.in_process import served
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 Start = Callable[..., contextlib.AbstractContextManager[Server]]
 
@@ -143,10 +147,8 @@ def test_names_as_they_are_written() -> None:
 
 
 @pytest.mark.browser
-def test_rebinding_in_a_browser(server: Server, browser_path: str) -> None:
+def test_rebinding_in_a_browser(server: Server, browser: Browser, browser_path: str) -> None:
     """The page comes from the attacker, its requests go to the service under the same name."""
-    from playwright.sync_api import sync_playwright
-
     port = urlsplit(server.url).port
     flags = [
         *CHROMIUM_FLAGS,
@@ -167,12 +169,11 @@ def test_rebinding_in_a_browser(server: Server, browser_path: str) -> None:
       });
       return [location.hostname, read.status, wrote.status, opened];
     }"""
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=browser_path, args=flags)
-        page = browser.new_page()
-        attack = f"http://evil.example:{port}/attack"
-        page.route(attack, lambda route: route.fulfill(content_type="text/html", body="<p>"))
-        page.goto(attack)
-        assert page.evaluate(script) == ["evil.example", 421, 421, False]
-        browser.close()
+    page = browser.browser_type.launch(executable_path=browser_path, args=flags).new_page()
+    attack = f"http://evil.example:{port}/attack"
+    page.route(attack, lambda route: route.fulfill(content_type="text/html", body="<p>"))
+    page.goto(attack)
+    assert page.evaluate(script) == ["evil.example", 421, 421, False]
+    if page.context.browser:
+        page.context.browser.close()
     assert httpx.get(f"{server.url}/api/v1/terrains/stolen").status_code == 404
