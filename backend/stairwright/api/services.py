@@ -20,6 +20,7 @@ from stairwright.jobs.worker import Limits
 from stairwright.library import load_robot, load_terrain, robots, terrains
 from stairwright.storage.store import Store
 
+from .clock_watch import watch_clock
 from .metrics import Metrics
 from .replanning import Replanning
 from .sessions import Sessions, load_scenes
@@ -91,6 +92,7 @@ class Services:
             asyncio.create_task(self._start_the_rest()),
             asyncio.create_task(self._collect()),
             asyncio.create_task(self._settle()),
+            asyncio.create_task(watch_clock(self.store.last_written)),
             asyncio.create_task(self.sessions.close_idle_forever()),
         ]
 
@@ -121,13 +123,11 @@ class Services:
     async def _collect(self) -> None:
         while True:
             try:
-                removed = await asyncio.to_thread(
-                    self.store.collect, self.settings.keep_days, self.settings.keep_bytes
-                )
+                removed = await asyncio.to_thread(self.store.collect, self.settings.keep_bytes)
                 if removed:
-                    logger.info("removed %d old results", removed)
+                    logger.info("removed %d results for want of room", removed)
             except Exception:
-                logger.exception("old results could not be removed")
+                logger.exception("room for new results could not be made")
             await asyncio.sleep(COLLECT_EVERY)
 
     async def _settle(self) -> None:

@@ -81,11 +81,9 @@ class Settings:
         default=900.0, metadata=_about("a 3D scene without use is closed after this, s", 1.0)
     )
     session_limit: int = field(default=100, metadata=_about("3D scenes open at once", 1))
-    keep_days: float = field(
-        default=90.0, metadata=_about("results older than this are removed, days", 0.0)
-    )
     keep_bytes: int = field(
-        default=20 * 2**30, metadata=_about("results beyond this are removed, oldest first", 0)
+        default=20 * 2**30,
+        metadata=_about("results beyond this are removed, least lately used first", 0),
     )
     log_level: str = field(default="info", metadata=_about("debug, info, warning or error"))
 

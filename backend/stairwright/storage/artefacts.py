@@ -18,7 +18,7 @@ from pathlib import Path
 
 _PLAIN, _PACKED, _PARTIAL = ".json", ".json.gz", ".partial"
 _LEVEL = 1  # of gzip: level 4 takes three times as long for 5 % less
-_ABANDONED = 3600.0  # s; a partial file this old belongs to a process that has died
+_ABANDONED = 1800.0  # s after which what nobody refers to belongs to a process that has died
 
 
 class Artefacts:
@@ -27,6 +27,7 @@ class Artefacts:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         folder.mkdir(parents=True, exist_ok=True)
+        self._orphans: dict[tuple[Path, int], float] = {}  # since when they are known as such
 
     def path(self, digest: str) -> Path:
         """Where the settled artefact lies or would lie."""
@@ -97,12 +98,22 @@ class Artefacts:
         self._plain(digest).unlink(missing_ok=True)
 
     def sweep(self, wanted: set[str], grace: float = _ABANDONED) -> int:
-        """Remove files that nobody refers to and that are older than `grace` [s]; how many."""
-        before, removed = time.time() - grace, 0
+        """Remove files that nobody refers to, now and at a sweep `grace` [s] ago; how many.
+
+        Their own times do not count: they come from a clock that may have been wrong.
+        """
+        now, removed = time.monotonic(), 0
+        known, self._orphans = self._orphans, {}
         for path in self.folder.glob("??/*"):
             digest = path.name.removesuffix(_PACKED).removesuffix(_PLAIN)
             try:
-                if digest not in wanted and path.stat().st_mtime < before:
+                if digest in wanted:
+                    continue
+                version = (path, path.stat().st_mtime_ns)  # another one once it was put again
+                since = known.get(version, now)
+                if now - since < grace:
+                    self._orphans[version] = since
+                else:
                     path.unlink()
                     removed += 1
             except FileNotFoundError:

@@ -13,6 +13,7 @@ from sqlalchemy.dialects.sqlite import insert
 from sqlalchemy.orm import sessionmaker
 
 from .artefacts import Artefacts
+from .clock import UseClock
 from .tables import StoredDocument
 
 Kind = Literal["plan", "rollout"]
@@ -57,6 +58,9 @@ class Documents:
         self._engine = engine
         self._sessions = sessionmaker(engine, expire_on_commit=False)
         self._artefacts = artefacts
+        with engine.connect() as connection:
+            newest = connection.execute(select(func.max(_ROWS.c.used))).scalar()
+        self._clock = UseClock(newest or 0.0)
 
     def get(self, kind: Kind, document_id: str) -> Entry | None:
         """The document of this id, None if there is none (any more)."""
@@ -71,8 +75,9 @@ class Documents:
             row = connection.execute(statement, values).first()
             if row is None or not self._artefacts.has(row.digest):
                 return None
-            if time.time() - row.used > _FRESH:
-                used = update(_ROWS).where(_ROWS.c.id == row.id).values(used=time.time())
+            now = self._clock.now()
+            if now - row.used > _FRESH:
+                used = update(_ROWS).where(_ROWS.c.id == row.id).values(used=now)
                 connection.execute(used)
                 connection.commit()
             return _entry(row)
@@ -99,7 +104,7 @@ class Documents:
             "size": size,
             "summary": json.dumps(dict(summary)),
             "created": now,
-            "used": now,
+            "used": self._clock.now(),
         }
         with self._engine.begin() as connection:
             connection.execute(_PUT, values)
@@ -125,17 +130,3 @@ class Documents:
         """Artefacts that are referred to."""
         with self._sessions() as session:
             return set(session.scalars(select(StoredDocument.digest)))
-
-    def forget(self, before: float, keep_bytes: int) -> int:
-        """Remove what was last used before a time, then the least used beyond a size."""
-        removed = 0
-        with self._sessions.begin() as session:
-            rows = session.scalars(select(StoredDocument).order_by(StoredDocument.used.desc()))
-            kept = 0
-            for row in rows.all():
-                kept += row.size
-                if row.used < before or kept > keep_bytes:
-                    session.delete(row)
-                    kept -= row.size
-                    removed += 1
-        return removed

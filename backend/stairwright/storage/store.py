@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +9,10 @@ from sqlalchemy import Engine, text
 from sqlalchemy.orm import sessionmaker
 
 from .artefacts import Artefacts
+from .clock import last_written
 from .database import open_database
 from .documents import Documents, Entry, Kind
+from .housekeeping import make_room, trim_records
 from .idempotency import IdempotencyKeys
 from .jobs import JobLog
 from .terrains import SavedTerrains
@@ -28,8 +29,9 @@ class Store:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self.last_written = last_written(folder / DATABASE)  # [s], None for a new folder
         self.engine: Engine = open_database(folder / DATABASE)
-        sessions = sessionmaker(self.engine, expire_on_commit=False)
+        self._sessions = sessions = sessionmaker(self.engine, expire_on_commit=False)
         self.artefacts = Artefacts(folder / "artefacts")
         self.terrains = SavedTerrains(sessions)
         self.documents = Documents(self.engine, self.artefacts)
@@ -42,14 +44,14 @@ class Store:
         with self.engine.connect() as connection:
             return bool(connection.execute(text("SELECT 1")).scalar())
 
-    def collect(self, keep_days: float, keep_bytes: int) -> int:
-        """Remove what is old or too much; returns how many results went."""
-        before = time.time() - keep_days * 86400.0
-        self.jobs.forget(before)
-        self.idempotency.forget(time.time() - 86400.0)
-        removed = self.documents.forget(before, keep_bytes)
+    def collect(self, keep_bytes: int) -> int:
+        """Remove what is too much; returns how many results went. Age is no reason."""
+        trim_records(self._sessions)
+        removed = make_room(self._sessions, keep_bytes)
+        for digest in removed:
+            self.artefacts.remove(digest)
         self.artefacts.sweep(self.documents.digests())
-        return removed
+        return len(removed)
 
     def shelve(self, kind: Kind, document_id: str, **values: Any) -> Entry:
         """Write down a document whose content was put among the artefacts; it will be settled.
