@@ -74,13 +74,8 @@ class Planning:
 
     def stored(self, question: PlanQuestion) -> Answer | None:
         """The plan if it is known already. Reads the database: call it in a thread."""
-        entry = self._store.documents.answer("plan", question.key, planning_engine())
-        if entry is None:
-            return None
-        try:
-            return Answer(entry, self._store.artefacts.packed(entry.digest), cached=True)
-        except FileNotFoundError:  # collected this very moment
-            return None
+        found = self._store.documents.content("plan", question.key, planning_engine())
+        return None if found is None else Answer(*found, cached=True)
 
     async def solve(self, question: PlanQuestion, owner: str) -> Answer:
         """The plan, infeasible ones too. Cancelling the last caller cancels the solve.

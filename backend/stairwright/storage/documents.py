@@ -67,8 +67,17 @@ class Documents:
         return self._find(_BY_ID, id=document_id, kind=kind)
 
     def answer(self, kind: Kind, question: str, engine: str) -> Entry | None:
-        """A stored answer to the same question by the same code."""
-        return self._find(_BY_QUESTION, question=question, engine=engine, kind=kind)
+        """A stored answer to the same question by the same code, its content undamaged."""
+        entry = self._find(_BY_QUESTION, question=question, engine=engine, kind=kind)
+        return entry if entry is not None and self._artefacts.intact(entry.digest) else None
+
+    def content(self, kind: Kind, question: str, engine: str) -> tuple[Entry, bytes] | None:
+        """The same with its gzipped JSON, which is read only once."""
+        entry = self._find(_BY_QUESTION, question=question, engine=engine, kind=kind)
+        try:
+            return None if entry is None else (entry, self._artefacts.packed(entry.digest))
+        except FileNotFoundError:  # damaged, or removed this very moment
+            return None
 
     def _find(self, statement: Select[Any], **values: str) -> Entry | None:
         with self._engine.connect() as connection:
