@@ -11,6 +11,7 @@ from stairwright import __version__
 
 from . import openapi, problems
 from .middleware import PREFIX, Compress, Gate, LimitBody, Observe
+from .read_only import ReadOnly
 from .routes import (
     health,
     jobs,
@@ -63,6 +64,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     openapi.install(app, token=bool(settings.token))
     # The last one added is the outermost.
     app.add_middleware(Compress)
+    if services.store.read_only:
+        app.add_middleware(ReadOnly, reason=services.store.read_only)
     app.add_middleware(
         LimitBody, limit=settings.body_limit, upload_limit=settings.upload_limit + 65536
     )

@@ -14,13 +14,14 @@ from typing import Any
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, Field
-from sqlalchemy.exc import OperationalError
+from sqlalchemy.exc import DatabaseError, OperationalError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from stairwright.documents import wording
 from stairwright.errors import InputError
 from stairwright.jobs.failures import Failure
+from stairwright.storage.opening import is_damage
 
 MEDIA_TYPE = "application/problem+json"
 MAX_ERRORS = 20
@@ -146,6 +147,9 @@ def problem_of(error: Exception) -> Problem:
     if isinstance(error, Failure):
         headers = {"retry-after": str(math.ceil(error.retry_after or 1.0))}
         return Problem(error.status, error.message, kind=error.kind, headers=headers)
+    if isinstance(error, DatabaseError) and is_damage(error):
+        logger.error("the database is damaged", exc_info=error)
+        return _unavailable("the database is damaged: restart the service, which sets it aside")
     if isinstance(error, OperationalError):
         logger.error("the database cannot be used now", exc_info=error)
         return _unavailable("the database is busy or cannot be written")
@@ -164,7 +168,7 @@ def install(app: FastAPI) -> None:
         return problem_of(error).response()
 
     # Named, since Starlette raises again what only the handler of Exception has answered.
-    for kind in (Problem, RequestValidationError, InputError, Failure, OperationalError, OSError):
+    for kind in (Problem, RequestValidationError, InputError, Failure, DatabaseError, OSError):
         app.add_exception_handler(kind, on_error)
     app.add_exception_handler(Exception, on_error)
 

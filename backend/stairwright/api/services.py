@@ -81,20 +81,30 @@ class Services:
         return (self.plan_pool, self.rollout_pool, self.upload_pool)
 
     async def start(self) -> None:
-        """Settle what an earlier process left behind, then start workers and housekeeping."""
+        """Take over from an earlier process, then start workers and housekeeping."""
+        if self.store.read_only:
+            logger.error("%s", self.store.read_only)
+        else:
+            await self._take_over()
+        await self.plan_pool.start()
+        self._tasks = [
+            asyncio.create_task(self._start_the_rest()),
+            asyncio.create_task(watch_clock(self.store.last_written)),
+            asyncio.create_task(self.sessions.close_idle_forever()),
+        ]
+        if not self.store.read_only:
+            self._tasks += [
+                asyncio.create_task(self._collect()),
+                asyncio.create_task(self._settle()),
+            ]
+
+    async def _take_over(self) -> None:
+        """Settle what an earlier process left behind."""
         gone = problem(503, "interrupted", "the service was restarted; please ask again")
         interrupted = await asyncio.to_thread(self.store.jobs.interrupt, gone)
         await asyncio.to_thread(self.store.idempotency.release_unfinished)
         if interrupted:
             logger.warning("%d jobs were interrupted by a restart", interrupted)
-        await self.plan_pool.start()
-        self._tasks = [
-            asyncio.create_task(self._start_the_rest()),
-            asyncio.create_task(self._collect()),
-            asyncio.create_task(self._settle()),
-            asyncio.create_task(watch_clock(self.store.last_written)),
-            asyncio.create_task(self.sessions.close_idle_forever()),
-        ]
 
     async def _start_the_rest(self) -> None:
         """What nobody waits for in the first second must not compete with what somebody does."""

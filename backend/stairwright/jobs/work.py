@@ -16,7 +16,7 @@ import orjson
 from stairwright.documents import parse
 from stairwright.library import load_robot, robots
 from stairwright.robot.description import Robot
-from stairwright.storage.artefacts import Artefacts
+from stairwright.storage.artefacts import Artefacts, name_of
 
 from .gauge import Gauge
 from .live import Broadcast
@@ -41,8 +41,10 @@ class Product:
     plan: Product | None = None  # that a rollout made for itself
 
 
-def solve(question: Question, artefacts: str) -> Product:
+def solve(question: Question, artefacts: str | None) -> Product:
     """Plan; `question` has terrain and robot documents, friction, method and weights.
+
+    Without a folder for artefacts the plan is not kept.
 
     Raises:
         InputError: If a value is bad.
@@ -75,9 +77,9 @@ def _artefacts(folder: str) -> Artefacts:
     return Artefacts(Path(folder))
 
 
-def _keep_plan(plan: Plan, artefacts: str) -> Product:
+def _keep_plan(plan: Plan, artefacts: str | None) -> Product:
     content = plan.model_dump_json().encode()
-    digest = _artefacts(artefacts).put(content)
+    digest = _artefacts(artefacts).put(content) if artefacts else name_of(content)
     summary = {
         "terrain": plan.terrain.name,
         "robot": plan.robot,

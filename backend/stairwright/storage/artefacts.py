@@ -31,7 +31,8 @@ class Artefacts:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        folder.mkdir(parents=True, exist_ok=True)
+        with contextlib.suppress(OSError):  # what is put will say what is wrong
+            folder.mkdir(parents=True, exist_ok=True)
         self._orphans: dict[tuple[Path, int], float] = {}  # since when they are known as such
 
     def path(self, digest: str) -> Path:
@@ -58,7 +59,7 @@ class Artefacts:
 
         A reader sees the whole file or none: it is renamed into place when complete.
         """
-        digest = hashlib.sha256(content).hexdigest()
+        digest = name_of(content)
         if self._settled(digest) is None:
             _write(self._plain(digest), content, durable=False)
         else:
@@ -152,6 +153,11 @@ class Artefacts:
         return removed
 
 
+def name_of(content: bytes) -> str:
+    """The name of a content: its digest."""
+    return hashlib.sha256(content).hexdigest()
+
+
 def _pack(content: bytes) -> bytes:
     return gzip.compress(content, compresslevel=_LEVEL, mtime=0)
 
@@ -161,13 +167,13 @@ def _fits(packed: bytes, digest: str) -> bool:
         content = gzip.decompress(packed)
     except (OSError, EOFError, zlib.error):
         return False
-    return hashlib.sha256(content).hexdigest() == digest
+    return name_of(content) == digest
 
 
 def _checked(path: Path, digest: str) -> bytes:
     """The file's content; one that was cut short by a power cut is removed and missing."""
     content = path.read_bytes()
-    if hashlib.sha256(content).hexdigest() != digest:
+    if name_of(content) != digest:
         _discard(path)
         raise FileNotFoundError(path)
     return content

@@ -54,7 +54,9 @@ def _entry(row: Any) -> Entry:
 class Documents:
     """The shelf of plans and rollouts."""
 
-    def __init__(self, engine: Engine, artefacts: Artefacts) -> None:
+    def __init__(self, engine: Engine, artefacts: Artefacts, *, fixed: bool = False) -> None:
+        """`fixed`: nothing can be written, not even that something was used."""
+        self._fixed = fixed
         self._engine = engine
         self._sessions = sessionmaker(engine, expire_on_commit=False)
         self._artefacts = artefacts
@@ -85,7 +87,7 @@ class Documents:
             if row is None or not self._artefacts.has(row.digest):
                 return None
             now = self._clock.now()
-            if now - row.used > _FRESH:
+            if now - row.used > _FRESH and not self._fixed:
                 used = update(_ROWS).where(_ROWS.c.id == row.id).values(used=now)
                 connection.execute(used)
                 connection.commit()

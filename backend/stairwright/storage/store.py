@@ -10,11 +10,12 @@ from sqlalchemy.orm import sessionmaker
 
 from .artefacts import Artefacts
 from .clock import last_written
-from .database import open_database
 from .documents import Documents, Entry, Kind
 from .housekeeping import make_room, trim_records
 from .idempotency import IdempotencyKeys
 from .jobs import JobLog
+from .opening import open_soundly
+from .salvage import was_set_aside
 from .terrains import SavedTerrains
 
 DATABASE = "stairwright.sqlite"
@@ -30,11 +31,12 @@ class Store:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.last_written = last_written(folder / DATABASE)  # [s], None for a new folder
-        self.engine: Engine = open_database(folder / DATABASE)
+        self.engine: Engine
+        self.engine, self.read_only = open_soundly(folder / DATABASE)  # why nothing can be saved
         self._sessions = sessions = sessionmaker(self.engine, expire_on_commit=False)
         self.artefacts = Artefacts(folder / "artefacts")
         self.terrains = SavedTerrains(sessions)
-        self.documents = Documents(self.engine, self.artefacts)
+        self.documents = Documents(self.engine, self.artefacts, fixed=self.read_only is not None)
         self._unsettled = set(self.artefacts.unsettled())  # a process that died may leave some
         self.jobs = JobLog(sessions)
         self.idempotency = IdempotencyKeys(sessions)
@@ -50,7 +52,8 @@ class Store:
         removed = make_room(self._sessions, keep_bytes)
         for digest in removed:
             self.artefacts.remove(digest)
-        self.artefacts.sweep(self.documents.digests())
+        if not was_set_aside(self.folder / DATABASE):  # which may refer to any of them
+            self.artefacts.sweep(self.documents.digests())
         return len(removed)
 
     def shelve(self, kind: Kind, document_id: str, **values: Any) -> Entry:

@@ -625,6 +625,11 @@ export interface components {
             status: "ok";
             /** Version */
             version: string;
+            /**
+             * Read Only
+             * @description why nothing is saved and what to do, if nothing is
+             */
+            read_only?: string | null;
         };
         /**
          * Hips

@@ -22,7 +22,7 @@ async def healthz(services: Service) -> Health:
     if not services.ready:
         soon = {"retry-after": "1"}
         raise Problem(503, "the workers are starting", kind="starting", headers=soon)
-    return Health(version=__version__)
+    return Health(version=__version__, read_only=services.store.read_only)
 
 
 @metrics_router.get("/metrics")
