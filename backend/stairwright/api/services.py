@@ -10,9 +10,8 @@ from functools import partial
 
 from fastapi.concurrency import run_in_threadpool
 
-from stairwright.jobs import work
 from stairwright.jobs.engine import planning_engine, rollout_engine
-from stairwright.jobs.failures import Failure, problem
+from stairwright.jobs.failures import problem
 from stairwright.jobs.planning import Planning
 from stairwright.jobs.pool import WorkerPool
 from stairwright.jobs.rollouts import Rollouts
@@ -22,6 +21,7 @@ from stairwright.storage.store import Store
 
 from .clock_watch import watch_clock
 from .metrics import Metrics
+from .readiness import Readiness
 from .replanning import Replanning
 from .sessions import Sessions, load_scenes
 from .settings import Settings
@@ -30,8 +30,6 @@ logger = logging.getLogger(__name__)
 
 COLLECT_EVERY = 3600.0  # s
 SETTLE_EVERY = 2.0  # s
-START_DEADLINE = 300.0  # s; kernels may have to be compiled
-LATEST_READY = 20.0  # s; whoever asks while kernels are still being compiled has to wait for them
 FIRST_SECOND = 1.0  # s
 UPLOAD_MEMORY = 2048  # MiB
 UPLOAD_DEADLINE = 20.0  # s
@@ -60,6 +58,7 @@ class Services:
         self.plan_pool = WorkerPool("plans", settings.plan_workers, Limits(memory=memory), spares=1)
         idle = Limits(memory=memory, nice=ROLLOUT_NICENESS)
         self.rollout_pool = WorkerPool("rollouts", settings.rollout_workers, idle, spares=1)
+        self.readiness = Readiness(self.plan_pool)
         self.upload_pool = WorkerPool("uploads", 1, Limits(memory=UPLOAD_MEMORY, sealed=True))
         self.planning = Planning(
             self.store, self.plan_pool, settings.plan_queue_limit, settings.plan_deadline
@@ -72,7 +71,6 @@ class Services:
             settings.session_limit, settings.session_idle, Replanning(self.planning)
         )
         self._tasks: list[asyncio.Task[None]] = []
-        self.ready = False  # until a plan can be answered without waiting for workers to start
         self._show_gauges()
 
     @property
@@ -109,10 +107,7 @@ class Services:
     async def _start_the_rest(self) -> None:
         """What nobody waits for in the first second must not compete with what somebody does."""
         await run_in_threadpool(_read_what_questions_need)  # which warms FastAPI's threads too
-        asyncio.get_running_loop().call_later(LATEST_READY, setattr, self, "ready", True)
-        with contextlib.suppress(Failure):
-            await self.plan_pool.run(work.rehearse, deadline=START_DEADLINE)
-        self.ready = True
+        await self.readiness.rehearse()
         await asyncio.sleep(FIRST_SECOND)
         await self.rollout_pool.start()
         await self.upload_pool.start()

@@ -30,6 +30,7 @@ class WorkerPool:
         self.name = name
         self.workers = workers
         self.deaths = 0
+        self.prepared = asyncio.Event()  # set when the first worker is there, or cannot be
         self._processes = workers + spares
         self._limits = limits
         # The one that worked last works next: what it needs is still in the processor's cache.
@@ -50,10 +51,11 @@ class WorkerPool:
         """Carry out `function(*args)` in a worker; cancelling the caller kills that worker.
 
         Raises:
-            DeadlineExceeded: After `deadline` [s].
+            DeadlineExceeded: After `deadline` [s], counted from when there are workers.
             WorkerDied: If the process is gone.
             Exception: Whatever the function raises.
         """
+        await self.prepared.wait()  # compiling may take minutes, which are no fault of the task's
         try:
             async with asyncio.timeout(deadline):
                 worker = await self._ready()
@@ -86,10 +88,12 @@ class WorkerPool:
                 worker = await WorkerProcess.start(self._limits)
             except (OSError, EOFError):
                 logger.exception("a worker of the pool %s cannot be started", self.name)
+                self.prepared.set()  # nobody shall wait for ever
                 await asyncio.sleep(RETRY)
                 continue
             try:
                 self._idle.put_nowait(worker)
+                self.prepared.set()
                 await worker.gone.wait()
             except asyncio.CancelledError:
                 worker.kill()

@@ -173,13 +173,24 @@ def warm_plans() -> None:
         plan(GENTLE, robots()[0], method="critical")
 
 
-def rehearse() -> None:
-    """A small plan in a worker, so that the first one that counts meets warm memory."""
+def warm_all_plans() -> None:
+    """Every kind of plan: on a machine where nothing is compiled yet, nobody shall wait later."""
     with _logged():
-        _plan(
-            {"terrain": GENTLE, "robot": load_robot(robots()[0]).model_dump(mode="json"),
-             "friction": 0.6, "method": "path", "weights": {}}
-        )  # fmt: skip
+        from stairwright.warmup import warm_up_plans
+
+        warm_up_plans()
+
+
+def rehearse() -> None:
+    """A small plan in a worker, so that the first one that counts meets warm memory.
+
+    Raises:
+        Exception: Whatever would keep other plans from being answered too.
+    """
+    _plan(
+        {"terrain": GENTLE, "robot": load_robot(robots()[0]).model_dump(mode="json"),
+         "friction": 0.6, "method": "path", "weights": {}}
+    )  # fmt: skip
 
 
 def warm_rollouts() -> None:

@@ -17,11 +17,11 @@ metrics_router = APIRouter(include_in_schema=False)
 
 @router.get("/healthz", responses=describe(503))
 async def healthz(services: Service) -> Health:
-    """200 when plans are answered at once; others are answered before that, only later."""
+    """200 when plans are answered at once; before that they wait, and 503 says what for."""
     await asyncio.to_thread(services.store.ready)
-    if not services.ready:
+    if not services.readiness.ready:
         soon = {"retry-after": "1"}
-        raise Problem(503, "the workers are starting", kind="starting", headers=soon)
+        raise Problem(503, services.readiness.text, kind="starting", headers=soon)
     return Health(version=__version__, read_only=services.store.read_only)
 
 
