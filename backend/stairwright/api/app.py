@@ -10,6 +10,7 @@ from fastapi import APIRouter, FastAPI
 from stairwright import __version__
 
 from . import openapi, problems
+from .last_resort import LastResort
 from .middleware import PREFIX, Compress, Gate, LimitBody, Observe
 from .read_only import ReadOnly
 from .routes import (
@@ -70,6 +71,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         LimitBody, limit=settings.body_limit, upload_limit=settings.upload_limit + 65536
     )
     app.add_middleware(Gate, token=settings.token, origins=settings.allowed_origins)
+    app.add_middleware(LastResort)
     app.add_middleware(Observe, metrics=services.metrics)
     api = APIRouter(prefix=PREFIX)
     for routes in (health, tuning, robots, terrains, plans, live, rollouts, jobs, sessions):

@@ -148,13 +148,13 @@ def problem_of(error: Exception) -> Problem:
         headers = {"retry-after": str(math.ceil(error.retry_after or 1.0))}
         return Problem(error.status, error.message, kind=error.kind, headers=headers)
     if isinstance(error, DatabaseError) and is_damage(error):
-        logger.error("the database is damaged", exc_info=error)
+        logger.error("the database is damaged: %s", error.orig)
         return _unavailable("the database is damaged: restart the service, which sets it aside")
     if isinstance(error, OperationalError):
-        logger.error("the database cannot be used now", exc_info=error)
+        logger.error("the database cannot be used now: %s", error.orig)
         return _unavailable("the database is busy or cannot be written")
     if isinstance(error, OSError) and error.errno in _EXHAUSTED:
-        logger.error("the system refused", exc_info=error)
+        logger.error("the system refused: %s", error)
         return _unavailable(f"the server has a problem: {error.strerror}")
     logger.error("unexpected error", exc_info=error)
     return Problem(500, "this is a bug in the service; its log says more")

@@ -20,11 +20,13 @@ from stairwright.library import load_robot, load_terrain, robots, terrains
 from stairwright.storage.store import Store
 
 from .clock_watch import watch_clock
+from .figures import Figures
 from .metrics import Metrics
 from .readiness import Readiness
 from .replanning import Replanning
 from .sessions import Sessions, load_scenes
 from .settings import Settings
+from .trouble import Trouble
 
 logger = logging.getLogger(__name__)
 
@@ -126,28 +128,39 @@ class Services:
         self.store.close()
 
     async def _collect(self) -> None:
+        trouble = Trouble(logger, "making room for new results")
         while True:
             try:
                 removed = await asyncio.to_thread(self.store.collect, self.settings.keep_bytes)
                 if removed:
                     logger.info("removed %d results for want of room", removed)
-            except Exception:
-                logger.exception("room for new results could not be made")
+            except Exception as error:  # noqa: BLE001 - housekeeping goes on
+                trouble.failed(error)
+            else:
+                trouble.worked()
             await asyncio.sleep(COLLECT_EVERY)
 
     async def _settle(self) -> None:
+        trouble = Trouble(logger, "compressing new results")
         while True:
             await asyncio.sleep(SETTLE_EVERY)
             try:
                 await asyncio.to_thread(self.store.settle)
-            except Exception:
-                logger.exception("new results could not be compressed; they are kept as they are")
+            except Exception as error:  # noqa: BLE001 - housekeeping goes on
+                trouble.failed(error)
+            else:
+                trouble.worked()
 
     def _show_gauges(self) -> None:
         show = self.metrics.gauge
+        self.metrics.registry.register(
+            Figures(self.store, self.pools, lambda: self.readiness.ready)
+        )
         for pool in self.pools:
-            show(f"worker_deaths_{pool.name}", "Dead workers", partial(getattr, pool, "deaths"))
+            pool.observe = partial(self.metrics.worked, pool.name)
+        self.store.observe = self.metrics.resulted
         for queue in (self.planning.queue, self.rollouts.queue):
+            queue.observe = partial(self.metrics.waited, queue.name)
             show(f"{queue.name}_waiting", "Waiting tasks", partial(getattr, queue, "length"))
             show(f"{queue.name}_running", "Running tasks", partial(getattr, queue, "running"))
         show("sessions", "Open 3D scenes", self.sessions.__len__)

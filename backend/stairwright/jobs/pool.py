@@ -9,6 +9,7 @@ from typing import Any, TypeVar, cast
 
 from .failures import DeadlineExceeded
 from .process import WorkerProcess
+from .stopwatch import Observer, Stopwatch, ignore
 from .worker import Limits
 
 T = TypeVar("T")
@@ -30,6 +31,7 @@ class WorkerPool:
         self.name = name
         self.workers = workers
         self.deaths = 0
+        self.observe: Observer = ignore
         self.prepared = asyncio.Event()  # set when the first worker is there, or cannot be
         self._processes = workers + spares
         self._limits = limits
@@ -55,10 +57,18 @@ class WorkerPool:
             WorkerDied: If the process is gone.
             Exception: Whatever the function raises.
         """
+        watch = Stopwatch()
+        with watch.measured(self.observe):
+            return await self._run(watch, function, *args, deadline=deadline)
+
+    async def _run(
+        self, watch: Stopwatch, function: Callable[..., T], *args: Any, deadline: float
+    ) -> T:
         await self.prepared.wait()  # compiling may take minutes, which are no fault of the task's
         try:
             async with asyncio.timeout(deadline):
                 worker = await self._ready()
+                watch.start()
                 try:
                     returned, outcome = await worker.ask(function, *args)
                 finally:

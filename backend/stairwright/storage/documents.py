@@ -137,6 +137,14 @@ class Documents:
             total = session.scalar(select(func.count()).where(mine)) or 0
             return [_entry(row) for row in session.scalars(query)], total
 
+    def totals(self) -> tuple[dict[str, int], int]:
+        """How many there are of each kind, and what they take on disk [bytes]."""
+        mine = (StoredDocument.kind, func.count(), func.sum(StoredDocument.size))
+        with self._sessions() as session:
+            rows = session.execute(select(*mine).group_by(StoredDocument.kind)).all()
+        counts = {"plan": 0, "rollout": 0} | {kind: number for kind, number, _ in rows}
+        return counts, sum(size for _, _, size in rows)
+
     def digests(self) -> set[str]:
         """Artefacts that are referred to."""
         with self._sessions() as session:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +40,7 @@ class Store:
         self.documents = Documents(self.engine, self.artefacts, fixed=self.read_only is not None)
         self._unsettled = set(self.artefacts.unsettled())  # a process that died may leave some
         self.jobs = JobLog(sessions)
+        self.observe: Callable[[Entry], None] = lambda _: None  # called with each new result
         self.idempotency = IdempotencyKeys(sessions)
 
     def ready(self) -> bool:
@@ -62,6 +64,7 @@ class Store:
         Keywords as in `Documents.put`.
         """
         entry = self.documents.put(kind, document_id, **values)
+        self.observe(entry)
         self._unsettled.add(entry.digest)
         return entry
 

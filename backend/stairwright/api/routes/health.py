@@ -28,4 +28,5 @@ async def healthz(services: Service) -> Health:
 @metrics_router.get("/metrics")
 async def metrics(services: Service) -> Response:
     """Figures for Prometheus."""
-    return Response(services.metrics.text(), media_type="text/plain; version=0.0.4")
+    content = await asyncio.to_thread(services.metrics.text)
+    return Response(content, media_type="text/plain; version=0.0.4")
