@@ -177,6 +177,16 @@ def test_a_folder_that_cannot_be_used_is_bad_input(tmp_path: Path) -> None:
         Store(tmp_path / "file" / "data")
 
 
+def test_a_database_of_a_newer_version_is_left_alone(tmp_path: Path) -> None:
+    store = Store(tmp_path)
+    with store.engine.begin() as connection:
+        connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
+    store.close()
+    with pytest.raises(InputError, match="newer Stairwright"):
+        Store(tmp_path)
+    assert not list(tmp_path.glob("*.damaged-*"))
+
+
 WRITER = """
 import sys
 from pathlib import Path
