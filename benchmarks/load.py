@@ -93,7 +93,7 @@ def run(
         asyncio.run(all_at_once(sessions, service.api, 1.0, method))  # connections, caches
         sessions = [Session(each.name, each.number) for each in sessions]
         asyncio.run(all_at_once(sessions, service.api, seconds, method))
-        dead = service.figure("worker_deaths_plans")
+        dead = service.figure('worker_deaths_total{pool="plans"}')
     errors = [error for session in sessions for error in session.errors]
     for error in errors[:5]:
         print(error)

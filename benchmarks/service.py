@@ -36,7 +36,7 @@ class Service:
         return f"{self.url}/api/v1"
 
     def figure(self, name: str) -> float:
-        """One of the figures at /metrics, without labels."""
+        """One of the figures at /metrics, labels included as they stand there."""
         for line in httpx.get(f"{self.url}/metrics", timeout=60).text.splitlines():
             if line.startswith(f"stairwright_{name} "):
                 return float(line.split()[1])

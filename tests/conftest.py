@@ -10,7 +10,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -85,13 +85,13 @@ class Server:
 
 
 @contextlib.contextmanager
-def _serve(data: Path, **variables: str) -> Iterator[Server]:
+def _serve(data: Path, prefix: Sequence[str] = (), **variables: str) -> Iterator[Server]:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     url = f"http://127.0.0.1:{port}"
     log = data.with_name(f"{data.name}-{port}.log")
-    command = [sys.executable, "-m", "stairwright", "serve"]
+    command = [*prefix, sys.executable, "-m", "stairwright", "serve"]
     command += ["--host", "127.0.0.1", "--port", str(port)]
     env = os.environ | {"STAIRWRIGHT_DATA": str(data)} | variables
     with log.open("wb") as output:
@@ -129,8 +129,9 @@ def start_server(
     """A server of the test's own: `with start_server(STAIRWRIGHT_TOKEN="t") as server: ...`.
 
     Servers that one test starts share one data folder, so a restart finds what was saved.
+    `prefix` is a command that runs the server.
     """
-    return lambda **variables: _serve(tmp_path / "data", **variables)
+    return lambda **given: _serve(tmp_path / "data", **given)
 
 
 @pytest.fixture(scope="session")

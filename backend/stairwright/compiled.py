@@ -16,13 +16,30 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 import numba as nb
+from numba.core import event
 from numba.core.cpu import CPUTargetOptions
+
+from . import preparing
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 _BORROWING: dict[str, Any] = {"cache": True}
 if hasattr(CPUTargetOptions, "_nrt"):  # without, leaves are as slow as others, no more
     _BORROWING["_nrt"] = False
+
+
+class _Listener(event.Listener):  # type: ignore[misc]
+    """Hands on that a function was compiled, rather than loaded."""
+
+    def on_start(self, event: event.Event) -> None:
+        """Called by numba."""
+
+    def on_end(self, event: event.Event) -> None:
+        """Called by numba."""
+        preparing.compiled(str(event.data["dispatcher"].py_func.__name__))
+
+
+event.register("numba:compile", _Listener())  # type: ignore[no-untyped-call]
 
 
 def leaf(function: F) -> F:

@@ -33,18 +33,23 @@ _LOW_WALL = Terrain(points=[(-1.2, 0.0), (0.0, 0.0), (0.0, 0.85), (1.2, 0.85)])
 def warm_up() -> float:
     """Plan small courses with every robot, one impossible, and roll one out; returns seconds."""
     begun = time.perf_counter()
-    for name in robots():
-        plan(_STEP, load_robot(name))
-        reference(plan(_STEP, load_robot(name), method="critical"))
-    plan(_WALL, load_robot(robots()[0]))
-    for wall in (_WALL, _LOW_WALL):
-        plan(wall, load_robot("a1_wheeled"), method="critical")
+    warm_up_plans()
     if importlib.util.find_spec("stairwright.simulation.rollout") is not None:
         from .simulation.rollout import rollout
 
         flat = Terrain(points=[(0.0, 0.0), (1.0, 0.0)])
         rollout(plan(flat, load_robot(robots()[0])))
     return time.perf_counter() - begun
+
+
+def warm_up_plans() -> None:
+    """What a plan can need, whatever comes of it."""
+    for name in robots():
+        plan(_STEP, load_robot(name))
+        reference(plan(_STEP, load_robot(name), method="critical"))
+    plan(_WALL, load_robot(robots()[0]))
+    for wall in (_WALL, _LOW_WALL):
+        plan(wall, load_robot("a1_wheeled"), method="critical")
 
 
 def compile_bytecode() -> int:

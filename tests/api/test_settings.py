@@ -37,8 +37,8 @@ def test_the_document_lists_every_setting() -> None:
 
 
 def test_the_environment_is_read_and_checked() -> None:
-    settings = Settings.from_env({"STAIRWRIGHT_PORT": "81", "STAIRWRIGHT_KEEP_DAYS": "2.5"})
-    assert (settings.port, settings.keep_days) == (81, 2.5)
+    settings = Settings.from_env({"STAIRWRIGHT_PORT": "81", "STAIRWRIGHT_PLAN_DEADLINE": "2.5"})
+    assert (settings.port, settings.plan_deadline) == (81, 2.5)
     assert Settings.from_env({"STAIRWRIGHT_PORT": "81"}, port=82).port == 82
     for name, value in (
         ("PORT", "many"),

@@ -285,3 +285,6 @@ class Health(Model):
 
     status: Literal["ok"] = "ok"
     version: str
+    read_only: str | None = Field(
+        default=None, description="why nothing is saved and what to do, if nothing is"
+    )

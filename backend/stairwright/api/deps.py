@@ -81,7 +81,7 @@ async def idempotency(
     Raises:
         Problem: 409 while the first request is at work, 422 if the key belongs to another body.
     """
-    if idempotency_key is None:
+    if idempotency_key is None or services.store.read_only:  # nothing is kept, nor are keys
         yield Idempotency()
         return
     keys, scope = services.store.idempotency, request.url.path

@@ -4,9 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
+from prometheus_client import (
+    CollectorRegistry,
+    Counter,
+    Gauge,
+    Histogram,
+    ProcessCollector,
+    generate_latest,
+)
+
+from stairwright.storage.documents import Entry
 
 _SECONDS = (0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 60.0)
+_LONG = (*_SECONDS, 120.0, 300.0, 900.0)
 
 
 class Metrics:
@@ -30,12 +40,53 @@ class Metrics:
         self.plans = Counter(
             "stairwright_plans", "Answered plan questions", ("cached",), registry=self.registry
         )
+        self._work_seconds = Histogram(
+            "stairwright_work_seconds",
+            "Time that a worker was at a task: plans, rollouts, uploads",
+            ("pool",),
+            buckets=_LONG,
+            registry=self.registry,
+        )
+        self._waiting_seconds = Histogram(
+            "stairwright_waiting_seconds",
+            "Time that a task waited for its turn",
+            ("queue",),
+            buckets=_LONG,
+            registry=self.registry,
+        )
+        self._work = Counter(
+            "stairwright_work",
+            "Tasks by what became of them: done, or the kind of the problem",
+            ("pool", "outcome"),
+            registry=self.registry,
+        )
+        self._outcomes = Counter(
+            "stairwright_outcomes",
+            "New results by what they say: a plan's status, a rollout's outcome",
+            ("kind", "outcome"),
+            registry=self.registry,
+        )
+        ProcessCollector(registry=self.registry)
 
     def observe(self, method: str, route: str, status: int, seconds: float) -> None:
         """Count one request."""
         known = method if method in _METHODS else "other"
         self._requests.labels(known, route, status).inc()
         self._seconds.labels(route).observe(seconds)
+
+    def worked(self, pool: str, seconds: float, outcome: str) -> None:
+        """Count a task that a worker was at."""
+        self._work_seconds.labels(pool).observe(seconds)
+        self._work.labels(pool, outcome).inc()
+
+    def waited(self, queue: str, seconds: float) -> None:
+        """Count a task that has got its turn."""
+        self._waiting_seconds.labels(queue).observe(seconds)
+
+    def resulted(self, result: Entry) -> None:
+        """Count a new result."""
+        outcome = result.summary.get("status") or result.summary.get("outcome")
+        self._outcomes.labels(result.kind, str(outcome)).inc()
 
     def gauge(self, name: str, text: str, value: Callable[[], float], **labels: str) -> None:
         """Show a value that is read when asked for."""

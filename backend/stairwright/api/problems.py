@@ -14,13 +14,14 @@ from typing import Any
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, Field
-from sqlalchemy.exc import OperationalError
+from sqlalchemy.exc import DatabaseError, OperationalError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from stairwright.documents import wording
 from stairwright.errors import InputError
 from stairwright.jobs.failures import Failure
+from stairwright.storage.opening import is_damage
 
 MEDIA_TYPE = "application/problem+json"
 MAX_ERRORS = 20
@@ -146,11 +147,14 @@ def problem_of(error: Exception) -> Problem:
     if isinstance(error, Failure):
         headers = {"retry-after": str(math.ceil(error.retry_after or 1.0))}
         return Problem(error.status, error.message, kind=error.kind, headers=headers)
+    if isinstance(error, DatabaseError) and is_damage(error):
+        logger.error("the database is damaged: %s", error.orig)
+        return _unavailable("the database is damaged: restart the service, which sets it aside")
     if isinstance(error, OperationalError):
-        logger.error("the database cannot be used now", exc_info=error)
+        logger.error("the database cannot be used now: %s", error.orig)
         return _unavailable("the database is busy or cannot be written")
     if isinstance(error, OSError) and error.errno in _EXHAUSTED:
-        logger.error("the system refused", exc_info=error)
+        logger.error("the system refused: %s", error)
         return _unavailable(f"the server has a problem: {error.strerror}")
     logger.error("unexpected error", exc_info=error)
     return Problem(500, "this is a bug in the service; its log says more")
@@ -164,7 +168,7 @@ def install(app: FastAPI) -> None:
         return problem_of(error).response()
 
     # Named, since Starlette raises again what only the handler of Exception has answered.
-    for kind in (Problem, RequestValidationError, InputError, Failure, OperationalError, OSError):
+    for kind in (Problem, RequestValidationError, InputError, Failure, DatabaseError, OSError):
         app.add_exception_handler(kind, on_error)
     app.add_exception_handler(Exception, on_error)
 

@@ -10,9 +10,8 @@ from functools import partial
 
 from fastapi.concurrency import run_in_threadpool
 
-from stairwright.jobs import work
 from stairwright.jobs.engine import planning_engine, rollout_engine
-from stairwright.jobs.failures import Failure, problem
+from stairwright.jobs.failures import problem
 from stairwright.jobs.planning import Planning
 from stairwright.jobs.pool import WorkerPool
 from stairwright.jobs.rollouts import Rollouts
@@ -20,17 +19,19 @@ from stairwright.jobs.worker import Limits
 from stairwright.library import load_robot, load_terrain, robots, terrains
 from stairwright.storage.store import Store
 
+from .clock_watch import watch_clock
+from .figures import Figures
 from .metrics import Metrics
+from .readiness import Readiness
 from .replanning import Replanning
 from .sessions import Sessions, load_scenes
 from .settings import Settings
+from .trouble import Trouble
 
 logger = logging.getLogger(__name__)
 
 COLLECT_EVERY = 3600.0  # s
 SETTLE_EVERY = 2.0  # s
-START_DEADLINE = 300.0  # s; kernels may have to be compiled
-LATEST_READY = 20.0  # s; whoever asks while kernels are still being compiled has to wait for them
 FIRST_SECOND = 1.0  # s
 UPLOAD_MEMORY = 2048  # MiB
 UPLOAD_DEADLINE = 20.0  # s
@@ -59,6 +60,7 @@ class Services:
         self.plan_pool = WorkerPool("plans", settings.plan_workers, Limits(memory=memory), spares=1)
         idle = Limits(memory=memory, nice=ROLLOUT_NICENESS)
         self.rollout_pool = WorkerPool("rollouts", settings.rollout_workers, idle, spares=1)
+        self.readiness = Readiness(self.plan_pool)
         self.upload_pool = WorkerPool("uploads", 1, Limits(memory=UPLOAD_MEMORY, sealed=True))
         self.planning = Planning(
             self.store, self.plan_pool, settings.plan_queue_limit, settings.plan_deadline
@@ -71,7 +73,6 @@ class Services:
             settings.session_limit, settings.session_idle, Replanning(self.planning)
         )
         self._tasks: list[asyncio.Task[None]] = []
-        self.ready = False  # until a plan can be answered without waiting for workers to start
         self._show_gauges()
 
     @property
@@ -80,27 +81,35 @@ class Services:
         return (self.plan_pool, self.rollout_pool, self.upload_pool)
 
     async def start(self) -> None:
-        """Settle what an earlier process left behind, then start workers and housekeeping."""
+        """Take over from an earlier process, then start workers and housekeeping."""
+        if self.store.read_only:
+            logger.error("%s", self.store.read_only)
+        else:
+            await self._take_over()
+        await self.plan_pool.start()
+        self._tasks = [
+            asyncio.create_task(self._start_the_rest()),
+            asyncio.create_task(watch_clock(self.store.last_written)),
+            asyncio.create_task(self.sessions.close_idle_forever()),
+        ]
+        if not self.store.read_only:
+            self._tasks += [
+                asyncio.create_task(self._collect()),
+                asyncio.create_task(self._settle()),
+            ]
+
+    async def _take_over(self) -> None:
+        """Settle what an earlier process left behind."""
         gone = problem(503, "interrupted", "the service was restarted; please ask again")
         interrupted = await asyncio.to_thread(self.store.jobs.interrupt, gone)
         await asyncio.to_thread(self.store.idempotency.release_unfinished)
         if interrupted:
             logger.warning("%d jobs were interrupted by a restart", interrupted)
-        await self.plan_pool.start()
-        self._tasks = [
-            asyncio.create_task(self._start_the_rest()),
-            asyncio.create_task(self._collect()),
-            asyncio.create_task(self._settle()),
-            asyncio.create_task(self.sessions.close_idle_forever()),
-        ]
 
     async def _start_the_rest(self) -> None:
         """What nobody waits for in the first second must not compete with what somebody does."""
         await run_in_threadpool(_read_what_questions_need)  # which warms FastAPI's threads too
-        asyncio.get_running_loop().call_later(LATEST_READY, setattr, self, "ready", True)
-        with contextlib.suppress(Failure):
-            await self.plan_pool.run(work.rehearse, deadline=START_DEADLINE)
-        self.ready = True
+        await self.readiness.rehearse()
         await asyncio.sleep(FIRST_SECOND)
         await self.rollout_pool.start()
         await self.upload_pool.start()
@@ -119,30 +128,39 @@ class Services:
         self.store.close()
 
     async def _collect(self) -> None:
+        trouble = Trouble(logger, "making room for new results")
         while True:
             try:
-                removed = await asyncio.to_thread(
-                    self.store.collect, self.settings.keep_days, self.settings.keep_bytes
-                )
+                removed = await asyncio.to_thread(self.store.collect, self.settings.keep_bytes)
                 if removed:
-                    logger.info("removed %d old results", removed)
-            except Exception:
-                logger.exception("old results could not be removed")
+                    logger.info("removed %d results for want of room", removed)
+            except Exception as error:  # noqa: BLE001 - housekeeping goes on
+                trouble.failed(error)
+            else:
+                trouble.worked()
             await asyncio.sleep(COLLECT_EVERY)
 
     async def _settle(self) -> None:
+        trouble = Trouble(logger, "compressing new results")
         while True:
             await asyncio.sleep(SETTLE_EVERY)
             try:
                 await asyncio.to_thread(self.store.settle)
-            except Exception:
-                logger.exception("new results could not be compressed; they are kept as they are")
+            except Exception as error:  # noqa: BLE001 - housekeeping goes on
+                trouble.failed(error)
+            else:
+                trouble.worked()
 
     def _show_gauges(self) -> None:
         show = self.metrics.gauge
+        self.metrics.registry.register(
+            Figures(self.store, self.pools, lambda: self.readiness.ready)
+        )
         for pool in self.pools:
-            show(f"worker_deaths_{pool.name}", "Dead workers", partial(getattr, pool, "deaths"))
+            pool.observe = partial(self.metrics.worked, pool.name)
+        self.store.observe = self.metrics.resulted
         for queue in (self.planning.queue, self.rollouts.queue):
+            queue.observe = partial(self.metrics.waited, queue.name)
             show(f"{queue.name}_waiting", "Waiting tasks", partial(getattr, queue, "length"))
             show(f"{queue.name}_running", "Running tasks", partial(getattr, queue, "running"))
         show("sessions", "Open 3D scenes", self.sessions.__len__)

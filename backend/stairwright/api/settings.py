@@ -18,8 +18,20 @@ LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
 
 
 def default_data_folder() -> Path:
-    """Where this platform keeps a user's data."""
-    home = Path.home()
+    """Where this platform keeps a user's data, or systemd a service's.
+
+    Raises:
+        InputError: If this user has no home, as users of services often do.
+    """
+    state = os.environ.get("STATE_DIRECTORY", "").split(":")[0]
+    if state:
+        return Path(state)
+    try:
+        home = Path.home()
+    except RuntimeError:
+        raise InputError(
+            "this user has no home folder: name a folder for the data in STAIRWRIGHT_DATA"
+        ) from None
     if sys.platform == "darwin":
         return home / "Library" / "Application Support" / "stairwright"
     if sys.platform == "win32":
@@ -101,11 +113,9 @@ class Settings:
         default=900.0, metadata=_about("a 3D scene without use is closed after this, s", 1.0)
     )
     session_limit: int = field(default=100, metadata=_about("3D scenes open at once", 1))
-    keep_days: float = field(
-        default=90.0, metadata=_about("results older than this are removed, days", 0.0)
-    )
     keep_bytes: int = field(
-        default=20 * 2**30, metadata=_about("results beyond this are removed, oldest first", 0)
+        default=20 * 2**30,
+        metadata=_about("results beyond this are removed, least lately used first", 0),
     )
     log_level: str = field(default="info", metadata=_about("debug, info, warning or error"))
 
@@ -163,6 +173,9 @@ def _convert(name: str, kind: str, text: str) -> Any:
     kinds: dict[str, Any] = {"int": int, "float": float, "str": str}
     try:
         return kinds[kind](text) if kind in kinds else Path(text).expanduser()
+    except RuntimeError:
+        message = f"STAIRWRIGHT_{name.upper()} begins with ~, but there is no such home folder"
+        raise InputError(message) from None
     except ValueError:
         wanted = {"int": "a whole number", "float": "a number"}[kind]
         raise InputError(f"STAIRWRIGHT_{name.upper()} must be {wanted}, not {text!r}") from None

@@ -10,7 +10,10 @@ import multiprocessing
 from multiprocessing import forkserver
 from multiprocessing.context import ForkServerContext
 
+from .stage import Stage
+
 PRELOAD = "stairwright.jobs.preload"
+_stage: Stage | None = None
 
 
 def context() -> ForkServerContext:
@@ -21,6 +24,13 @@ def context() -> ForkServerContext:
 
 
 def launch() -> None:
-    """Start the fork server, without waiting until it is ready."""
+    """Start the fork server, without waiting until it is ready; it tells what it is at."""
+    global _stage
+    _stage = Stage.create()
     context()
     forkserver.ensure_running()
+
+
+def stage() -> str:
+    """What the fork server is at, if it was launched here."""
+    return "" if _stage is None else _stage.text()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
 from functools import partial
@@ -74,13 +75,8 @@ class Planning:
 
     def stored(self, question: PlanQuestion) -> Answer | None:
         """The plan if it is known already. Reads the database: call it in a thread."""
-        entry = self._store.documents.answer("plan", question.key, planning_engine())
-        if entry is None:
-            return None
-        try:
-            return Answer(entry, self._store.artefacts.packed(entry.digest), cached=True)
-        except FileNotFoundError:  # collected this very moment
-            return None
+        found = self._store.documents.content("plan", question.key, planning_engine())
+        return None if found is None else Answer(*found, cached=True)
 
     async def solve(self, question: PlanQuestion, owner: str) -> Answer:
         """The plan, infeasible ones too. Cancelling the last caller cancels the solve.
@@ -118,9 +114,14 @@ class Planning:
             del self._answers[key]
 
     async def _solve(self, question: PlanQuestion, owner: str, flight: Flight[Answer]) -> Answer:
-        folder = str(self._store.artefacts.folder)
+        kept = self._store.read_only is None  # else it is answered all the same
+        folder = str(self._store.artefacts.folder) if kept else None
         product = await self._work(owner, flight, work.solve, question.data, folder)
-        entry = await asyncio.to_thread(shelve_plan, self._store, question, product)
+        if kept:
+            entry = await asyncio.to_thread(shelve_plan, self._store, question, product)
+        else:
+            size, now = product.size, time.time()
+            entry = Entry(product.id, "plan", product.digest, size, product.summary, now)
         return Answer(entry, product.content, cached=False)
 
     async def _preview(self, question: PlanQuestion, owner: str, flight: Flight[bytes]) -> bytes:

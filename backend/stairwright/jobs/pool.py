@@ -9,6 +9,7 @@ from typing import Any, TypeVar, cast
 
 from .failures import DeadlineExceeded
 from .process import WorkerProcess
+from .stopwatch import Observer, Stopwatch, ignore
 from .worker import Limits
 
 T = TypeVar("T")
@@ -30,6 +31,8 @@ class WorkerPool:
         self.name = name
         self.workers = workers
         self.deaths = 0
+        self.observe: Observer = ignore
+        self.prepared = asyncio.Event()  # set when the first worker is there, or cannot be
         self._processes = workers + spares
         self._limits = limits
         # The one that worked last works next: what it needs is still in the processor's cache.
@@ -50,13 +53,22 @@ class WorkerPool:
         """Carry out `function(*args)` in a worker; cancelling the caller kills that worker.
 
         Raises:
-            DeadlineExceeded: After `deadline` [s].
+            DeadlineExceeded: After `deadline` [s], counted from when there are workers.
             WorkerDied: If the process is gone.
             Exception: Whatever the function raises.
         """
+        watch = Stopwatch()
+        with watch.measured(self.observe):
+            return await self._run(watch, function, *args, deadline=deadline)
+
+    async def _run(
+        self, watch: Stopwatch, function: Callable[..., T], *args: Any, deadline: float
+    ) -> T:
+        await self.prepared.wait()  # compiling may take minutes, which are no fault of the task's
         try:
             async with asyncio.timeout(deadline):
                 worker = await self._ready()
+                watch.start()
                 try:
                     returned, outcome = await worker.ask(function, *args)
                 finally:
@@ -86,10 +98,12 @@ class WorkerPool:
                 worker = await WorkerProcess.start(self._limits)
             except (OSError, EOFError):
                 logger.exception("a worker of the pool %s cannot be started", self.name)
+                self.prepared.set()  # nobody shall wait for ever
                 await asyncio.sleep(RETRY)
                 continue
             try:
                 self._idle.put_nowait(worker)
+                self.prepared.set()
                 await worker.gone.wait()
             except asyncio.CancelledError:
                 worker.kill()

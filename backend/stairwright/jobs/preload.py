@@ -14,7 +14,9 @@ import signal
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_variable] = "1"
 
-from stairwright.jobs import work  # noqa: E402 - numeric libraries read the variables
+from stairwright import preparing  # noqa: E402 - numeric libraries read the variables
+from stairwright.jobs import work  # noqa: E402
+from stairwright.jobs.stage import Stage  # noqa: E402
 
 TICK = 0.5  # s between looks whether the service is still there
 _PARENT = os.getppid()
@@ -37,6 +39,21 @@ def _warm_rollouts(*_: object) -> None:
     work.warm_rollouts()
 
 
-work.warm_plans()
+def _warm_plans() -> None:
+    """One small plan brings everything into memory; if that had to be compiled, all is."""
+    stage = Stage.inherited()
+    stage.tell("loading the planner")
+    preparing.listen(
+        lambda count: stage.tell(
+            f"compiling for this machine, which happens once: {count} functions so far"
+        )
+    )
+    work.warm_plans()
+    if preparing.count():
+        work.warm_all_plans()
+    stage.tell("starting workers")
+
+
+_warm_plans()
 signal.signal(signal.SIGALRM, _warm_rollouts)
 signal.setitimer(signal.ITIMER_REAL, TICK, TICK)

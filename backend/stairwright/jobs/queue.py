@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 import time
 from collections import OrderedDict, deque
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 
 from .failures import QueueFull
 
@@ -24,6 +24,7 @@ class FairQueue:
         self.limit = limit
         self.name = name
         self.running = 0
+        self.observe: Callable[[float], None] = _ignore  # called with the time [s] that one waited
         self._waiting: OrderedDict[str, deque[asyncio.Future[None]]] = OrderedDict()
         self._duration = 1.0  # s, running mean
 
@@ -52,11 +53,13 @@ class FairQueue:
             QueueFull: If too many wait.
         """
         self.check()
+        asked = time.monotonic()
         if self.running < self.capacity:
             self.running += 1
         else:
             await self._wait(owner)
         start = time.monotonic()
+        self.observe(start - asked)
         try:
             yield
         finally:
@@ -94,3 +97,7 @@ class FairQueue:
                 turn.set_result(None)
                 return
         self.running -= 1
+
+
+def _ignore(_: float) -> None:
+    """Nobody wants to know."""

@@ -16,7 +16,7 @@ import orjson
 from stairwright.documents import parse
 from stairwright.library import load_robot, robots
 from stairwright.robot.description import Robot
-from stairwright.storage.artefacts import Artefacts
+from stairwright.storage.artefacts import Artefacts, name_of
 
 from .gauge import Gauge
 from .live import Broadcast
@@ -42,8 +42,10 @@ class Product:
     plan: Product | None = None  # that a rollout made for itself
 
 
-def solve(question: Question, artefacts: str) -> Product:
+def solve(question: Question, artefacts: str | None) -> Product:
     """Plan; `question` has terrain and robot documents, friction, method and weights.
+
+    Without a folder for artefacts the plan is not kept.
 
     Raises:
         InputError: If a value is bad.
@@ -76,9 +78,9 @@ def _artefacts(folder: str) -> Artefacts:
     return Artefacts(Path(folder))
 
 
-def _keep_plan(plan: Plan, artefacts: str) -> Product:
+def _keep_plan(plan: Plan, artefacts: str | None) -> Product:
     content = plan.model_dump_json().encode()
-    digest = _artefacts(artefacts).put(content)
+    digest = _artefacts(artefacts).put(content) if artefacts else name_of(content)
     summary = {
         "terrain": plan.terrain.name,
         "robot": plan.robot,
@@ -178,13 +180,24 @@ def warm_plans() -> None:
         plan(GENTLE, robots()[0], method="critical")
 
 
-def rehearse() -> None:
-    """A small plan in a worker, so that the first one that counts meets warm memory."""
+def warm_all_plans() -> None:
+    """Every kind of plan: on a machine where nothing is compiled yet, nobody shall wait later."""
     with _logged():
-        _plan(
-            {"terrain": GENTLE, "robot": load_robot(robots()[0]).model_dump(mode="json"),
-             "friction": 0.6, "method": "path", "weights": {}}
-        )  # fmt: skip
+        from stairwright.warmup import warm_up_plans
+
+        warm_up_plans()
+
+
+def rehearse() -> None:
+    """A small plan in a worker, so that the first one that counts meets warm memory.
+
+    Raises:
+        Exception: Whatever would keep other plans from being answered too.
+    """
+    _plan(
+        {"terrain": GENTLE, "robot": load_robot(robots()[0]).model_dump(mode="json"),
+         "friction": 0.6, "method": "path", "weights": {}}
+    )  # fmt: skip
 
 
 def warm_rollouts() -> None:

@@ -60,11 +60,18 @@ def _migrate(engine: Engine) -> None:
 
     config = Config()
     config.set_main_option("script_location", str(MIGRATIONS).replace("%", "%%"))
-    newest = ScriptDirectory.from_config(config).get_current_head()
+    scripts = ScriptDirectory.from_config(config)
+    newest = scripts.get_current_head()
     with engine.connect() as connection:
         # One process migrates; another that starts meanwhile waits here and finds it done.
         connection.exec_driver_sql("BEGIN IMMEDIATE")
-        if MigrationContext.configure(connection).get_current_revision() != newest:
+        found = MigrationContext.configure(connection).get_current_revision()
+        if found and found not in {script.revision for script in scripts.walk_revisions()}:
+            raise InputError(
+                f"{engine.url.database} was written by a newer Stairwright ({found}, this one "
+                f"knows {newest}): install that one again, or use another folder"
+            )
+        if found != newest:
             config.attributes["connection"] = connection
             command.upgrade(config, "head")
         connection.commit()

@@ -13,6 +13,7 @@ from sqlalchemy.dialects.sqlite import insert
 from sqlalchemy.orm import sessionmaker
 
 from .artefacts import Artefacts
+from .clock import UseClock
 from .tables import StoredDocument
 
 Kind = Literal["plan", "rollout"]
@@ -53,26 +54,41 @@ def _entry(row: Any) -> Entry:
 class Documents:
     """The shelf of plans and rollouts."""
 
-    def __init__(self, engine: Engine, artefacts: Artefacts) -> None:
+    def __init__(self, engine: Engine, artefacts: Artefacts, *, fixed: bool = False) -> None:
+        """`fixed`: nothing can be written, not even that something was used."""
+        self._fixed = fixed
         self._engine = engine
         self._sessions = sessionmaker(engine, expire_on_commit=False)
         self._artefacts = artefacts
+        with engine.connect() as connection:
+            newest = connection.execute(select(func.max(_ROWS.c.used))).scalar()
+        self._clock = UseClock(newest or 0.0)
 
     def get(self, kind: Kind, document_id: str) -> Entry | None:
         """The document of this id, None if there is none (any more)."""
         return self._find(_BY_ID, id=document_id, kind=kind)
 
     def answer(self, kind: Kind, question: str, engine: str) -> Entry | None:
-        """A stored answer to the same question by the same code."""
-        return self._find(_BY_QUESTION, question=question, engine=engine, kind=kind)
+        """A stored answer to the same question by the same code, its content undamaged."""
+        entry = self._find(_BY_QUESTION, question=question, engine=engine, kind=kind)
+        return entry if entry is not None and self._artefacts.intact(entry.digest) else None
+
+    def content(self, kind: Kind, question: str, engine: str) -> tuple[Entry, bytes] | None:
+        """The same with its gzipped JSON, which is read only once."""
+        entry = self._find(_BY_QUESTION, question=question, engine=engine, kind=kind)
+        try:
+            return None if entry is None else (entry, self._artefacts.packed(entry.digest))
+        except FileNotFoundError:  # damaged, or removed this very moment
+            return None
 
     def _find(self, statement: Select[Any], **values: str) -> Entry | None:
         with self._engine.connect() as connection:
             row = connection.execute(statement, values).first()
             if row is None or not self._artefacts.has(row.digest):
                 return None
-            if time.time() - row.used > _FRESH:
-                used = update(_ROWS).where(_ROWS.c.id == row.id).values(used=time.time())
+            now = self._clock.now()
+            if now - row.used > _FRESH and not self._fixed:
+                used = update(_ROWS).where(_ROWS.c.id == row.id).values(used=now)
                 connection.execute(used)
                 connection.commit()
             return _entry(row)
@@ -99,7 +115,7 @@ class Documents:
             "size": size,
             "summary": json.dumps(dict(summary)),
             "created": now,
-            "used": now,
+            "used": self._clock.now(),
         }
         with self._engine.begin() as connection:
             connection.execute(_PUT, values)
@@ -121,21 +137,15 @@ class Documents:
             total = session.scalar(select(func.count()).where(mine)) or 0
             return [_entry(row) for row in session.scalars(query)], total
 
+    def totals(self) -> tuple[dict[str, int], int]:
+        """How many there are of each kind, and what they take on disk [bytes]."""
+        mine = (StoredDocument.kind, func.count(), func.sum(StoredDocument.size))
+        with self._sessions() as session:
+            rows = session.execute(select(*mine).group_by(StoredDocument.kind)).all()
+        counts = {"plan": 0, "rollout": 0} | {kind: number for kind, number, _ in rows}
+        return counts, sum(size for _, _, size in rows)
+
     def digests(self) -> set[str]:
         """Artefacts that are referred to."""
         with self._sessions() as session:
             return set(session.scalars(select(StoredDocument.digest)))
-
-    def forget(self, before: float, keep_bytes: int) -> int:
-        """Remove what was last used before a time, then the least used beyond a size."""
-        removed = 0
-        with self._sessions.begin() as session:
-            rows = session.scalars(select(StoredDocument).order_by(StoredDocument.used.desc()))
-            kept = 0
-            for row in rows.all():
-                kept += row.size
-                if row.used < before or kept > keep_bytes:
-                    session.delete(row)
-                    kept -= row.size
-                    removed += 1
-        return removed

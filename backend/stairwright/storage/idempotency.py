@@ -56,11 +56,6 @@ class IdempotencyKeys:
             if row is not None and row.result is None:
                 session.delete(row)
 
-    def forget(self, before: float) -> None:
-        """Remove keys older than a time."""
-        with self._sessions.begin() as session:
-            session.execute(delete(IdempotencyRecord).where(IdempotencyRecord.created < before))
-
     def release_unfinished(self) -> None:
         """Forget claims of a process that has died."""
         with self._sessions.begin() as session:

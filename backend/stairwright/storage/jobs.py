@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import delete, select, update
+from sqlalchemy import select, update
 from sqlalchemy.dialects.sqlite import insert
 from sqlalchemy.orm import Session, sessionmaker
 
@@ -65,8 +65,3 @@ class JobLog:
             ids = session.scalars(select(StoredJob.id).where(unfinished)).all()
             session.execute(update(StoredJob).where(unfinished).values(**values))
             return len(ids)
-
-    def forget(self, before: float) -> None:
-        """Remove jobs last changed before a time."""
-        with self._sessions.begin() as session:
-            session.execute(delete(StoredJob).where(StoredJob.updated < before))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +10,13 @@ from sqlalchemy import Engine, text
 from sqlalchemy.orm import sessionmaker
 
 from .artefacts import Artefacts
-from .database import open_database
+from .clock import last_written
 from .documents import Documents, Entry, Kind
+from .housekeeping import make_room, trim_records
 from .idempotency import IdempotencyKeys
 from .jobs import JobLog
+from .opening import open_soundly
+from .salvage import was_set_aside
 from .terrains import SavedTerrains
 
 DATABASE = "stairwright.sqlite"
@@ -28,13 +31,16 @@ class Store:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.engine: Engine = open_database(folder / DATABASE)
-        sessions = sessionmaker(self.engine, expire_on_commit=False)
+        self.last_written = last_written(folder / DATABASE)  # [s], None for a new folder
+        self.engine: Engine
+        self.engine, self.read_only = open_soundly(folder / DATABASE)  # why nothing can be saved
+        self._sessions = sessions = sessionmaker(self.engine, expire_on_commit=False)
         self.artefacts = Artefacts(folder / "artefacts")
         self.terrains = SavedTerrains(sessions)
-        self.documents = Documents(self.engine, self.artefacts)
+        self.documents = Documents(self.engine, self.artefacts, fixed=self.read_only is not None)
         self._unsettled = set(self.artefacts.unsettled())  # a process that died may leave some
         self.jobs = JobLog(sessions)
+        self.observe: Callable[[Entry], None] = lambda _: None  # called with each new result
         self.idempotency = IdempotencyKeys(sessions)
 
     def ready(self) -> bool:
@@ -42,14 +48,15 @@ class Store:
         with self.engine.connect() as connection:
             return bool(connection.execute(text("SELECT 1")).scalar())
 
-    def collect(self, keep_days: float, keep_bytes: int) -> int:
-        """Remove what is old or too much; returns how many results went."""
-        before = time.time() - keep_days * 86400.0
-        self.jobs.forget(before)
-        self.idempotency.forget(time.time() - 86400.0)
-        removed = self.documents.forget(before, keep_bytes)
-        self.artefacts.sweep(self.documents.digests())
-        return removed
+    def collect(self, keep_bytes: int) -> int:
+        """Remove what is too much; returns how many results went. Age is no reason."""
+        trim_records(self._sessions)
+        removed = make_room(self._sessions, keep_bytes)
+        for digest in removed:
+            self.artefacts.remove(digest)
+        if not was_set_aside(self.folder / DATABASE):  # which may refer to any of them
+            self.artefacts.sweep(self.documents.digests())
+        return len(removed)
 
     def shelve(self, kind: Kind, document_id: str, **values: Any) -> Entry:
         """Write down a document whose content was put among the artefacts; it will be settled.
@@ -57,6 +64,7 @@ class Store:
         Keywords as in `Documents.put`.
         """
         entry = self.documents.put(kind, document_id, **values)
+        self.observe(entry)
         self._unsettled.add(entry.digest)
         return entry
 

@@ -13,7 +13,7 @@ export interface paths {
         };
         /**
          * Healthz
-         * @description 200 when plans are answered at once; others are answered before that, only later.
+         * @description 200 when plans are answered at once; before that they wait, and 503 says what for.
          */
         get: operations["healthz_api_v1_healthz_get"];
         put?: never;
@@ -660,6 +660,11 @@ export interface components {
             status: "ok";
             /** Version */
             version: string;
+            /**
+             * Read Only
+             * @description why nothing is saved and what to do, if nothing is
+             */
+            read_only?: string | null;
         };
         /**
          * Hips

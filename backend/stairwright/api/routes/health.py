@@ -17,15 +17,16 @@ metrics_router = APIRouter(include_in_schema=False)
 
 @router.get("/healthz", responses=describe(503))
 async def healthz(services: Service) -> Health:
-    """200 when plans are answered at once; others are answered before that, only later."""
+    """200 when plans are answered at once; before that they wait, and 503 says what for."""
     await asyncio.to_thread(services.store.ready)
-    if not services.ready:
+    if not services.readiness.ready:
         soon = {"retry-after": "1"}
-        raise Problem(503, "the workers are starting", kind="starting", headers=soon)
-    return Health(version=__version__)
+        raise Problem(503, services.readiness.text, kind="starting", headers=soon)
+    return Health(version=__version__, read_only=services.store.read_only)
 
 
 @metrics_router.get("/metrics")
 async def metrics(services: Service) -> Response:
     """Figures for Prometheus."""
-    return Response(services.metrics.text(), media_type="text/plain; version=0.0.4")
+    content = await asyncio.to_thread(services.metrics.text)
+    return Response(content, media_type="text/plain; version=0.0.4")

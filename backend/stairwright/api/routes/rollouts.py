@@ -77,7 +77,7 @@ def _source(services: Services, body: RolloutRequest) -> PlanQuestion | Plan | s
         values = {name: getattr(body, name) for name in names}
         return plan_question(services, PlanRequest.model_construct(**values))
     entry = services.store.documents.get("plan", str(body.plan_id))
-    if entry is None:
+    if entry is None or not services.store.artefacts.intact(entry.digest):
         raise not_found("plan", str(body.plan_id), field="plan_id")
     return entry.digest
 

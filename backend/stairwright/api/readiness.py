@@ -1,0 +1,53 @@
+"""Whether a plan would be answered now, and if not, what is being done about it."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+
+from stairwright.jobs import launch, work
+from stairwright.jobs.pool import WorkerPool
+
+logger = logging.getLogger(__name__)
+
+REHEARSAL_DEADLINE = 300.0  # s, once there is a worker
+RETRY = 5.0  # s
+TELL_EVERY = 10.0  # s
+
+
+class Readiness:
+    """Ready when a plan was answered, never before."""
+
+    def __init__(self, pool: WorkerPool) -> None:
+        self._pool = pool
+        self._begun = time.monotonic()
+        self._trouble = ""
+        self.ready = False
+
+    @property
+    def text(self) -> str:
+        """What is being done, in a sentence."""
+        spent = f"starting for {time.monotonic() - self._begun:.0f} s"
+        return f"{spent}: {self._trouble or launch.stage() or 'starting workers'}"
+
+    async def rehearse(self) -> None:
+        """Return when a worker has answered a plan; try again as long as none has."""
+        teller = asyncio.create_task(self._tell())
+        try:
+            while not self.ready:
+                try:
+                    await self._pool.run(work.rehearse, deadline=REHEARSAL_DEADLINE)
+                except Exception as error:
+                    logger.exception("a trial plan failed")
+                    self._trouble = f"a trial plan failed ({error}); the log says more"
+                    await asyncio.sleep(RETRY)
+                else:
+                    self.ready = True
+        finally:
+            teller.cancel()
+
+    async def _tell(self) -> None:
+        while True:
+            await asyncio.sleep(TELL_EVERY)
+            logger.info("%s", self.text)

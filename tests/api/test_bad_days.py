@@ -1,0 +1,157 @@
+"""A start on a full disk, in a read-only folder, over a damaged database: what can be read is."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import subprocess
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from tests.conftest import Server
+
+Start = Callable[..., contextlib.AbstractContextManager[Server]]
+
+STAIR = {"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
+NAMESPACE = ("unshare", "--map-root-user", "--mount")  # may mount, seen by nobody else
+# The data folder on a disk of 1 MiB, copied there and filled up.
+FULL = """
+data=$1; shift
+cp -a "$data" "$data.whole" && mount -t tmpfs -o size=1m none "$data" || exit 1
+cp -a "$data.whole/." "$data/" && cat /dev/zero > "$data/other"
+exec "$@"
+"""
+# Root obeys permissions too without these.
+MORTAL = ("setpriv", "--bounding-set=-dac_override,-dac_read_search")
+
+
+@pytest.fixture
+def plan(start_server: Start) -> dict[str, Any]:
+    """A plan, stored by a server that has ended; its terrain is saved as `kept`."""
+    with start_server() as server, httpx.Client(base_url=f"{server.url}/api/v1") as api:
+        assert api.put("/terrains/kept", json=STAIR).status_code == 201
+        made: dict[str, Any] = api.post("/plans", json={"terrain": "kept"}, timeout=120).json()
+    return made
+
+
+@contextlib.contextmanager
+def read_only(server: Server) -> Iterator[httpx.Client]:
+    """Checks what every server does that can write nothing, and then more."""
+    with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api:
+        health = api.get("/healthz").json()
+        assert "nothing is saved" in health["read_only"]
+        refused = [
+            api.put("/terrains/new", json=STAIR),
+            api.delete("/terrains/kept"),
+            api.post("/rollouts", json={"terrain": "kept"}, headers={"idempotency-key": "k"}),
+        ]
+        for answer in refused:
+            assert answer.status_code == 503
+            assert answer.json()["type"].endswith("read-only")
+            assert answer.json()["detail"] == health["read_only"]
+        assert api.get("/terrains/kept").json()["points"] == STAIR["points"]
+        made = api.post(
+            "/plans", json={"terrain": "kept", "friction": 0.5}, headers={"idempotency-key": "k"}
+        )
+        assert made.status_code == 200, made.text
+        assert made.json()["status"] == "feasible"
+        yield api
+    log = server.log.read_text()
+    assert log.count("nothing is saved") == 1, log
+    assert "Traceback" not in log
+
+
+def namespaces() -> bool:
+    return subprocess.run([*NAMESPACE, "true"], capture_output=True).returncode == 0
+
+
+def test_a_start_on_a_full_disk(start_server: Start, plan: dict[str, Any], tmp_path: Path) -> None:
+    if not namespaces():
+        pytest.skip("this system lets nobody mount a small disk")
+    prefix = [*NAMESPACE, "sh", "-c", FULL, "sh", str(tmp_path / "data")]
+    with start_server(prefix=prefix) as server, read_only(server) as api:
+        assert api.get(f"/plans/{plan['id']}").json() == plan
+        assert "free some space" in api.get("/healthz").json()["read_only"]
+        # The same question is answered from what is stored.
+        assert api.post("/plans", json={"terrain": "kept"}).json() == plan
+
+
+def permissions(folder: Path, mode: str) -> None:
+    subprocess.run(["chmod", "-R", mode, str(folder)], check=True)
+
+
+def mortal() -> Sequence[str]:
+    return MORTAL if os.geteuid() == 0 else ()
+
+
+@pytest.mark.parametrize("killed", [False, True])
+def test_a_read_only_folder(
+    start_server: Start, plan: dict[str, Any], tmp_path: Path, killed: bool
+) -> None:
+    if killed:  # what was saved last is in SQLite's log only
+        with start_server() as server, httpx.Client(base_url=f"{server.url}/api/v1") as api:
+            api.put("/terrains/late", json=STAIR)
+            server.process.kill()
+        assert (tmp_path / "data" / "stairwright.sqlite-wal").stat().st_size > 0
+    permissions(tmp_path / "data", "a-w")
+    try:
+        with start_server(prefix=mortal()) as server, read_only(server) as api:
+            assert api.get(f"/plans/{plan['id']}").json() == plan
+            assert "make it writable" in api.get("/healthz").json()["read_only"]
+            assert api.get("/terrains/late").status_code == (200 if killed else 404)
+    finally:
+        permissions(tmp_path / "data", "u+w")
+    with start_server() as server:
+        assert httpx.get(f"{server.url}/api/v1/healthz").json()["read_only"] is None
+
+
+def test_a_folder_that_cannot_be_made(start_server: Start, tmp_path: Path) -> None:
+    closed = tmp_path / "closed"
+    closed.mkdir()
+    permissions(closed, "a-w")
+    variables = {"STAIRWRIGHT_DATA": str(closed / "data")}
+    with start_server(prefix=mortal(), **variables) as server:
+        answer = httpx.post(f"{server.url}/api/v1/plans", json={"terrain": STAIR}, timeout=120)
+        assert answer.json()["status"] == "feasible"
+        assert "Permission denied" in server.log.read_text()
+
+
+def harm(database: Path, how: str) -> None:
+    content = bytearray(database.read_bytes())
+    if how == "head":
+        content[:4096] = os.urandom(4096)
+    elif how == "cut":
+        del content[len(content) // 2 :]
+    else:  # all but the table of terrains, which lies in the front
+        half = len(content) * 3 // 4
+        content[half:] = os.urandom(len(content) - half)
+    database.write_bytes(content)
+
+
+@pytest.mark.parametrize("how", ["head", "cut", "end"])
+def test_a_damaged_database_is_set_aside(
+    start_server: Start, plan: dict[str, Any], tmp_path: Path, how: str
+) -> None:
+    data = tmp_path / "data"
+    database = data / "stairwright.sqlite"
+    harm(database, how)
+    harmed = database.read_bytes()
+    with start_server() as server:
+        with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api:
+            assert api.get("/healthz").json()["read_only"] is None
+            assert api.put("/terrains/new", json=STAIR).status_code == 201
+            if how == "end":
+                assert api.get("/terrains/kept").status_code == 200  # read out of the damaged one
+        log = server.log.read_text()
+        assert "stairwright.sqlite.damaged-1" in log
+        assert "restore a backup" in log
+    assert database.with_name("stairwright.sqlite.damaged-1").read_bytes() == harmed
+    assert list(data.glob("artefacts/??/*"))  # results of the old one stay for it
+    with start_server() as server:
+        answer = httpx.get(f"{server.url}/api/v1/terrains/new")
+        assert answer.status_code == 200
+    assert len(list(data.glob("*.damaged-*"))) == 1

@@ -1,0 +1,39 @@
+"""A server that starts with a wrong clock keeps what is stored, and says that the clock is odd."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import httpx
+
+from tests.conftest import Server
+
+Start = Callable[..., contextlib.AbstractContextManager[Server]]
+
+STAIR = {"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
+# Imported by every Python process before anything else. No namespace of Linux shifts this clock.
+AHEAD = "import time\nright = time.time\ntime.time = lambda: right() + {} * 86400.0\n"
+
+
+def test_a_clock_100_days_ahead_deletes_nothing(start_server: Start, tmp_path: Path) -> None:
+    with start_server() as server, httpx.Client(base_url=f"{server.url}/api/v1") as api:
+        plan = api.post("/plans", json={"terrain": STAIR}, timeout=120).json()
+        api.put("/terrains/kept", json=STAIR)
+    ahead = tmp_path / "ahead"
+    ahead.mkdir()
+    (ahead / "sitecustomize.py").write_text(AHEAD.format(100))
+    path = os.pathsep.join([str(ahead), os.environ.get("PYTHONPATH", "")])
+    with start_server(PYTHONPATH=path) as server:
+        with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api:
+            assert api.get(f"/plans/{plan['id']}").json() == plan
+            assert api.get("/terrains/kept").status_code == 200
+            later = api.post("/plans", json={"terrain": STAIR, "friction": 0.5}).json()["id"]
+        log = server.log.read_text()
+        assert "last used 100 days ago" in log
+        assert "removed" not in log.replace("nothing is removed", "")
+    with start_server() as server, httpx.Client(base_url=f"{server.url}/api/v1") as api:
+        assert api.get(f"/plans/{plan['id']}").json() == plan
+        assert api.get(f"/plans/{later}").status_code == 200

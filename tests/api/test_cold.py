@@ -1,0 +1,118 @@
+"""The first start on a machine, nothing compiled: slow, but nothing fails, and it says why."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+STAIR = {"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
+WALL = {"points": [[-1.2, 0], [0, 0], [0, 0.85], [1.2, 0.85]]}
+PATIENCE = 900.0  # s
+
+
+@pytest.fixture
+def cold(tmp_path: Path) -> Iterator[str]:
+    """The address of a server that has just begun to start; a plan may take 3 s."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    env = os.environ | {
+        "NUMBA_CACHE_DIR": str(tmp_path / "kernels"),
+        "STAIRWRIGHT_DATA": str(tmp_path / "data"),
+        "STAIRWRIGHT_PLAN_DEADLINE": "3",
+        "STAIRWRIGHT_PORT": str(port),
+    }
+    command = [sys.executable, "-m", "stairwright", "serve"]
+    with (tmp_path / "log").open("wb") as log:
+        process = subprocess.Popen(
+            command, env=env, stdout=log, stderr=subprocess.STDOUT, start_new_session=True
+        )
+    try:
+        yield f"http://127.0.0.1:{port}/api/v1"
+    finally:
+        process.terminate()
+        process.wait(15)
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+
+
+def asked(api: str, body: dict[str, Any], answers: list[httpx.Response]) -> threading.Thread:
+    """Ask for a plan as soon as anybody listens."""
+
+    def ask() -> None:
+        give_up = time.monotonic() + PATIENCE
+        while time.monotonic() < give_up:
+            with contextlib.suppress(httpx.ConnectError):
+                answers.append(httpx.post(f"{api}/plans", json=body, timeout=PATIENCE))
+                return
+            time.sleep(0.1)
+
+    thread = threading.Thread(target=ask)
+    thread.start()
+    return thread
+
+
+@pytest.mark.slow
+def test_nothing_fails_because_it_is_cold(cold: str, tmp_path: Path) -> None:
+    early: list[httpx.Response] = []
+    thread = asked(cold, {"terrain": STAIR}, early)
+    told: list[str] = []
+    give_up = time.monotonic() + PATIENCE
+    while True:
+        assert time.monotonic() < give_up, (told[-1:], (tmp_path / "log").read_text()[-3000:])
+        time.sleep(0.2)
+        with contextlib.suppress(httpx.ConnectError):
+            health = httpx.get(f"{cold}/healthz", timeout=60)
+            if health.status_code == 200:
+                break
+            assert health.status_code == 503
+            told.append(health.json()["detail"])
+    # Ready means that any plan answers, an impossible one by the other method too.
+    for body in ({"terrain": STAIR, "friction": 0.5}, {"terrain": WALL, "method": "critical"}):
+        answer = httpx.post(f"{cold}/plans", json=body, timeout=60)
+        assert answer.status_code == 200, answer.text
+    thread.join(PATIENCE)
+    assert [answer.status_code for answer in early] == [200], early[0].text
+    assert all(text.startswith("starting for ") for text in told)
+    assert len(set(told)) > 1
+    # An import waits for its worker too, rather than fail.
+    file = {"file": ("stairs.csv", b"x,z\n0,0\n1,0\n1,0.1\n2,0.1\n", "text/csv")}
+    assert httpx.post(f"{cold}/terrains/import", files=file, timeout=PATIENCE).status_code == 200
+
+
+def test_the_command_line_says_what_it_compiles(tmp_path: Path) -> None:
+    """A kernel of our own stands for those that are there in greater number."""
+    (tmp_path / "kernel.py").write_text(
+        "from stairwright.compiled import leaf\n@leaf\ndef double(x):\n    return x * 2.0\n"
+    )
+    code = (
+        "from stairwright import preparing\npreparing.listen(preparing.Teller(0.0))\n"
+        "import kernel\nkernel.double(1.0)\nkernel.double(1)\n"
+    )
+    for expected in (2, 0):  # it is kept
+        env = os.environ | {"PYTHONDONTWRITEBYTECODE": "1"}
+        path = os.pathsep.join([str(tmp_path), env.get("PYTHONPATH", "")])
+        done = subprocess.run(
+            [sys.executable, "-c", code],
+            env=env | {"PYTHONPATH": path, "NUMBA_CACHE_DIR": str(tmp_path / "kernels")},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        lines = done.stderr.splitlines()
+        assert len(lines) == expected, done.stderr
+        if expected:
+            assert "compiling for this machine" in lines[0]
+            assert "2 functions" in lines[1]

@@ -1,0 +1,68 @@
+"""One error, one line in the log, with the id of the request that it belongs to."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import sqlite3
+import subprocess
+import time
+from collections.abc import Callable
+from typing import Any
+
+import httpx
+
+from tests.conftest import Server
+
+Start = Callable[..., contextlib.AbstractContextManager[Server]]
+
+STAIR = {"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
+
+
+def lines(server: Server, containing: str) -> list[dict[str, Any]]:
+    """Of the log."""
+    told = [json.loads(line) for line in server.log.read_text().splitlines()]
+    return [line for line in told if containing in line["message"]]
+
+
+def test_an_unexpected_error_is_logged_once(start_server: Start) -> None:
+    with start_server() as server:
+        with httpx.Client(base_url=f"{server.url}/api/v1", timeout=60) as api:
+            api.put("/terrains/spoilt", json=STAIR)
+            with contextlib.closing(sqlite3.connect(server.data / "stairwright.sqlite")) as other:
+                other.execute("UPDATE terrains SET document = '[]'")
+                other.commit()
+            answer = api.get("/terrains/spoilt", headers={"x-request-id": "mine"})
+        assert answer.status_code == 500
+        assert answer.headers["content-type"] == "application/problem+json"
+        assert "bug" in answer.json()["detail"]
+        errors = [line for line in lines(server, "") if line["level"] == "error"]
+        assert len(errors) == 1, [error["message"] for error in errors]
+        assert errors[0]["request"] == "mine"
+        assert "Traceback" in errors[0]["exception"]
+
+
+def test_what_fails_again_and_again_is_told_once(start_server: Start) -> None:
+    # Root obeys permissions too without these.
+    mortal = ("setpriv", "--bounding-set=-dac_override,-dac_read_search")
+    with start_server(prefix=mortal if os.geteuid() == 0 else ()) as server:
+        artefacts = server.data / "artefacts"
+
+        def permit(mode: str) -> None:
+            subprocess.run(["chmod", "-R", mode, str(artefacts)], check=True)
+
+        for friction in range(20):  # until a result is caught before it is compressed
+            body = {"terrain": STAIR, "friction": 0.5 + friction * 0.01}
+            httpx.post(f"{server.url}/api/v1/plans", json=body, timeout=60)
+            permit("a-w")
+            if list(artefacts.glob("??/*.json")):
+                break
+            permit("u+w")
+        time.sleep(7.0)  # it is tried every 2 s
+        permit("u+w")
+        give_up = time.monotonic() + 30
+        while not lines(server, "compressing new results works again"):
+            assert time.monotonic() < give_up
+            time.sleep(0.2)
+        assert len([line for line in lines(server, "compress") if line["level"] == "error"]) == 1
