@@ -10,20 +10,16 @@ from fastapi import APIRouter, Depends, FastAPI
 from stairwright import __version__
 
 from . import openapi, problems
-<<<<<<< HEAD
 from .attempts import Attempts
 from .gate import Gate
 from .head import Head
 from .headers import SecurityHeaders
 from .hosts import Hosts
+from .last_resort import LastResort
 from .middleware import PREFIX, Compress, LimitBody, Observe
 from .origins import Cors
 from .queries import known_query
-=======
-from .last_resort import LastResort
-from .middleware import PREFIX, Compress, Gate, LimitBody, Observe
 from .read_only import ReadOnly
->>>>>>> ops
 from .routes import (
     health,
     jobs,
@@ -81,17 +77,13 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.add_middleware(
         LimitBody, limit=settings.body_limit, upload_limit=settings.upload_limit + 65536
     )
-<<<<<<< HEAD
     app.add_middleware(Head)
     origins, attempts = settings.allowed_origins, Attempts(settings.token_attempts)
     app.add_middleware(Gate, token=settings.token, origins=origins, attempts=attempts)
     app.add_middleware(Cors, origins=origins)
     app.add_middleware(Hosts, allowed=settings.allowed_hosts)
     app.add_middleware(SecurityHeaders)
-=======
-    app.add_middleware(Gate, token=settings.token, origins=settings.allowed_origins)
     app.add_middleware(LastResort)
->>>>>>> ops
     app.add_middleware(Observe, metrics=services.metrics)
     api = APIRouter(prefix=PREFIX, dependencies=[Depends(known_query)])
     for routes in (health, tuning, robots, terrains, plans, live, rollouts, jobs, sessions):

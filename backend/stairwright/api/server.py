@@ -21,11 +21,8 @@ def serve(host: str | None = None, port: int | None = None) -> int:
     """
     settings = Settings.from_env(host=host, port=port)
     _check_address(settings.host, settings.port)
-<<<<<<< HEAD
     descriptors = _raise_descriptor_limit()
-=======
     keep_kernels(settings.data / "kernels")
->>>>>>> ops
     launch()  # gets ready while this process imports what follows
     import uvicorn
 
