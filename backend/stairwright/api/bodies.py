@@ -241,7 +241,10 @@ class JobDocument(Model):
     kind: Literal["rollout"]
     state: Literal["queued", "running", "done", "failed", "cancelled"]
     progress: float = Field(ge=0.0, le=1.0)
-    eta: float | None = Field(description="seconds left, as far as known")
+    created: float = Field(description="seconds since 1970")
+    eta: float | None = Field(
+        description="seconds until it is done, waiting included, as far as known"
+    )
     result: str | None = Field(description="where the result is, when done")
     error: dict[str, Any] | None = Field(description="a problem document, when failed")
     links: dict[str, str]

@@ -11,12 +11,12 @@ from functools import partial
 from fastapi.concurrency import run_in_threadpool
 
 from stairwright.jobs.engine import planning_engine, rollout_engine
-from stairwright.jobs.failures import problem
 from stairwright.jobs.planning import Planning
 from stairwright.jobs.pool import WorkerPool
 from stairwright.jobs.rollouts import Rollouts
 from stairwright.jobs.worker import Limits
 from stairwright.library import load_robot, load_terrain, robots, terrains
+from stairwright.storage.lock import FolderLock
 from stairwright.storage.store import Store
 
 from .clock_watch import watch_clock
@@ -55,6 +55,7 @@ class Services:
     def __init__(self, settings: Settings) -> None:
         self.settings = settings
         self.metrics = Metrics()
+        self._lock = FolderLock(settings.data)
         self.store = Store(settings.data)
         memory = settings.worker_memory
         self.plan_pool = WorkerPool("plans", settings.plan_workers, Limits(memory=memory), spares=1)
@@ -99,12 +100,11 @@ class Services:
             ]
 
     async def _take_over(self) -> None:
-        """Settle what an earlier process left behind."""
-        gone = problem(503, "interrupted", "the service was restarted; please ask again")
-        interrupted = await asyncio.to_thread(self.store.jobs.interrupt, gone)
+        """Go on with what an earlier process left unfinished."""
         await asyncio.to_thread(self.store.idempotency.release_unfinished)
-        if interrupted:
-            logger.warning("%d jobs were interrupted by a restart", interrupted)
+        unfinished = await self.rollouts.resume()
+        if unfinished:
+            logger.info("%d jobs from before the restart go on", unfinished)
 
     async def _start_the_rest(self) -> None:
         """What nobody waits for in the first second must not compete with what somebody does."""
@@ -126,6 +126,7 @@ class Services:
         await self.sessions.close_all()
         await asyncio.gather(*(pool.stop() for pool in self.pools))
         self.store.close()
+        self._lock.release()
 
     async def _collect(self) -> None:
         trouble = Trouble(logger, "making room for new results")
@@ -145,6 +146,7 @@ class Services:
         while True:
             await asyncio.sleep(SETTLE_EVERY)
             try:
+                await self.rollouts.journal.catch_up()
                 await asyncio.to_thread(self.store.settle)
             except Exception as error:  # noqa: BLE001 - housekeeping goes on
                 trouble.failed(error)

@@ -42,6 +42,35 @@ class WorkerDied(Failure):
     kind = "worker-died"
 
 
+class OutOfMemory(Failure, MemoryError):
+    """The work wants more memory than a worker may have: asking again does not help."""
+
+    status = 422
+    kind = "memory"
+
+    def __init__(self, limit: int = 0) -> None:
+        allowed = f" ({limit} MiB)" if limit else ""
+        super().__init__(
+            f"this takes more memory than a worker may have{allowed}: ask for less, for instance "
+            "a terrain of fewer points, or raise STAIRWRIGHT_WORKER_MEMORY"
+        )
+
+
+class Interrupted(Failure):
+    """The service ended while it was at the work, and cannot go on with it."""
+
+    status = 503
+    kind = "interrupted"
+
+
+LOST = frozenset({WorkerDied.kind, Interrupted.kind})  # no fault of the question's: ask again
+
+
+def is_lost(error: Mapping[str, Any] | None) -> bool:
+    """Whether a problem document says that the service lost the work."""
+    return error is not None and str(error.get("type", "")).rpartition(":")[2] in LOST
+
+
 def problem_of(error: BaseException) -> dict[str, Any]:
     """A failed job's problem document (RFC 9457)."""
     errors: list[dict[str, str]] = []
@@ -51,8 +80,6 @@ def problem_of(error: BaseException) -> dict[str, Any]:
         errors = [{"field": error.path, "message": error.message}]
     elif isinstance(error, Failure):
         status, kind, detail = error.status, error.kind, error.message
-    elif isinstance(error, MemoryError):
-        status, kind, detail = 503, "memory", "the work needs more memory than a worker may have"
     elif isinstance(error, Cancelled):
         status, kind, detail = 409, "cancelled", "the job was cancelled"
     return problem(status, kind, detail, errors)

@@ -67,7 +67,7 @@ class Planning:
     """Solves questions; the same question twice at once is solved once."""
 
     def __init__(self, store: Store, pool: WorkerPool, queue_limit: int, deadline: float) -> None:
-        self.queue = FairQueue(pool.workers, queue_limit, "plans")
+        self.queue = FairQueue(pool.workers, queue_limit, "plans", reserve=pool.spares)
         self._store = store
         self._pool = pool
         self._deadline = deadline
@@ -102,7 +102,7 @@ class Planning:
         question: PlanQuestion,
         owner: str,
     ) -> Flight[T]:
-        self.queue.check()
+        self.queue.check(owner)
         flight = Flight[T]()
         flight.task = asyncio.create_task(work(question, owner, flight))
         flight.task.add_done_callback(_heard)

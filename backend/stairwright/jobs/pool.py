@@ -7,7 +7,7 @@ import logging
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
-from .failures import DeadlineExceeded
+from .failures import DeadlineExceeded, OutOfMemory
 from .process import WorkerProcess
 from .stopwatch import Observer, Stopwatch, ignore
 from .worker import Limits
@@ -24,12 +24,13 @@ class WorkerPool:
 
     Workers are forked from a server process that has imported and compiled everything
     (`preload`), so one that was given up is replaced within milliseconds. `spares` are further
-    processes that take over meanwhile.
+    processes that take over meanwhile, and that serve others where one client has all workers.
     """
 
     def __init__(self, name: str, workers: int, limits: Limits, spares: int = 0) -> None:
         self.name = name
         self.workers = workers
+        self.spares = spares
         self.deaths = 0
         self.observe: Observer = ignore
         self.prepared = asyncio.Event()  # set when the first worker is there, or cannot be
@@ -55,6 +56,7 @@ class WorkerPool:
         Raises:
             DeadlineExceeded: After `deadline` [s], counted from when there are workers.
             WorkerDied: If the process is gone.
+            OutOfMemory: If it needs more memory than a worker may have.
             Exception: Whatever the function raises.
         """
         watch = Stopwatch()
@@ -69,12 +71,16 @@ class WorkerPool:
             async with asyncio.timeout(deadline):
                 worker = await self._ready()
                 watch.start()
+                full = False
                 try:
                     returned, outcome = await worker.ask(function, *args)
+                    full = isinstance(outcome, MemoryError)
                 finally:
-                    self._let_go(worker)
+                    self._let_go(worker, full)
         except TimeoutError:
             raise DeadlineExceeded(f"stopped after {deadline:g} s, the longest allowed") from None
+        if full:
+            raise OutOfMemory(self._limits.memory) from outcome
         if not returned:
             raise outcome
         return cast(T, outcome)
@@ -85,8 +91,9 @@ class WorkerPool:
             if not worker.gone.is_set():
                 return worker
 
-    def _let_go(self, worker: WorkerProcess) -> None:
-        if worker.busy:
+    def _let_go(self, worker: WorkerProcess, full: bool) -> None:
+        """Ready for the next task; one that was full may be in pieces, and a new one is at hand."""
+        if worker.busy or full:
             worker.kill()
         elif not worker.gone.is_set():
             self._idle.put_nowait(worker)

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from stairwright.documents import content_hash
+from stairwright.documents import content_hash, parse
+from stairwright.errors import InputError
 from stairwright.planning.plan import Method, Plan
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
@@ -43,6 +44,16 @@ class PlanQuestion:
             terrain, robot, terrain.friction if friction is None else friction, method, complete
         )
 
+    @classmethod
+    def restored(cls, data: Mapping[str, Any]) -> PlanQuestion:
+        """The question that `data` was made from.
+
+        Raises:
+            InputError: If it was made by other code and is none any more.
+        """
+        terrain, robot = parse(Terrain, data["terrain"]), parse(Robot, data["robot"])
+        return cls.of(terrain, robot, data["friction"], data["method"], data["weights"])
+
     @cached_property
     def data(self) -> dict[str, Any]:
         """As plain data, for a worker."""
@@ -69,6 +80,23 @@ class RolloutQuestion:
     controller: Mapping[str, Any]
     seed: int
 
+    @classmethod
+    def restored(cls, data: Mapping[str, Any]) -> RolloutQuestion:
+        """The question that `data` was made from.
+
+        Raises:
+            InputError: If it was made by other code and is none any more.
+        """
+        source: PlanQuestion | Plan | str
+        try:
+            if "ask" in data:
+                source = PlanQuestion.restored(data["ask"])
+            else:
+                source = parse(Plan, data["plan"]) if "plan" in data else data["plan_digest"]
+            return cls(source, data["friction"], data["controller"], data["seed"])
+        except KeyError as error:
+            raise InputError("is missing", (str(error.args[0]),)) from None
+
     @cached_property
     def data(self) -> dict[str, Any]:
         """As plain data, for a worker."""
@@ -87,3 +115,8 @@ class RolloutQuestion:
     def key(self) -> str:
         """Hash of the whole question."""
         return content_hash(self.data)
+
+    @property
+    def needs(self) -> str | None:
+        """Digest of the stored plan that it refers to."""
+        return self.source if isinstance(self.source, str) else None

@@ -1,13 +1,16 @@
-"""Rollouts as jobs: queued, carried out by workers, cancelled, cached."""
+"""Rollouts as jobs: queued, carried out by workers, cancelled, cached.
+
+What was accepted is done: a job outlives workers and the service itself (`resume`).
+"""
 
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import logging
 import secrets
 from collections import OrderedDict
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from functools import partial
 
 from stairwright.errors import Cancelled
 from stairwright.storage.documents import Entry
@@ -15,48 +18,36 @@ from stairwright.storage.store import Store
 
 from . import work
 from .engine import rollout_engine
-from .failures import problem, problem_of
-from .gauge import Gauge
+from .failures import Interrupted, WorkerDied, is_lost, problem_of
 from .job import Job
-from .live import LiveSeries
+from .journal import Journal
 from .planning import shelve_plan
 from .pool import WorkerPool
 from .questions import PlanQuestion, RolloutQuestion
 from .queue import FairQueue
+from .run import Run, forecast
 
 logger = logging.getLogger(__name__)
 
-LOOK_EVERY = 0.1  # s between looks at a worker's progress
 COURTESY = 0.1  # s that a worker has to stop by itself before it is killed
 REMEMBERED = 1000  # finished jobs in memory; older ones are read from the database
+MOST_DEATHS = 3  # of workers at one job: then it is the job that kills them
+MOST_LOSSES = 20  # of the service while a job ran: it may have nothing to do with it, or all
 RESULT = "/api/v1/rollouts/{}"
-
-
-@dataclass(eq=False)
-class Run:
-    """One simulation, and the jobs that wait for it: more than one if they asked the same."""
-
-    question: RolloutQuestion
-    owner: str
-    gauge: Gauge
-    live: LiveSeries
-    jobs: list[Job] = field(default_factory=list)
-    task: asyncio.Task[None] | None = None
-    started: bool = False
 
 
 class Rollouts:
     """All rollout jobs of one service. Belongs to one event loop."""
 
     def __init__(self, store: Store, pool: WorkerPool, queue_limit: int, deadline: float) -> None:
-        self.queue = FairQueue(pool.workers, queue_limit, "rollouts")
+        self.queue = FairQueue(pool.workers, queue_limit, "rollouts", reserve=pool.spares)
+        self.journal = Journal(store.jobs)
         self._store = store
         self._pool = pool
         self._deadline = deadline
         self._jobs: OrderedDict[str, Job] = OrderedDict()
         self._runs: dict[str, Run] = {}
         self._stopping: set[asyncio.Task[None]] = set()
-        self._writing = asyncio.Lock()  # a job's states reach the database in order
 
     async def submit(self, question: RolloutQuestion, owner: str) -> Job:
         """A new job; done at once where the answer is known.
@@ -64,29 +55,64 @@ class Rollouts:
         Raises:
             QueueFull: If too many wait.
         """
-        job = Job(f"j-{secrets.token_hex(10)}", "rollout")
-        stored = await asyncio.to_thread(
-            self._store.documents.answer, "rollout", question.key, rollout_engine()
-        )
-        if stored is not None:
-            job.finish("done", result=RESULT.format(stored.id))
-        else:
-            self._attach(job, question, owner)
+        job = Job(f"j-{secrets.token_hex(10)}", "rollout", owner=owner, question=question.key)
+        if not await self._answer(job):
+            if question.key not in self._runs:
+                self.queue.check(owner)
+            self._attach(job, question)
         self._remember(job)
-        await self._write_down(job)
+        try:
+            await self.journal.write(job, question)
+        except BaseException:  # it was not accepted, so nobody waits for it
+            await self._leave(job)
+            del self._jobs[job.id]
+            raise
         return job
 
-    def _attach(self, job: Job, question: RolloutQuestion, owner: str) -> None:
+    async def resume(self) -> int:
+        """Go on with what an earlier process left unfinished; returns how many jobs that is."""
+        unfinished = await self.journal.unfinished()
+        for job in unfinished:
+            self._remember(job)
+            if await self._answer(job):
+                await self.journal.note(job)
+                continue
+            question = await self.journal.question(job)
+            if question is None:
+                error = Interrupted("the service ended and cannot go on with this: ask again")
+                job.finish("failed", error=problem_of(error))
+            elif job.losses >= MOST_LOSSES:
+                error = Interrupted(f"given up: the service ended {job.losses} times meanwhile")
+                job.finish("failed", error=problem_of(error))
+            else:
+                self._attach(job, question)
+            await self.journal.note(job)
+        return len(unfinished)
+
+    async def _answer(self, job: Job) -> bool:
+        """Finish the job if what it asks is known already."""
+        find = self._store.documents.answer
+        stored = await asyncio.to_thread(find, "rollout", str(job.question), rollout_engine())
+        if stored is not None:
+            job.finish("done", result=RESULT.format(stored.id))
+        return stored is not None
+
+    def _attach(self, job: Job, question: RolloutQuestion) -> None:
         run = self._runs.get(question.key)
         if run is None:
-            self.queue.check()
-            run = Run(question, owner, Gauge.create(), LiveSeries())
-            self._runs[question.key] = run
+            run = self._runs[question.key] = Run(question, job.owner)
             run.task = asyncio.create_task(self._carry_out(run))
-        elif run.started:
-            job.start()
-        job.live = run.live
-        run.jobs.append(job)
+        run.join(job)
+        job.forecast = partial(self._forecast, run)
+
+    def _forecast(self, run: Run) -> float | None:
+        running = [other for other in self._runs.values() if other.started]
+        if self.queue.typical is None and not any(other.left for other in running):
+            return None
+        mine = [other for other in self._runs.values() if other.owner == run.owner]
+        waiting = [other for other in mine if not other.started]
+        ahead = self.queue.ahead(run.owner, waiting.index(run)) if run in waiting else 0
+        return forecast(running, ahead, self.queue.capacity, self.queue.typical)
 
     async def get(self, job_id: str) -> Job | None:
         """A job by its id."""
@@ -95,60 +121,51 @@ class Rollouts:
         record = await asyncio.to_thread(self._store.jobs.get, job_id)
         return None if record is None else Job.restored(record)
 
+    async def lost(self, job: Job) -> bool:
+        """Whether there is nothing to be had of it, by no fault of the question's."""
+        if job.state == "done" and job.result is not None:
+            rollout = job.result.rpartition("/")[2]
+            return await asyncio.to_thread(self._store.documents.get, "rollout", rollout) is None
+        return job.state == "failed" and is_lost(job.error)
+
+    def known(self, job_id: str) -> Job | None:
+        """A job in memory."""
+        return self._jobs.get(job_id)
+
     async def cancel(self, job: Job) -> None:
         """Cancel a job; its worker stops unless another job waits for the same run."""
         if job.finished:
             return
         job.finish("cancelled", error=problem_of(Cancelled()))
+        await self._leave(job)
+        await self.journal.write(job)
+
+    async def _leave(self, job: Job) -> None:
         for key, run in list(self._runs.items()):
             if job in run.jobs:
                 run.jobs.remove(job)
                 if not run.jobs:
                     del self._runs[key]
                     if not run.started:
-                        await self._abandon(run)  # its place in the queue is free at once
+                        await _abandon(run)  # its place in the queue is free at once
                         continue
-                    stopping = asyncio.create_task(self._stop(run))
+                    stopping = asyncio.create_task(_stop(run))
                     self._stopping.add(stopping)
                     stopping.add_done_callback(self._stopping.discard)
-        await self._write_down(job)
-
-    async def _stop(self, run: Run) -> None:
-        """Ask the worker to stop, so that it stays warm; kill it if it does not listen."""
-        assert run.task is not None
-        run.gauge.cancel()
-        await asyncio.wait({run.task}, timeout=COURTESY)
-        await self._abandon(run)
-
-    async def _abandon(self, run: Run) -> None:
-        assert run.task is not None
-        run.task.cancel()
-        await asyncio.wait({run.task})
 
     async def stop(self) -> None:
-        """End everything; what is unfinished fails."""
+        """End everything; what is unfinished goes on after the next start."""
         for run in list(self._runs.values()):
-            if run.task is not None:
-                run.task.cancel()
-                with contextlib.suppress(asyncio.CancelledError):
-                    await run.task
-        gone = problem(503, "interrupted", "the service was stopped; please ask again")
+            await _abandon(run)
         for job in self._jobs.values():
             if not job.finished:
-                job.finish("failed", error=gone)
-                await self._write_down(job)
+                job.requeue()
+                await self.journal.note(job)
+        await self.journal.catch_up()
 
     async def _carry_out(self, run: Run) -> None:
         try:
-            async with self.queue.slot(run.owner):
-                run.started = True
-                for job in run.jobs:
-                    job.start()
-                watcher = asyncio.create_task(_watch(run))
-                try:
-                    entry = await self._simulate(run)
-                finally:
-                    watcher.cancel()
+            entry = await self._persist(run)
         except asyncio.CancelledError:
             raise
         except Exception as error:  # whatever it is, the job must learn of it
@@ -159,16 +176,36 @@ class Rollouts:
         else:
             await self._finish(run, entry=entry)
 
+    async def _persist(self, run: Run) -> Entry:
+        """Simulate, again and again where workers die at it."""
+        while True:
+            try:
+                return await self._simulate(run)
+            except WorkerDied as error:
+                run.begin_anew()
+                if run.deaths >= MOST_DEATHS:
+                    message = f"given up: {run.deaths} workers have died at it (out of memory?)"
+                    raise WorkerDied(message) from error
+                logger.warning("a rollout begins anew: its worker died")
+                await self._note(run)
+
     async def _simulate(self, run: Run) -> Entry:
-        folder = str(self._store.artefacts.folder)
-        product = await self._pool.run(
-            work.simulate,
-            run.question.data,
-            folder,
-            run.gauge.path,
-            run.live.path,
-            deadline=self._deadline,
-        )
+        await self._pool.prepared.wait()  # nothing runs before there is somebody to do it
+        async with self.queue.slot(run.owner, accepted=True):
+            run.begin()
+            await self._note(run)
+            watcher = asyncio.create_task(run.watch())
+            try:
+                product = await self._pool.run(
+                    work.simulate,
+                    run.question.data,
+                    str(self._store.artefacts.folder),
+                    run.gauge.path,
+                    run.live.path,
+                    deadline=self._deadline,
+                )
+            finally:
+                watcher.cancel()
         return await asyncio.to_thread(self._shelve, run.question, product)
 
     def _shelve(self, question: RolloutQuestion, product: work.Product) -> Entry:
@@ -185,7 +222,7 @@ class Rollouts:
         )
 
     async def _finish(
-        self, run: Run, entry: Entry | None = None, error: dict[str, object] | None = None
+        self, run: Run, entry: Entry | None = None, error: Mapping[str, object] | None = None
     ) -> None:
         if self._runs.get(run.question.key) is run:
             del self._runs[run.question.key]
@@ -194,17 +231,17 @@ class Rollouts:
                 job.finish("done", result=RESULT.format(entry.id))
             else:
                 job.finish("failed", error=error)
-            await self._write_down(job)
+        await self._note(run)
+
+    async def _note(self, run: Run) -> None:
+        for job in list(run.jobs):
+            await self.journal.note(job)
 
     def _remember(self, job: Job) -> None:
         self._jobs[job.id] = job
         finished = [old for old in self._jobs.values() if old.finished]
         for old in finished[: max(0, len(finished) - REMEMBERED)]:
             del self._jobs[old.id]
-
-    async def _write_down(self, job: Job) -> None:
-        async with self._writing:
-            await asyncio.to_thread(self._store.jobs.put, job.record)
 
     def counts(self) -> dict[str, int]:
         """Jobs in memory by state."""
@@ -214,8 +251,15 @@ class Rollouts:
         return counts
 
 
-async def _watch(run: Run) -> None:
-    while True:
-        await asyncio.sleep(LOOK_EVERY)
-        for job in run.jobs:
-            job.advance(run.gauge.progress)
+async def _stop(run: Run) -> None:
+    """Ask the worker to stop, so that it stays warm; kill it if it does not listen."""
+    assert run.task is not None
+    run.gauge.cancel()
+    await asyncio.wait({run.task}, timeout=COURTESY)
+    await _abandon(run)
+
+
+async def _abandon(run: Run) -> None:
+    assert run.task is not None
+    run.task.cancel()
+    await asyncio.wait({run.task})

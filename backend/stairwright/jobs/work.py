@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import orjson
 
 from stairwright.documents import parse
+from stairwright.errors import InputError
 from stairwright.library import load_robot, robots
 from stairwright.robot.description import Robot
 from stairwright.storage.artefacts import Artefacts, name_of
@@ -140,7 +141,10 @@ def _plan_of(question: Question, artefacts: str) -> Plan:
     elif question.get("plan"):
         plan = Plan.model_validate(question["plan"])
     else:
-        content = _artefacts(artefacts).content(question["plan_digest"])
+        try:
+            content = _artefacts(artefacts).content(question["plan_digest"])
+        except FileNotFoundError:
+            raise InputError("the plan is not stored any more", ("plan_id",)) from None
         plan = Plan.model_validate_json(content)
     return plan
 

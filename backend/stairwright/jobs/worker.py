@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
+import errno
 import gc
 import os
 import pickle
@@ -17,6 +19,7 @@ from typing import Any
 
 LENGTH = struct.Struct("!Q")  # before each message: its length without this
 _PR_SET_PDEATHSIG = 1
+_OOM_SCORE = "500"  # of -1000 (never ended for want of memory) to 1000 (first of all)
 
 
 @dataclass(frozen=True)
@@ -53,9 +56,9 @@ def _outcome(task: bytes) -> bytes:
     try:
         function, args = pickle.loads(task)  # noqa: S301 - from the process that started this one
         return packed((True, function(*args)))
-    except MemoryError:
-        return packed((False, MemoryError()))
     except Exception as error:  # noqa: BLE001 - raised again on the other side
+        if _for_want_of_memory(error):
+            return packed((False, MemoryError()))
         error.add_note(f"In a worker:\n{traceback.format_exc()}")
         try:
             return packed((False, error))
@@ -63,11 +66,22 @@ def _outcome(task: bytes) -> bytes:
             return packed((False, RuntimeError(traceback.format_exc())))
 
 
+def _for_want_of_memory(error: Exception) -> bool:
+    """Libraries say it in several ways: as themselves, as the system's error, as C++'s."""
+    if isinstance(error, OSError):
+        return error.errno == errno.ENOMEM
+    words = ("bad_alloc", "can't start new thread", "Could not allocate memory")
+    return isinstance(error, MemoryError) or (
+        isinstance(error, RuntimeError) and any(word in str(error) for word in words)
+    )
+
+
 def _initialise(limits: Limits) -> None:
     gc.freeze()  # what was imported before the fork; a look at all of it takes longer than a plan
     signal.signal(signal.SIGTERM, signal.SIG_DFL)  # at once, even inside compiled code
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the service, which ends us
     die_with_parent()
+    _go_first()
     if limits.nice:
         os.nice(limits.nice)
     if limits.memory:
@@ -80,6 +94,12 @@ def die_with_parent() -> None:
     """Where the system can (Linux), end at once when the parent is gone, whatever we are at."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def _go_first() -> None:
+    """When the machine runs out of memory, the system ends a worker, not the service."""
+    with contextlib.suppress(OSError), open("/proc/self/oom_score_adj", "w") as file:  # noqa: PTH123
+        file.write(_OOM_SCORE)
 
 
 def _seal() -> None:

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, cast
 
-from sqlalchemy import Engine, Select, Table, bindparam, func, select, update
+from sqlalchemy import Engine, Select, Table, bindparam, delete, func, select, update
 from sqlalchemy.dialects.sqlite import insert
 from sqlalchemy.orm import sessionmaker
 
@@ -144,6 +144,14 @@ class Documents:
             rows = session.execute(select(*mine).group_by(StoredDocument.kind)).all()
         counts = {"plan": 0, "rollout": 0} | {kind: number for kind, number, _ in rows}
         return counts, sum(size for _, _, size in rows)
+
+    def delete(self, kind: Kind, document_id: str) -> str | None:
+        """Remove one; returns the digest of its content, None if there is none of that id."""
+        mine = (StoredDocument.id == document_id, StoredDocument.kind == kind)
+        statement = delete(StoredDocument).where(*mine).returning(StoredDocument.digest)
+        with self._sessions.begin() as session:
+            digest: str | None = session.scalar(statement)
+            return digest
 
     def digests(self) -> set[str]:
         """Artefacts that are referred to."""

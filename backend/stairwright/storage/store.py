@@ -52,11 +52,24 @@ class Store:
         """Remove what is too much; returns how many results went. Age is no reason."""
         trim_records(self._sessions)
         removed = make_room(self._sessions, keep_bytes)
+        needed = self.jobs.needed()
         for digest in removed:
-            self.artefacts.remove(digest)
+            if digest not in needed:
+                self.artefacts.remove(digest)
         if not was_set_aside(self.folder / DATABASE):  # which may refer to any of them
-            self.artefacts.sweep(self.documents.digests())
+            self.artefacts.sweep(self.documents.digests() | needed)
         return len(removed)
+
+    def delete(self, kind: Kind, document_id: str) -> bool:
+        """Remove a plan or a rollout; False if there is none of that id.
+
+        Its content goes at once, unless another document or an unfinished job needs it still.
+        """
+        digest = self.documents.delete(kind, document_id)
+        if digest is not None and digest not in self.documents.digests() | self.jobs.needed():
+            self._unsettled.discard(digest)
+            self.artefacts.remove(digest)
+        return digest is not None
 
     def shelve(self, kind: Kind, document_id: str, **values: Any) -> Entry:
         """Write down a document whose content was put among the artefacts; it will be settled.

@@ -54,8 +54,23 @@ class StoredJob(Base):
     state: Mapped[str]
     result: Mapped[str | None]
     error: Mapped[str | None]  # JSON, a problem document
-    created: Mapped[float]
+    created: Mapped[float] = mapped_column(index=True)
     updated: Mapped[float] = mapped_column(index=True)
+    question: Mapped[str | None] = mapped_column(index=True)  # None when finished
+    owner: Mapped[str] = mapped_column(server_default="")
+    deaths: Mapped[int] = mapped_column(server_default="0")  # of workers at it
+    losses: Mapped[int] = mapped_column(server_default="0")  # of the service while it ran
+    revision: Mapped[int] = mapped_column(server_default="1")
+
+
+class JobQuestion(Base):
+    """What unfinished jobs ask, once for all that ask the same."""
+
+    __tablename__ = "job_questions"
+
+    key: Mapped[str] = mapped_column(primary_key=True)
+    document: Mapped[str]  # JSON
+    needs: Mapped[str | None]  # digest of the artefact that it refers to
 
 
 class IdempotencyRecord(Base):

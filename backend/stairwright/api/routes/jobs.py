@@ -5,16 +5,17 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import AsyncIterator
-from typing import Annotated
+from typing import Annotated, Literal
 
-from fastapi import APIRouter, Depends, Header, Path, Query, Response
+from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
 from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
 from starlette.responses import StreamingResponse
 
 from stairwright.api.bodies import JobDocument
-from stairwright.api.deps import Service
+from stairwright.api.deps import Limit, Offset, Service
 from stairwright.api.problems import describe, not_found
-from stairwright.jobs.job import Job
+from stairwright.api.responses import models_json
+from stairwright.jobs.job import Job, State
 from stairwright.jobs.live import EVERY, LiveSeries
 
 EVENTS = """Events named `job`, each with the job as JSON and its revision as the event's id; and,
@@ -22,10 +23,12 @@ while a rollout runs, events named `series` without an id, about ten a second, e
 that are new since the last one: `{"from": number of the first, "time": [n], "pitch": [n],
 "pitch_desired": [n], "progress": [n], "q": [n][12], "q_desired": [n][12],
 "base_position": [n][3], "base_quaternion": [n][4]}`, at 25 samples a simulated second, rounded to
-1e-5. A stream that is opened late or again begins with all samples so far."""
+1e-5. A stream that is opened late or again begins with all samples so far. A rollout whose worker
+died begins anew: its job is queued again, and its series from sample 0."""
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 
+Kind = Literal["rollout"]
 QUIET = 15.0  # s after which a comment keeps proxies from closing the stream
 
 
@@ -40,11 +43,29 @@ def job_document(job: Job) -> JobDocument:
         kind="rollout",
         state=job.state,
         progress=round(job.progress, 4),
+        created=job.created,
         eta=job.eta,
         result=job.result,
         error=dict(job.error) if job.error else None,
         links=links,
     )
+
+
+@router.get("", response_model=list[JobDocument])
+async def list_jobs(
+    request: Request,
+    services: Service,
+    state: Annotated[list[State], Query(max_length=5, description="only in these states")] = [],  # noqa: B006
+    kind: Annotated[list[Kind], Query(max_length=5, description="only of these kinds")] = [],  # noqa: B006
+    limit: Limit = 100,
+    offset: Offset = 0,
+) -> Response:
+    """Jobs, newest first; `state` and `kind` may be given several times."""
+    page = services.store.jobs.page
+    records, total = await asyncio.to_thread(page, limit, offset, state, kind)
+    found = [services.rollouts.known(record.id) or Job.restored(record) for record in records]
+    shown = [job_document(job) for job in found if not state or job.state in state]
+    return models_json(request, shown, total=total, limit=limit, offset=offset)
 
 
 async def find_job(

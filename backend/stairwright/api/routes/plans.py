@@ -112,6 +112,12 @@ async def get_plan(request: Request, services: Service, plan_id: PlanId) -> Resp
     return await stored.document(request, services, "plan", plan_id)
 
 
+@router.delete("/{plan_id}", status_code=204, responses=describe(404))
+async def delete_plan(services: Service, plan_id: PlanId) -> None:
+    """Remove a plan. Its rollouts stay, those that wait go on; asked again, it is planned anew."""
+    await stored.delete(services, "plan", plan_id)
+
+
 @router.get(
     "/{plan_id}/export",
     response_class=Response,

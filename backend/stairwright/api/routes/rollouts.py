@@ -43,7 +43,7 @@ async def post_rollout(
 ) -> Response:
     """Start a rollout; the answer is its job. A known result makes a job that is done."""
     job = await services.rollouts.get(once.earlier) if once.earlier else None
-    if job is None:
+    if job is None or await services.rollouts.lost(job):  # a lost job must not stick to its key
         question = await asyncio.to_thread(_question, services, body)
         job = await services.rollouts.submit(question, owner)
         once.result = job.id
@@ -114,6 +114,12 @@ async def list_rollouts(
 async def get_rollout(request: Request, services: Service, rollout_id: RolloutId) -> Response:
     """One rollout with all its series; may be several MB."""
     return await stored.document(request, services, "rollout", rollout_id)
+
+
+@router.delete("/{rollout_id}", status_code=204, responses=describe(404))
+async def delete_rollout(services: Service, rollout_id: RolloutId) -> None:
+    """Remove a rollout. Its plan stays; asked again, it is simulated anew."""
+    await stored.delete(services, "rollout", rollout_id)
 
 
 @router.get(

@@ -25,8 +25,9 @@ SessionId = Annotated[str, Path(max_length=64)]
 @router.post("", status_code=201, response_model=SessionDocument, responses=describe(409, 429, 503))
 async def post_session(services: Service, once: Idempotent) -> Response:
     """Open a 3D scene; it closes by itself when nobody has used it for a while."""
-    name = once.earlier or await services.sessions.open()
-    once.result = None if once.earlier else name
+    earlier = once.earlier if once.earlier and once.earlier in services.sessions else None
+    name = earlier or await services.sessions.open()
+    once.result = None if earlier else name
     shown = SessionDocument(id=name, scene=f"/scene/{name}/")
     headers = {"location": f"/api/v1/sessions/{name}"}
     return Response(shown.model_dump_json(), 201, headers, media_type="application/json")

@@ -56,6 +56,16 @@ async def load(services: Services, kind: Kind, document_id: str) -> tuple[Entry,
         raise not_found(kind, document_id) from None
 
 
+async def delete(services: Services, kind: Kind, document_id: str) -> None:
+    """Remove a stored document.
+
+    Raises:
+        Problem: 404 if there is none (any more).
+    """
+    if not await asyncio.to_thread(services.store.delete, kind, document_id):
+        raise not_found(kind, document_id)
+
+
 async def document(request: Request, services: Services, kind: Kind, document_id: str) -> Response:
     """The document itself."""
     entry, packed = await load(services, kind, document_id)
