@@ -53,6 +53,7 @@ class Readiness:
             self.tried.set()
         finally:
             teller.cancel()
+            launch.told()
 
     async def _tell(self) -> None:
         while True:
