@@ -109,6 +109,18 @@ def test_a_read_only_folder(
         assert httpx.get(f"{server.url}/api/v1/healthz").json()["read_only"] is None
 
 
+def test_a_damaged_database_on_a_full_disk(
+    start_server: Start, plan: dict[str, Any], tmp_path: Path
+) -> None:
+    if not namespaces():
+        pytest.skip("this system lets nobody mount a small disk")
+    assert plan
+    harm(tmp_path / "data" / "stairwright.sqlite", "end")
+    prefix = [*NAMESPACE, "sh", "-c", FULL, "sh", str(tmp_path / "data")]
+    with start_server(prefix=prefix) as server, read_only(server):
+        assert "damaged database, which stays where it is" in server.log.read_text()
+
+
 def test_a_folder_that_cannot_be_made(start_server: Start, tmp_path: Path) -> None:
     closed = tmp_path / "closed"
     closed.mkdir()

@@ -37,6 +37,7 @@ def test_an_unexpected_error_is_logged_once(start_server: Start) -> None:
         assert answer.status_code == 500
         assert answer.headers["content-type"] == "application/problem+json"
         assert "bug" in answer.json()["detail"]
+        assert "content-security-policy" in answer.headers
         errors = [line for line in lines(server, "") if line["level"] == "error"]
         assert len(errors) == 1, [error["message"] for error in errors]
         assert errors[0]["request"] == "mine"

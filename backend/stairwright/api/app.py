@@ -77,13 +77,13 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.add_middleware(
         LimitBody, limit=settings.body_limit, upload_limit=settings.upload_limit + 65536
     )
+    app.add_middleware(LastResort)  # its answers too get the headers of those around it
     app.add_middleware(Head)
     origins, attempts = settings.allowed_origins, Attempts(settings.token_attempts)
     app.add_middleware(Gate, token=settings.token, origins=origins, attempts=attempts)
     app.add_middleware(Cors, origins=origins)
     app.add_middleware(Hosts, allowed=settings.allowed_hosts)
     app.add_middleware(SecurityHeaders)
-    app.add_middleware(LastResort)
     app.add_middleware(Observe, metrics=services.metrics)
     api = APIRouter(prefix=PREFIX, dependencies=[Depends(known_query)])
     for routes in (health, tuning, robots, terrains, plans, live, rollouts, jobs, sessions):

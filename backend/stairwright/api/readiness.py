@@ -9,6 +9,8 @@ import time
 from stairwright.jobs import launch, work
 from stairwright.jobs.pool import WorkerPool
 
+from .trouble import Trouble
+
 logger = logging.getLogger(__name__)
 
 REHEARSAL_DEADLINE = 300.0  # s, once there is a worker
@@ -24,6 +26,7 @@ class Readiness:
         self._begun = time.monotonic()
         self._trouble = ""
         self.ready = False
+        self.tried = asyncio.Event()  # set after the first attempt
 
     @property
     def text(self) -> str:
@@ -34,18 +37,23 @@ class Readiness:
     async def rehearse(self) -> None:
         """Return when a worker has answered a plan; try again as long as none has."""
         teller = asyncio.create_task(self._tell())
+        trouble = Trouble(logger, "a trial plan")
         try:
             while not self.ready:
                 try:
                     await self._pool.run(work.rehearse, deadline=REHEARSAL_DEADLINE)
-                except Exception as error:
-                    logger.exception("a trial plan failed")
+                except Exception as error:  # noqa: BLE001 - it is told, and tried again
+                    trouble.failed(error)
                     self._trouble = f"a trial plan failed ({error}); the log says more"
+                    self.tried.set()
                     await asyncio.sleep(RETRY)
                 else:
+                    trouble.worked()
                     self.ready = True
+            self.tried.set()
         finally:
             teller.cancel()
+            launch.told()
 
     async def _tell(self) -> None:
         while True:

@@ -109,7 +109,8 @@ class Services:
     async def _start_the_rest(self) -> None:
         """What nobody waits for in the first second must not compete with what somebody does."""
         await run_in_threadpool(_read_what_questions_need)  # which warms FastAPI's threads too
-        await self.readiness.rehearse()
+        self._tasks.append(asyncio.create_task(self.readiness.rehearse()))
+        await self.readiness.tried.wait()  # what plans cannot, others may
         await asyncio.sleep(FIRST_SECOND)
         await self.rollout_pool.start()
         await self.upload_pool.start()

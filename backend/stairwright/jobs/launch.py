@@ -31,6 +31,12 @@ def launch() -> None:
     forkserver.ensure_running()
 
 
+def told() -> None:
+    """Nobody asks any more what the fork server is at."""
+    if _stage is not None:
+        _stage.close()
+
+
 def stage() -> str:
     """What the fork server is at, if it was launched here."""
     return "" if _stage is None else _stage.text()

@@ -8,10 +8,10 @@ from __future__ import annotations
 import contextlib
 import os
 import tempfile
-import weakref
 from pathlib import Path
 
 VARIABLE = "STAIRWRIGHT_STAGE_FILE"
+_LENGTH = 200  # bytes, written at once, so that no reader finds half a line
 
 
 class Stage:
@@ -22,13 +22,11 @@ class Stage:
 
     @classmethod
     def create(cls) -> Stage:
-        """A new one, which processes started from now on find; its file goes with the object."""
+        """A new one, which processes started from now on find; to be closed."""
         handle, name = tempfile.mkstemp(prefix="stairwright-stage-")
         os.close(handle)
         os.environ[VARIABLE] = name
-        stage = cls(Path(name))
-        weakref.finalize(stage, Path(name).unlink, missing_ok=True)
-        return stage
+        return cls(Path(name))
 
     @classmethod
     def inherited(cls) -> Stage:
@@ -38,15 +36,19 @@ class Stage:
 
     def tell(self, text: str) -> None:
         """Say what is being done."""
-        if self.path is None or not self.path.exists():
-            return  # nobody listens (any more)
-        partial = self.path.with_name(f"{self.path.name}.{os.getpid()}")
-        with contextlib.suppress(OSError):  # a full disk: work is more important than words
-            partial.write_text(text, encoding="utf-8")
-            partial.replace(self.path)
+        if self.path is None:
+            return
+        # Never made anew when nobody listens any more; on a full disk work goes before words.
+        with contextlib.suppress(OSError), self.path.open("r+b") as file:
+            file.write(text.encode("ascii", "replace")[:_LENGTH].ljust(_LENGTH))
 
     def text(self) -> str:
         """What was said last."""
         with contextlib.suppress(OSError):
-            return "" if self.path is None else self.path.read_text(encoding="utf-8")
+            return "" if self.path is None else self.path.read_text(encoding="ascii").strip()
         return ""
+
+    def close(self) -> None:
+        """Nobody wants to know any more."""
+        if self.path is not None:
+            self.path.unlink(missing_ok=True)

@@ -73,7 +73,7 @@ def _cause(error: BaseException) -> object:
     return error.orig if isinstance(error, DatabaseError) else error
 
 
-def _open(path: Path) -> Engine:
+def _open(path: Path, *, copied: bool = False) -> Engine:
     """Open, migrate and check it; a damaged one is set aside for a new one."""
     path.parent.mkdir(parents=True, exist_ok=True)
     engine: Engine | None = None
@@ -90,16 +90,20 @@ def _open(path: Path) -> Engine:
         logger.error("the database %s is damaged: %s", path, _cause(error))
     if engine is not None:
         engine.dispose()
+    _write_something(path.parent)  # or else the new one could not be made, with the old one gone
     kept = set_aside(path)
     engine = open_database(path)
     taken = salvage(kept, engine)
     found = ", ".join(f"{count} {name}" for name, count in taken.items() if count) or "nothing"
-    logger.error(
-        "the damaged database is kept as %s; %s could be read from it and is in the new one; "
-        "for the rest stop the service and restore a backup",
-        kept,
-        found,
-    )
+    if copied:
+        logger.error("%s could be read from the damaged database, which stays where it is", found)
+    else:
+        logger.error(
+            "the damaged database is kept as %s; %s could be read from it and is in the new one; "
+            "for the rest stop the service and restore a backup",
+            kept,
+            found,
+        )
     return engine
 
 
@@ -151,7 +155,7 @@ def _copy_in_memory(path: Path) -> Engine:
             except OSError as error:
                 logger.error("%s cannot be read: %s", source, error.strerror)
                 break
-        engine = _open(copy)
+        engine = _open(copy, copied=True)
         address = _MEMORY.format(os.path.basename(folder))  # noqa: PTH119 - a name, not a path
         keeper = sqlite3.connect(address, uri=True, check_same_thread=False)
         with engine.connect() as connection:
