@@ -38,12 +38,36 @@ def test_beyond_the_limit_it_says_when_to_come_back() -> None:
         tasks = [asyncio.create_task(hold(queue, "a", log, done)) for _ in range(3)]
         await asyncio.sleep(0)
         with pytest.raises(QueueFull) as refused:
-            await hold(queue, "b", log, done)
+            await hold(queue, "a", log, done)
         assert refused.value.retry_after is not None
         assert refused.value.retry_after >= 1.0
+        other = asyncio.create_task(hold(queue, "b", log, done))  # has nothing here yet
+        await asyncio.sleep(0)
+        with pytest.raises(QueueFull):
+            await hold(queue, "b", log, done)
+        done.set()
+        await asyncio.gather(*tasks, other)
+        await hold(queue, "a", log, done)
+
+    asyncio.run(story())
+
+
+def test_one_owner_cannot_hold_all_workers() -> None:
+    async def story() -> None:
+        queue, done = FairQueue(2, 10, "tasks", reserve=1), asyncio.Event()
+        log: list[str] = []
+        tasks = [asyncio.create_task(hold(queue, "a", log, done)) for _ in range(4)]
+        await asyncio.sleep(0)
+        assert queue.running == 2
+        tasks.append(asyncio.create_task(hold(queue, "b", log, done)))
+        await asyncio.sleep(0)
+        assert queue.running == 3  # at once, on the spare
+        tasks.append(asyncio.create_task(hold(queue, "c", log, done)))
+        await asyncio.sleep(0)
+        assert queue.running == 3  # there is only one
         done.set()
         await asyncio.gather(*tasks)
-        await hold(queue, "b", log, done)
+        assert (queue.running, queue.length) == (0, 0)
 
     asyncio.run(story())
 

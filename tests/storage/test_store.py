@@ -82,14 +82,48 @@ def test_a_lost_artefact_is_no_answer(tmp_path: Path) -> None:
     assert store.documents.get("plan", "p-1") is None
 
 
-def test_unfinished_jobs_of_a_dead_process_fail(tmp_path: Path) -> None:
+def test_unfinished_jobs_of_a_dead_process_are_known_with_what_they_ask(tmp_path: Path) -> None:
+    jobs = Store(tmp_path).jobs
+    for k, (name, state) in enumerate((("j-1", "queued"), ("j-2", "running"), ("j-3", "done"))):
+        record = JobRecord(name, "rollout", state, None, None, "key", "me", created=100.0 + k)
+        jobs.put(record, {"seed": 7}, "digest")
+    jobs = Store(tmp_path).jobs
+    assert [job.id for job in jobs.unfinished()] == ["j-2", "j-1"]  # what ran goes first
+    assert jobs.unfinished()[0].owner == "me"
+    assert jobs.question("key") == {"seed": 7}
+    assert jobs.needed() == {"digest"}
+    for name in ("j-1", "j-2"):
+        jobs.put(JobRecord(name, "rollout", "done", None, None, "key", created=100.0))
+    assert jobs.unfinished() == []
+    assert jobs.question("key") is None
+    assert jobs.needed() == set()
+
+
+def test_jobs_by_state_newest_first(tmp_path: Path) -> None:
+    jobs = Store(tmp_path).jobs
+    for k in range(5):
+        state = "done" if k % 2 else "failed"
+        jobs.put(JobRecord(f"j-{k}", "rollout", state, None, None, created=float(k)))
+    found, total = jobs.page(2, 1)
+    assert ([job.id for job in found], total) == (["j-3", "j-2"], 5)
+    found, total = jobs.page(10, 0, ["done"])
+    assert ([job.id for job in found], total) == (["j-3", "j-1"], 2)
+    assert jobs.page(10, 0, [], ["plan"]) == ([], 0)
+
+
+def test_a_deleted_result_goes_with_its_content(tmp_path: Path) -> None:
     store = Store(tmp_path)
-    for name, state in (("j-1", "queued"), ("j-2", "running"), ("j-3", "done")):
-        store.jobs.put(JobRecord(name, "rollout", state, None, None))
-    assert store.jobs.interrupt({"detail": "restarted"}) == 2
-    job = store.jobs.get("j-2")
-    assert job is not None
-    assert (job.state, job.error) == ("failed", {"detail": "restarted"})
+    digest, size = store.artefacts.put(b"{}"), 2
+    for name in ("p-1", "p-2"):
+        store.shelve(
+            "plan", name, question=name, engine="e", digest=digest, size=size, summary={}
+        )
+    assert store.delete("plan", "p-1")
+    assert store.artefacts.content(digest) == b"{}"  # the other one refers to it
+    assert store.delete("plan", "p-2")
+    assert not store.delete("plan", "p-2")
+    with pytest.raises(FileNotFoundError):
+        store.artefacts.content(digest)
 
 
 def test_idempotency_keys(tmp_path: Path) -> None:

@@ -190,8 +190,8 @@ class Rollouts:
                 await self._note(run)
 
     async def _simulate(self, run: Run) -> Entry:
-        await self._pool.prepared.wait()  # nothing runs before there is somebody to do it
         async with self.queue.slot(run.owner, accepted=True):
+            await self._pool.prepared.wait()  # nothing runs before there is somebody to do it
             run.begin()
             await self._note(run)
             watcher = asyncio.create_task(run.watch())
