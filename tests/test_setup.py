@@ -24,7 +24,7 @@ from stairwright.documents import load_mapping
 
 ROOT = Path(__file__).resolve().parents[1]
 LOCKS = [ROOT / name for name in ("requirements.lock", "requirements-dev.lock")]
-ALL_LOCKS = [*LOCKS, ROOT / "requirements-node.lock", ROOT / "requirements-bench.lock"]
+ALL_LOCKS = [*LOCKS, *(ROOT / f"requirements-{name}.lock" for name in ("node", "bench", "clients"))]
 # put together here, so that this file does not contain what it looks for
 REGISTRY_HOSTS = [
     "pypi" + ".org",
