@@ -29,7 +29,10 @@ class ShipData(BuildHookInterface):  # type: ignore[type-arg]
         missing = [name for name in SHIPPED if not (root / name).is_dir()]
         if missing or not native:
             what = " and ".join([*missing, *([] if native else ["the native core"])])
-            raise FileNotFoundError(f"{what} must be built first; this does all of it: ./dev wheel")
+            # Ends pip's and hatchling's own process; an exception would bury it in a traceback.
+            raise SystemExit(
+                f"{what} must be built first; one command builds them and the wheel: ./dev wheel"
+            )
         files = {str(root / source): target for source, target in SHIPPED.items()}
         files |= {str(file): f"stairwright/{file.name}" for file in native}
         build_data["force_include"].update(files)

@@ -1,6 +1,6 @@
 """How long the poses take to follow a dragged corner, in real Chromium on the real server.
 
-    python benchmarks/drag.py [--url http://localhost:8000] [--seconds 6] [--json FILE]
+    python benchmarks/drag.py [--url http://localhost:8000] [--seconds 6 | --quick] [--json FILE]
 
 Drags the upper corner of the 0.36 m stair and of five stairs at 60 moves a second. Per terrain:
 from the pointer's move to the end of the frame that shows its poses (median, 95th percentile), the
@@ -137,7 +137,8 @@ def run(url: str | None = None, seconds: float = 6.0, browser: str | None = None
     """All terrains, on the server at `url` or on one of its own."""
     from playwright.sync_api import sync_playwright
 
-    executable = browser or next(filter(None, map(shutil.which, BROWSERS)), None)
+    named = browser or os.environ.get("STAIRWRIGHT_BROWSER")
+    executable = named or next(filter(None, map(shutil.which, BROWSERS)), None)
     server = contextlib.nullcontext(url) if url else own_server()
     with server as address, sync_playwright() as playwright:
         launched = playwright.chromium.launch(
@@ -156,7 +157,9 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--url", help="a running server; its own otherwise")
-    parser.add_argument("--seconds", type=float, default=6.0)
+    length = parser.add_mutually_exclusive_group()
+    length.add_argument("--seconds", type=float, default=6.0, help="of each drag")
+    length.add_argument("--quick", action="store_const", dest="seconds", const=1.0, help="1 s")
     parser.add_argument("--browser", help="where Chromium is; searched for otherwise")
     parser.add_argument("--json", help="write machine and rows to this file too")
     arguments = parser.parse_args()

@@ -24,7 +24,7 @@ from stairwright.documents import load_mapping
 
 ROOT = Path(__file__).resolve().parents[1]
 LOCKS = [ROOT / name for name in ("requirements.lock", "requirements-dev.lock")]
-ALL_LOCKS = [*LOCKS, ROOT / "requirements-node.lock", ROOT / "requirements-bench.lock"]
+ALL_LOCKS = [*LOCKS, *(ROOT / f"requirements-{name}.lock" for name in ("node", "bench", "clients"))]
 # put together here, so that this file does not contain what it looks for
 REGISTRY_HOSTS = [
     "pypi" + ".org",
@@ -156,7 +156,15 @@ def test_wheel_brings_its_terrains_robots_and_page(tmp_path: Path) -> None:
     build = (sys.executable, "-m", "hatchling", "build", "--target", "wheel")
     unbuilt = run(*build, cwd=source)
     assert unbuilt.returncode != 0
-    assert "./dev wheel" in unbuilt.stderr
+    (sentence,) = unbuilt.stderr.strip().splitlines()
+    assert sentence.endswith(
+        "must be built first; one command builds them and the wheel: ./dev wheel"
+    )
+    pip = (sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", ".")
+    refused = run(*pip, cwd=source)
+    assert refused.returncode != 0
+    assert sentence in refused.stdout + refused.stderr
+    assert "Traceback" not in refused.stdout + refused.stderr
 
     assert (ROOT / "frontend" / "dist" / "index.html").is_file(), (
         "build the page first: ./dev build"
@@ -165,7 +173,7 @@ def test_wheel_brings_its_terrains_robots_and_page(tmp_path: Path) -> None:
     package = Path("backend", "stairwright")
     for core in (ROOT / package).glob("_core.*"):
         shutil.copy(core, source / package / core.name)
-    built = run(*build, cwd=source)
+    built = run(*pip, "--wheel-dir", "dist", cwd=source)
     assert built.returncode == 0, built.stderr
     (wheel,) = (source / "dist").glob("*.whl")
     unpacked = tmp_path / "unpacked"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from .mujoco_library import load_mujoco_library
 
 if TYPE_CHECKING:
+    from .client import Client, ServiceError
     from .library import load_robot, load_terrain, robots, terrains
     from .planning.certificate import certify
     from .planning.plan import Plan
@@ -15,15 +16,19 @@ if TYPE_CHECKING:
     from .robot.description import Robot
     from .simulation.result import Rollout
     from .simulation.rollout import rollout
+    from .simulation.trials import Trials, trials
     from .terrain.profile import Terrain
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "Client",
     "Plan",
     "Robot",
     "Rollout",
+    "ServiceError",
     "Terrain",
+    "Trials",
     "certify",
     "load_robot",
     "load_terrain",
@@ -31,16 +36,20 @@ __all__ = [
     "robots",
     "rollout",
     "terrains",
+    "trials",
 ]
 
 load_mujoco_library()  # the native core links it
 
 # Loaded on first use: `stairwright --help` and the web process need neither CasADi nor MuJoCo.
 _HOMES = {
+    "Client": "client",
     "Plan": "planning.plan",
     "Robot": "robot.description",
     "Rollout": "simulation.result",
+    "ServiceError": "client",
     "Terrain": "terrain.profile",
+    "Trials": "simulation.trials",
     "certify": "planning.certificate",
     "load_robot": "library",
     "load_terrain": "library",
@@ -48,6 +57,7 @@ _HOMES = {
     "robots": "library",
     "rollout": "simulation.rollout",
     "terrains": "library",
+    "trials": "simulation.trials",
 }
 
 

@@ -1,8 +1,10 @@
 """A small client for a running service; documents come back as the package's own models.
 
-with Client("http://localhost:8000") as service:
-plan = service.plan("single-stair-036", robot="a1_wheeled")
-run = service.rollout(plan_id=plan.id, progress=print)
+    with Client("http://localhost:8000") as service:
+        plan = service.plan("single-stair-036", robot="a1_wheeled")
+        run = service.rollout(plan_id=plan.id, progress=print)
+
+A service that is busy (429, 503) says when to come back; the client does so by itself.
 """
 
 from __future__ import annotations
@@ -10,15 +12,15 @@ from __future__ import annotations
 import secrets
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import httpx
 
+from stairwright.answers import JobState, ServiceError, ask
 from stairwright.documents import Model, parse
-from stairwright.errors import StairwrightError
 from stairwright.planning.plan import Method, Plan
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -28,46 +30,27 @@ if TYPE_CHECKING:
 
 M = TypeVar("M", bound=Model)
 Progress = Callable[[float], object]
-State = Literal["queued", "running", "done", "failed", "cancelled"]
 PREFIX = "/api/v1"
 
-
-class ServiceError(StairwrightError):
-    """The service said no: its problem document (RFC 9457)."""
-
-    def __init__(self, problem: Mapping[str, Any]) -> None:
-        super().__init__(str(problem.get("detail") or problem.get("title") or "unknown problem"))
-        self.problem = dict(problem)
-
-    @property
-    def status(self) -> int:
-        """The HTTP status."""
-        return int(self.problem.get("status", 0))
-
-
-@dataclass(frozen=True)
-class JobState:
-    """A job as the service told it last."""
-
-    id: str
-    state: State
-    progress: float
-    eta: float | None
-    result: str | None
-    error: Mapping[str, Any] | None
-
-    @property
-    def finished(self) -> bool:
-        """Whether nothing will change any more."""
-        return self.state in ("done", "failed", "cancelled")
+__all__ = ["Client", "JobState", "ServiceError"]
 
 
 class Client:
-    """Talks to one service. Methods raise `ServiceError` for an answer that says no."""
+    """Talks to one service. Methods raise `ServiceError` for an answer that says no.
 
-    def __init__(self, url: str, token: str | None = None, timeout: float = 120.0) -> None:
+    Args:
+        url: Of the service, without a path.
+        token: Where it asks for one.
+        timeout: Of one request [s].
+        patience: How long a request is repeated that finds the service busy [s]; 0 for not at all.
+    """
+
+    def __init__(
+        self, url: str, token: str | None = None, timeout: float = 120.0, patience: float = 60.0
+    ) -> None:
         headers = {"authorization": f"Bearer {token}"} if token else {}
         self._http = httpx.Client(base_url=url, headers=headers, timeout=timeout)
+        self._patience = patience
 
     def __enter__(self) -> Client:
         return self
@@ -189,7 +172,7 @@ class Client:
         headers = {"idempotency-key": secrets.token_hex(16)}
         for attempt in (1, 2, 3):
             try:
-                return _job(self._json("POST", "/rollouts", json=body, headers=headers))
+                return JobState.told(self._json("POST", "/rollouts", json=body, headers=headers))
             except httpx.TransportError:
                 if attempt == 3:
                     raise
@@ -198,11 +181,11 @@ class Client:
 
     def job(self, job_id: str) -> JobState:
         """A job's state."""
-        return _job(self._json("GET", f"/jobs/{_quoted(job_id)}"))
+        return JobState.told(self._json("GET", f"/jobs/{_quoted(job_id)}"))
 
     def cancel(self, job_id: str) -> JobState:
         """Cancel a job."""
-        return _job(self._json("DELETE", f"/jobs/{_quoted(job_id)}"))
+        return JobState.told(self._json("DELETE", f"/jobs/{_quoted(job_id)}"))
 
     def wait(
         self, job_id: str, *, progress: Progress | None = None, timeout: float = 900.0
@@ -256,7 +239,9 @@ class Client:
         return self._send(method, path, **options).json()
 
     def _send(self, method: str, path: str, **options: Any) -> httpx.Response:
-        response = self._http.request(method, PREFIX + path, **options)
+        # Repeating is harmless: a plan is the same plan, a rollout has its idempotency key.
+        request = partial(self._http.request, method, PREFIX + path, **options)
+        response = ask(request, self._patience)
         if response.is_error:
             try:
                 problem = response.json()
@@ -287,11 +272,6 @@ def _plain(source: str | Model | Mapping[str, Any]) -> Any:
 
 def _terrain(data: Mapping[str, Any]) -> Terrain:
     return parse(Terrain, {key: value for key, value in data.items() if key != "readonly"})
-
-
-def _job(data: Mapping[str, Any]) -> JobState:
-    names = ("id", "state", "progress", "eta", "result", "error")
-    return JobState(**{name: data[name] for name in names})
 
 
 def _quoted(name: str) -> str:

@@ -12,7 +12,9 @@ from pathlib import Path
 
 import pytest
 
+import stairwright as sw
 from stairwright.cli import main
+from stairwright.documents import load_mapping
 from stairwright.export.table import FORMATS
 from stairwright.library import robots, terrains
 from stairwright.resources import data_folder
@@ -118,6 +120,7 @@ def test_trials(plan: Path) -> None:
     made = json.loads(out.read_text())
     assert made["count"] == 2
     assert status == (0 if made["successes"] == 2 else 1)
+    assert sw.trials(load_mapping(plan), 2).model_dump(mode="json", by_alias=True) == made
     text = run("rollout", plan, "--trials", "2", status=status)
     assert f"{made['successes']} of 2 succeeded" in text
     run("rollout", plan, "--trials", "2", "-o", "trials.csv", status=2)

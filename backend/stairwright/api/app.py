@@ -11,6 +11,7 @@ from stairwright import __version__
 
 from . import openapi, problems
 from .attempts import Attempts
+from .described import operation_id
 from .gate import Gate
 from .head import Head
 from .headers import SecurityHeaders
@@ -66,6 +67,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         lifespan=lifespan,
         responses=problems.describe(400, 401, 403, 413, 422),
         redirect_slashes=False,
+        generate_unique_id_function=operation_id,
     )
     app.state.services = services
     problems.install(app)

@@ -9,6 +9,7 @@ from typing import Any
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 
+from .described import complete
 from .problems import FieldError, ProblemDocument
 
 
@@ -29,6 +30,7 @@ def install(app: FastAPI, *, token: bool) -> None:
         for unused in ("HTTPValidationError", "ValidationError"):
             schemas.pop(unused, None)
         made["components"]["schemas"] = _even_tuples(schemas)
+        complete(made)
         if token:
             made["components"]["securitySchemes"] = {"token": {"type": "http", "scheme": "bearer"}}
             made["security"] = [{"token": []}]

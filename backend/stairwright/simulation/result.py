@@ -53,13 +53,22 @@ _SHAPES: dict[str, tuple[int, ...]] = {
 }
 
 
+def _with_shapes(schema: dict[str, Any]) -> None:
+    """Let the JSON schema say what the arrays hold."""
+    for name, tail in _SHAPES.items():
+        items: dict[str, Any] = {"type": "number"}
+        for length in reversed(tail):
+            items = {"type": "array", "items": items, "minItems": length, "maxItems": length}
+        schema["properties"][name]["items"] = items
+
+
 class Series(Model):
     """Samples at even times (N of them). SI units, world frame; numpy arrays, lists in JSON.
 
     Joint order is the contract's: FL, FR, RL, RR, each thigh, calf, wheel.
     """
 
-    model_config = ConfigDict(arbitrary_types_allowed=True)
+    model_config = ConfigDict(arbitrary_types_allowed=True, json_schema_extra=_with_shapes)
 
     time: Array = Field(description="[N] s")
     base_position: Array = Field(description="[N, 3] trunk point [m]")

@@ -15,7 +15,7 @@ export interface paths {
          * Healthz
          * @description 200 when plans are answered at once; before that they wait, and 503 says what for.
          */
-        get: operations["healthz_api_v1_healthz_get"];
+        get: operations["get_health"];
         put?: never;
         post?: never;
         delete?: never;
@@ -37,7 +37,7 @@ export interface paths {
          *
          *     `exports` are the formats that plans, rollouts and robots can be taken along in.
          */
-        get: operations["settings_api_v1_settings_get"];
+        get: operations["get_settings"];
         put?: never;
         post?: never;
         delete?: never;
@@ -57,7 +57,7 @@ export interface paths {
          * List Robots
          * @description All robots.
          */
-        get: operations["list_robots_api_v1_robots_get"];
+        get: operations["list_robots"];
         put?: never;
         post?: never;
         delete?: never;
@@ -77,7 +77,7 @@ export interface paths {
          * Get Robot
          * @description One robot.
          */
-        get: operations["get_robot_api_v1_robots__name__get"];
+        get: operations["get_robot"];
         put?: never;
         post?: never;
         delete?: never;
@@ -97,7 +97,7 @@ export interface paths {
          * Export Robot
          * @description One robot as a file for other tools.
          */
-        get: operations["export_robot_api_v1_robots__name__export_get"];
+        get: operations["export_robot"];
         put?: never;
         post?: never;
         delete?: never;
@@ -117,7 +117,7 @@ export interface paths {
          * List Terrains
          * @description All terrains: presets first, then saved ones by name.
          */
-        get: operations["list_terrains_api_v1_terrains_get"];
+        get: operations["list_terrains"];
         put?: never;
         post?: never;
         delete?: never;
@@ -139,7 +139,7 @@ export interface paths {
          * Generate
          * @description A stair, a ramp or level ground from a few measures; it is not saved.
          */
-        post: operations["generate_api_v1_terrains_generate_post"];
+        post: operations["generate_terrain"];
         delete?: never;
         options?: never;
         head?: never;
@@ -159,7 +159,7 @@ export interface paths {
          * Import Terrain
          * @description The profile in a file; of a mesh, the upper edge of a vertical cut. It is not saved.
          */
-        post: operations["import_terrain_api_v1_terrains_import_post"];
+        post: operations["import_terrain"];
         delete?: never;
         options?: never;
         head?: never;
@@ -177,18 +177,18 @@ export interface paths {
          * Get Terrain
          * @description One terrain.
          */
-        get: operations["get_terrain_api_v1_terrains__name__get"];
+        get: operations["get_terrain"];
         /**
          * Put Terrain
          * @description Save a terrain under a name; 201 if the name is new.
          */
-        put: operations["put_terrain_api_v1_terrains__name__put"];
+        put: operations["save_terrain"];
         post?: never;
         /**
          * Delete Terrain
          * @description Remove a saved terrain.
          */
-        delete: operations["delete_terrain_api_v1_terrains__name__delete"];
+        delete: operations["delete_terrain"];
         options?: never;
         head?: never;
         patch?: never;
@@ -205,13 +205,13 @@ export interface paths {
          * List Plans
          * @description Stored plans, newest first.
          */
-        get: operations["list_plans_api_v1_plans_get"];
+        get: operations["list_plans"];
         put?: never;
         /**
          * Post Plan
          * @description Plan; the answer is the plan, an infeasible one too. The same question has the same id.
          */
-        post: operations["post_plan_api_v1_plans_post"];
+        post: operations["create_plan"];
         delete?: never;
         options?: never;
         head?: never;
@@ -229,14 +229,10 @@ export interface paths {
          * Get Plan
          * @description One plan.
          */
-        get: operations["get_plan_api_v1_plans__plan_id__get"];
+        get: operations["get_plan"];
         put?: never;
         post?: never;
-        /**
-         * Delete Plan
-         * @description Remove a plan. Its rollouts stay, those that wait go on; asked again, it is planned anew.
-         */
-        delete: operations["delete_plan_api_v1_plans__plan_id__delete"];
+        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -253,7 +249,7 @@ export interface paths {
          * Export Plan
          * @description One plan as a file; urdf is its robot.
          */
-        get: operations["export_plan_api_v1_plans__plan_id__export_get"];
+        get: operations["export_plan"];
         put?: never;
         post?: never;
         delete?: never;
@@ -273,13 +269,13 @@ export interface paths {
          * List Rollouts
          * @description Stored rollouts, newest first.
          */
-        get: operations["list_rollouts_api_v1_rollouts_get"];
+        get: operations["list_rollouts"];
         put?: never;
         /**
          * Post Rollout
          * @description Start a rollout; the answer is its job. A known result makes a job that is done.
          */
-        post: operations["post_rollout_api_v1_rollouts_post"];
+        post: operations["create_rollout"];
         delete?: never;
         options?: never;
         head?: never;
@@ -297,14 +293,10 @@ export interface paths {
          * Get Rollout
          * @description One rollout with all its series; may be several MB.
          */
-        get: operations["get_rollout_api_v1_rollouts__rollout_id__get"];
+        get: operations["get_rollout"];
         put?: never;
         post?: never;
-        /**
-         * Delete Rollout
-         * @description Remove a rollout. Its plan stays; asked again, it is simulated anew.
-         */
-        delete: operations["delete_rollout_api_v1_rollouts__rollout_id__delete"];
+        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -321,27 +313,7 @@ export interface paths {
          * Export Rollout
          * @description One rollout as a file; html replays it in 3D without a server.
          */
-        get: operations["export_rollout_api_v1_rollouts__rollout_id__export_get"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/jobs": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * List Jobs
-         * @description Jobs, newest first; `state` and `kind` may be given several times.
-         */
-        get: operations["list_jobs_api_v1_jobs_get"];
+        get: operations["export_rollout"];
         put?: never;
         post?: never;
         delete?: never;
@@ -361,14 +333,14 @@ export interface paths {
          * Get Job
          * @description A job's state.
          */
-        get: operations["get_job_api_v1_jobs__job_id__get"];
+        get: operations["get_job"];
         put?: never;
         post?: never;
         /**
          * Cancel Job
          * @description Cancel a job; one that is finished stays as it is.
          */
-        delete: operations["cancel_job_api_v1_jobs__job_id__delete"];
+        delete: operations["cancel_job"];
         options?: never;
         head?: never;
         patch?: never;
@@ -385,7 +357,7 @@ export interface paths {
          * Job Events
          * @description The job now and at every change until it is finished, and its series as it grows.
          */
-        get: operations["job_events_api_v1_jobs__job_id__events_get"];
+        get: operations["follow_job"];
         put?: never;
         post?: never;
         delete?: never;
@@ -407,7 +379,7 @@ export interface paths {
          * Post Session
          * @description Open a 3D scene; it closes by itself when nobody has used it for a while.
          */
-        post: operations["post_session_api_v1_sessions_post"];
+        post: operations["create_session"];
         delete?: never;
         options?: never;
         head?: never;
@@ -426,7 +398,7 @@ export interface paths {
          * Put Scene
          * @description Show a plan, a rollout or both, and a second plan beside them; theme, layers or camera.
          */
-        put: operations["put_scene_api_v1_sessions__session_id__scene_put"];
+        put: operations["set_scene"];
         post?: never;
         delete?: never;
         options?: never;
@@ -446,7 +418,7 @@ export interface paths {
          * Put Playback
          * @description Set the scene's clock; between calls it runs on by itself.
          */
-        put: operations["put_playback_api_v1_sessions__session_id__playback_put"];
+        put: operations["set_playback"];
         post?: never;
         delete?: never;
         options?: never;
@@ -468,7 +440,7 @@ export interface paths {
          * Delete Session
          * @description Close the scene.
          */
-        delete: operations["delete_session_api_v1_sessions__session_id__delete"];
+        delete: operations["delete_session"];
         options?: never;
         head?: never;
         patch?: never;
@@ -512,10 +484,11 @@ export interface components {
             leg: components["schemas"]["Actuator"];
             wheel: components["schemas"]["Actuator"];
         };
-        /** Body_import_terrain_api_v1_terrains_import_post */
-        Body_import_terrain_api_v1_terrains_import_post: {
+        /** Body_import_terrain */
+        Body_import_terrain: {
             /**
              * File
+             * Format: binary
              * @description STL, OBJ, PLY, OFF, CSV, JSON or YAML
              */
             file: string;
@@ -612,6 +585,153 @@ export interface components {
              * @description fractions of the calf from the knee
              */
             calf: number[];
+        };
+        /**
+         * ControllerSettings
+         * @description How the robot is driven along its plan. Equation numbers are the paper's.
+         */
+        ControllerSettings: {
+            /**
+             * Form
+             * @description contact: forces at the contact points, in each wheel's own frame, wheel torque fed forward. paper: forces at the wheel centres, wheel torque from the rolling control alone (eqs 3-16)
+             * @default contact
+             * @enum {string}
+             */
+            form: "contact" | "paper";
+            /**
+             * QP solver
+             * @description Solves the balance QP (eqs 11-12). native is compiled into the control loop; the others go through qpsolvers; clarabel is the reference
+             * @default native
+             * @enum {string}
+             */
+            solver: "native" | "daqp" | "clarabel" | "quadprog" | "proxqp" | "piqp" | "osqp";
+            /**
+             * Speed
+             * @description Along the course; the plan's own timing if empty
+             */
+            speed?: number | null;
+            /**
+             * Joint speed
+             * @description Cap on joint rates along the plan
+             * @default 1.5
+             */
+            joint_speed: number;
+            /**
+             * Leash
+             * @description How far the plan may run ahead of the wheels
+             * @default 0.012
+             */
+            leash: number;
+            /**
+             * Joint stiffness
+             * @description K_p of eq 27; the robot's if empty
+             */
+            joint_stiffness?: number | null;
+            /**
+             * Joint damping
+             * @description K_d of eq 27; the robot's if empty
+             */
+            joint_damping?: number | null;
+            /**
+             * Wheel damping
+             * @description K_d of eq 14; the robot's if empty
+             */
+            wheel_damping?: number | null;
+            /**
+             * Wheel synchronisation
+             * @description Pull of each wheel to its place
+             * @default 5
+             */
+            wheel_sync: number;
+            /**
+             * Yaw damping
+             * @description K_d of eq 16, per wheel radius and track
+             * @default 1.2
+             */
+            yaw_damping: number;
+            /**
+             * Heading
+             * @description Turns the robot back to the course
+             * @default 4
+             */
+            heading_stiffness: number;
+            /**
+             * CoM stiffness
+             * @description K_p of eq 8, position
+             * @default 40
+             */
+            com_stiffness: number;
+            /**
+             * CoM damping
+             * @description K_d of eq 8, position
+             * @default 8
+             */
+            com_damping: number;
+            /**
+             * Pitch stiffness
+             * @description K_p of eq 8, pitch
+             * @default 200
+             */
+            pitch_stiffness: number;
+            /**
+             * Pitch damping
+             * @description K_d of eq 8, pitch
+             * @default 14
+             */
+            pitch_damping: number;
+            /**
+             * Pitch integral
+             * @description Learns a moment that the model does not know, e.g. of a shifted load (form contact)
+             * @default 300
+             */
+            pitch_integral: number;
+            /**
+             * Roll stiffness
+             * @description Left wheels push more than right ones where the robot leans to the left (form contact)
+             * @default 100
+             */
+            roll_stiffness: number;
+            /**
+             * Roll damping
+             * @description The same against the rate of roll
+             * @default 14
+             */
+            roll_damping: number;
+            /**
+             * Force task
+             * @description S of eq 11 for the force rows
+             * @default 1
+             */
+            force_weight: number;
+            /**
+             * Moment task
+             * @description S of eq 11 for the moment row
+             * @default 20
+             */
+            moment_weight: number;
+            /**
+             * Alpha
+             * @description Weight of the forces (eq 11); form contact: of their distance from the plan's static ones
+             * @default 0.001
+             */
+            alpha: number;
+            /**
+             * Beta
+             * @description Weight of the change of forces (eq 11)
+             * @default 0.0001
+             */
+            beta: number;
+            /**
+             * Friction used
+             * @description Part of the friction that the QP may use; all of it where the plan itself needs more
+             * @default 0.95
+             */
+            friction_share: number;
+            /**
+             * Force limit
+             * @description Largest normal force of a wheel (eq 12); 1.3 times the robot's weight if empty
+             */
+            force_limit?: number | null;
         };
         /**
          * ExportFormat
@@ -729,13 +849,8 @@ export interface components {
             /** Progress */
             progress: number;
             /**
-             * Created
-             * @description seconds since 1970
-             */
-            created: number;
-            /**
              * Eta
-             * @description seconds until it is done, waiting included, as far as known
+             * @description seconds left, as far as known
              */
             eta: number | null;
             /**
@@ -849,6 +964,82 @@ export interface components {
              * @description limit minus the largest static joint torque [Nm]
              */
             torque: number;
+        };
+        /**
+         * Metrics
+         * @description Figures of one rollout; angles in rad.
+         */
+        Metrics: {
+            /**
+             * Duration
+             * @description simulated time until the end [s]
+             */
+            duration: number;
+            /**
+             * Pitch Error Max
+             * @description [rad]
+             */
+            pitch_error_max: number;
+            /**
+             * Pitch Error Rms
+             * @description [rad]
+             */
+            pitch_error_rms: number;
+            /**
+             * Joint Error Rms
+             * @description thighs and calves [rad]
+             */
+            joint_error_rms: number;
+            /**
+             * Torque Peak
+             * @description thighs and calves [Nm]
+             */
+            torque_peak: number;
+            /**
+             * Wheel Torque Peak
+             * @description [Nm]
+             */
+            wheel_torque_peak: number;
+            /**
+             * Energy
+             * @description integral of |torque x speed| over all joints [J]
+             */
+            energy: number;
+            /**
+             * Link Contacts
+             * @description control steps in which trunk or a link touched the terrain
+             */
+            link_contacts: number;
+            /**
+             * Link Force Peak
+             * @description largest such force, averaged over 20 ms [N]
+             */
+            link_force_peak: number;
+            /**
+             * Self Contacts
+             * @description control steps in which legs touched each other
+             */
+            self_contacts: number;
+            /**
+             * End Error
+             * @description largest distance of a wheel from the plan's end [m]
+             */
+            end_error: number;
+            /**
+             * Progress
+             * @description share of the plan that was reached, 0..1
+             */
+            progress: number;
+            /**
+             * Speed Mean
+             * @description along the course [m/s]
+             */
+            speed_mean: number;
+            /**
+             * Real Time Factor
+             * @description simulated time per wall-clock time
+             */
+            real_time_factor: number;
         };
         /**
          * Plan
@@ -1184,6 +1375,58 @@ export interface components {
             };
         };
         /**
+         * Rollout
+         * @description A rollout (``stairwright/rollout/1``); `id` is a hash of everything that went into it.
+         */
+        Rollout: {
+            /**
+             * Schema
+             * @default stairwright/rollout/1
+             * @constant
+             */
+            schema: "stairwright/rollout/1";
+            /** Id */
+            id: string;
+            /** Plan Id */
+            plan_id: string;
+            /** Method */
+            method: string;
+            terrain: components["schemas"]["Terrain"];
+            /** Terrain Hash */
+            terrain_hash: string;
+            /** Robot */
+            robot: string;
+            /** Robot Hash */
+            robot_hash: string;
+            robot_description: components["schemas"]["Robot"];
+            /** Friction */
+            friction: number;
+            /** Seed */
+            seed: number;
+            controller: components["schemas"]["ControllerSettings"];
+            /**
+             * Disturbance
+             * @default {}
+             */
+            disturbance: {
+                [key: string]: number;
+            };
+            /**
+             * Outcome
+             * @enum {string}
+             */
+            outcome: "success" | "fell" | "stuck" | "collided" | "diverged" | "timeout";
+            /**
+             * Reason
+             * @description one sentence: what happened, where and when
+             */
+            reason: string;
+            metrics: components["schemas"]["Metrics"];
+            series: components["schemas"]["Series"];
+            /** @description the plan that was carried out */
+            plan?: components["schemas"]["Plan"] | null;
+        };
+        /**
          * RolloutRequest
          * @description A question to the simulator: a plan by its id or in full, or what to plan first.
          * @example {
@@ -1269,6 +1512,74 @@ export interface components {
             } | null;
             /** Camera */
             camera?: ("side" | "iso" | "front" | "follow") | null;
+        };
+        /**
+         * Series
+         * @description Samples at even times (N of them). SI units, world frame; numpy arrays, lists in JSON.
+         *
+         *     Joint order is the contract's: FL, FR, RL, RR, each thigh, calf, wheel.
+         */
+        Series: {
+            /**
+             * Time
+             * @description [N] s
+             */
+            time: number[];
+            /**
+             * Base Position
+             * @description [N, 3] trunk point [m]
+             */
+            base_position: number[][];
+            /**
+             * Base Quaternion
+             * @description [N, 4] trunk, wxyz
+             */
+            base_quaternion: number[][];
+            /**
+             * Q
+             * @description [N, 12] joint angles [rad]
+             */
+            q: number[][];
+            /**
+             * Q Desired
+             * @description [N, 12] what the plan asks for [rad]; wheels: the angle rolled so far
+             */
+            q_desired: number[][];
+            /**
+             * Dq
+             * @description [N, 12] joint speeds [rad/s]
+             */
+            dq: number[][];
+            /**
+             * Torque
+             * @description [N, 12] joint torques after all limits [Nm]
+             */
+            torque: number[][];
+            /**
+             * Pitch
+             * @description [N] about +y: nose-up is negative [rad]
+             */
+            pitch: number[];
+            /**
+             * Pitch Desired
+             * @description [N] rad
+             */
+            pitch_desired: number[];
+            /**
+             * Progress
+             * @description [N] measured, mean of the wheels since the start [m]
+             */
+            progress: number[];
+            /**
+             * Progress Desired
+             * @description [N] the plan's, held back by the leash [m]
+             */
+            progress_desired: number[];
+            /**
+             * Contact Force
+             * @description [N, 4, 2] force of the terrain on each wheel, world x and z [N]
+             */
+            contact_force: number[][][];
         };
         /**
          * SessionDocument
@@ -1565,7 +1876,7 @@ export interface components {
         ProblemDocument: {
             /**
              * Type
-             * @description names the kind of problem
+             * @description names the kind of problem; about:blank means no more than its status
              * @example about:blank
              */
             type: string;
@@ -1594,12 +1905,29 @@ export interface components {
     responses: never;
     parameters: never;
     requestBodies: never;
-    headers: never;
+    headers: {
+        /** @description this version, for If-None-Match */
+        ETag: string;
+        /** @description where what was made is */
+        Location: string;
+        /** @description where the plan is kept */
+        "Content-Location": string;
+        /** @description attachment and a file name */
+        "Content-Disposition": string;
+        /** @description the next page, rel="next"; absent on the last */
+        Link: string;
+        /** @description how many there are on all pages */
+        "X-Total-Count": number;
+        /** @description ask again after so many seconds */
+        "Retry-After": number;
+        /** @description Bearer */
+        "WWW-Authenticate": string;
+    };
     pathItems: never;
 }
 export type $defs = Record<string, never>;
 export interface operations {
-    healthz_api_v1_healthz_get: {
+    get_health: {
         parameters: {
             query?: never;
             header?: never;
@@ -1617,7 +1945,7 @@ export interface operations {
                     "application/json": components["schemas"]["Health"];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -1626,16 +1954,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -1644,7 +1973,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -1653,7 +1982,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -1662,9 +1991,10 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
             503: {
                 headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
@@ -1673,7 +2003,7 @@ export interface operations {
             };
         };
     };
-    settings_api_v1_settings_get: {
+    get_settings: {
         parameters: {
             query?: never;
             header?: never;
@@ -1691,7 +2021,7 @@ export interface operations {
                     "application/json": components["schemas"]["SettingsDocument"];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -1700,16 +2030,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -1718,7 +2049,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -1727,7 +2058,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -1738,7 +2069,7 @@ export interface operations {
             };
         };
     };
-    list_robots_api_v1_robots_get: {
+    list_robots: {
         parameters: {
             query?: {
                 /** @description at most this many */
@@ -1755,13 +2086,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    ETag: components["headers"]["ETag"];
+                    "X-Total-Count": components["headers"]["X-Total-Count"];
+                    Link: components["headers"]["Link"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["Robot"][];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -1770,16 +2104,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -1788,7 +2123,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -1797,7 +2132,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -1808,7 +2143,7 @@ export interface operations {
             };
         };
     };
-    get_robot_api_v1_robots__name__get: {
+    get_robot: {
         parameters: {
             query?: never;
             header?: never;
@@ -1822,13 +2157,14 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    ETag: components["headers"]["ETag"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["Robot"];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -1837,16 +2173,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -1855,7 +2192,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Not Found */
+            /** @description Not Found: `not-found` */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -1864,7 +2201,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -1873,7 +2210,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -1884,7 +2221,7 @@ export interface operations {
             };
         };
     };
-    export_robot_api_v1_robots__name__export_get: {
+    export_robot: {
         parameters: {
             query?: {
                 format?: "urdf" | "mjcf";
@@ -1897,16 +2234,19 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description The file */
+            /** @description The file; its Content-Type is one of those listed, and it is bytes in any case */
             200: {
                 headers: {
+                    ETag: components["headers"]["ETag"];
+                    "Content-Disposition": components["headers"]["Content-Disposition"];
                     [name: string]: unknown;
                 };
                 content: {
+                    "application/octet-stream": string;
                     "application/xml": string;
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -1915,16 +2255,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -1933,7 +2274,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Not Found */
+            /** @description Not Found: `not-found` */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -1942,7 +2283,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -1951,7 +2292,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -1960,18 +2301,20 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Too Many Requests */
+            /** @description Too Many Requests: `attempts`, `connections`, `queue-full`, `sessions` */
             429: {
                 headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
             503: {
                 headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
@@ -1980,7 +2323,7 @@ export interface operations {
             };
         };
     };
-    list_terrains_api_v1_terrains_get: {
+    list_terrains: {
         parameters: {
             query?: {
                 /** @description at most this many */
@@ -1997,13 +2340,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    ETag: components["headers"]["ETag"];
+                    "X-Total-Count": components["headers"]["X-Total-Count"];
+                    Link: components["headers"]["Link"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["TerrainDocument"][];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -2012,16 +2358,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -2030,7 +2377,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -2039,7 +2386,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -2050,7 +2397,7 @@ export interface operations {
             };
         };
     };
-    generate_api_v1_terrains_generate_post: {
+    generate_terrain: {
         parameters: {
             query?: never;
             header?: never;
@@ -2072,7 +2419,7 @@ export interface operations {
                     "application/json": components["schemas"]["Terrain"];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -2081,16 +2428,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -2099,7 +2447,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -2108,7 +2456,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unsupported Media Type */
+            /** @description Unsupported Media Type: `media-type` */
             415: {
                 headers: {
                     [name: string]: unknown;
@@ -2117,7 +2465,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -2128,7 +2476,7 @@ export interface operations {
             };
         };
     };
-    import_terrain_api_v1_terrains_import_post: {
+    import_terrain: {
         parameters: {
             query?: never;
             header?: never;
@@ -2137,7 +2485,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "multipart/form-data": components["schemas"]["Body_import_terrain_api_v1_terrains_import_post"];
+                "multipart/form-data": components["schemas"]["Body_import_terrain"];
             };
         };
         responses: {
@@ -2150,7 +2498,7 @@ export interface operations {
                     "application/json": components["schemas"]["Terrain"];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -2159,16 +2507,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -2177,7 +2526,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -2186,7 +2535,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -2195,9 +2544,10 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
             503: {
                 headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
@@ -2206,7 +2556,7 @@ export interface operations {
             };
         };
     };
-    get_terrain_api_v1_terrains__name__get: {
+    get_terrain: {
         parameters: {
             query?: never;
             header?: never;
@@ -2220,13 +2570,14 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    ETag: components["headers"]["ETag"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["TerrainDocument"];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -2235,16 +2586,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -2253,7 +2605,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Not Found */
+            /** @description Not Found: `not-found` */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -2262,7 +2614,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -2271,7 +2623,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -2282,7 +2634,7 @@ export interface operations {
             };
         };
     };
-    put_terrain_api_v1_terrains__name__put: {
+    save_terrain: {
         parameters: {
             query?: never;
             header?: never;
@@ -2300,6 +2652,7 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    ETag: components["headers"]["ETag"];
                     [name: string]: unknown;
                 };
                 content: {
@@ -2309,13 +2662,15 @@ export interface operations {
             /** @description Created */
             201: {
                 headers: {
+                    ETag: components["headers"]["ETag"];
+                    Location: components["headers"]["Location"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["TerrainDocument"];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -2324,16 +2679,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -2342,7 +2698,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Conflict */
+            /** @description Conflict: `cancelled`, `full`, `idempotency` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -2351,7 +2707,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -2360,7 +2716,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unsupported Media Type */
+            /** @description Unsupported Media Type: `media-type` */
             415: {
                 headers: {
                     [name: string]: unknown;
@@ -2369,7 +2725,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -2380,7 +2736,7 @@ export interface operations {
             };
         };
     };
-    delete_terrain_api_v1_terrains__name__delete: {
+    delete_terrain: {
         parameters: {
             query?: never;
             header?: never;
@@ -2398,7 +2754,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -2407,16 +2763,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -2425,7 +2782,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Not Found */
+            /** @description Not Found: `not-found` */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -2434,7 +2791,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -2443,7 +2800,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -2454,7 +2811,7 @@ export interface operations {
             };
         };
     };
-    list_plans_api_v1_plans_get: {
+    list_plans: {
         parameters: {
             query?: {
                 /** @description at most this many */
@@ -2471,13 +2828,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    ETag: components["headers"]["ETag"];
+                    "X-Total-Count": components["headers"]["X-Total-Count"];
+                    Link: components["headers"]["Link"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["StoredEntry"][];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -2486,16 +2846,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -2504,7 +2865,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -2513,7 +2874,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -2524,7 +2885,7 @@ export interface operations {
             };
         };
     };
-    post_plan_api_v1_plans_post: {
+    create_plan: {
         parameters: {
             query?: never;
             header?: {
@@ -2545,13 +2906,15 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    ETag: components["headers"]["ETag"];
+                    "Content-Location": components["headers"]["Content-Location"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["Plan"];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -2560,16 +2923,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -2578,7 +2942,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Conflict */
+            /** @description Conflict: `cancelled`, `full`, `idempotency` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -2587,7 +2951,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -2596,7 +2960,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unsupported Media Type */
+            /** @description Unsupported Media Type: `media-type` */
             415: {
                 headers: {
                     [name: string]: unknown;
@@ -2605,7 +2969,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -2614,18 +2978,20 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Too Many Requests */
+            /** @description Too Many Requests: `attempts`, `connections`, `queue-full`, `sessions` */
             429: {
                 headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
             503: {
                 headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
@@ -2634,7 +3000,7 @@ export interface operations {
             };
         };
     };
-    get_plan_api_v1_plans__plan_id__get: {
+    get_plan: {
         parameters: {
             query?: never;
             header?: never;
@@ -2648,13 +3014,14 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    ETag: components["headers"]["ETag"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["Plan"];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -2663,16 +3030,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -2681,7 +3049,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Not Found */
+            /** @description Not Found: `not-found` */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -2690,7 +3058,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -2699,7 +3067,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -2710,81 +3078,7 @@ export interface operations {
             };
         };
     };
-    delete_plan_api_v1_plans__plan_id__delete: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                plan_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            /** @description Bad Request */
-            400: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-            /** @description Unauthorized */
-            401: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-            /** @description Forbidden */
-            403: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-            /** @description Not Found */
-            404: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-            /** @description Request Entity Too Large */
-            413: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-            /** @description Unprocessable Entity */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-        };
-    };
-    export_plan_api_v1_plans__plan_id__export_get: {
+    export_plan: {
         parameters: {
             query?: {
                 format?: "json" | "csv" | "npz" | "mcap" | "mjcf" | "urdf";
@@ -2799,12 +3093,15 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description The file */
+            /** @description The file; its Content-Type is one of those listed, and it is bytes in any case */
             200: {
                 headers: {
+                    ETag: components["headers"]["ETag"];
+                    "Content-Disposition": components["headers"]["Content-Disposition"];
                     [name: string]: unknown;
                 };
                 content: {
+                    "application/octet-stream": string;
                     "application/json": unknown;
                     "text/csv": string;
                     "application/x-npz": string;
@@ -2812,7 +3109,7 @@ export interface operations {
                     "application/xml": string;
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -2821,16 +3118,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -2839,7 +3137,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Not Found */
+            /** @description Not Found: `not-found` */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -2848,7 +3146,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -2857,7 +3155,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -2866,18 +3164,20 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Too Many Requests */
+            /** @description Too Many Requests: `attempts`, `connections`, `queue-full`, `sessions` */
             429: {
                 headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
             503: {
                 headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
@@ -2886,7 +3186,7 @@ export interface operations {
             };
         };
     };
-    list_rollouts_api_v1_rollouts_get: {
+    list_rollouts: {
         parameters: {
             query?: {
                 /** @description at most this many */
@@ -2903,13 +3203,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    ETag: components["headers"]["ETag"];
+                    "X-Total-Count": components["headers"]["X-Total-Count"];
+                    Link: components["headers"]["Link"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["StoredEntry"][];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -2918,16 +3221,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -2936,7 +3240,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -2945,7 +3249,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -2956,7 +3260,7 @@ export interface operations {
             };
         };
     };
-    post_rollout_api_v1_rollouts_post: {
+    create_rollout: {
         parameters: {
             query?: never;
             header?: {
@@ -2977,13 +3281,15 @@ export interface operations {
             /** @description Successful Response */
             202: {
                 headers: {
+                    Location: components["headers"]["Location"];
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["JobDocument"];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -2992,16 +3298,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -3010,7 +3317,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Not Found */
+            /** @description Not Found: `not-found` */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -3019,7 +3326,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Conflict */
+            /** @description Conflict: `cancelled`, `full`, `idempotency` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -3028,7 +3335,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -3037,7 +3344,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unsupported Media Type */
+            /** @description Unsupported Media Type: `media-type` */
             415: {
                 headers: {
                     [name: string]: unknown;
@@ -3046,7 +3353,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -3055,18 +3362,20 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Too Many Requests */
+            /** @description Too Many Requests: `attempts`, `connections`, `queue-full`, `sessions` */
             429: {
                 headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
             503: {
                 headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
@@ -3075,7 +3384,7 @@ export interface operations {
             };
         };
     };
-    get_rollout_api_v1_rollouts__rollout_id__get: {
+    get_rollout: {
         parameters: {
             query?: never;
             header?: never;
@@ -3089,15 +3398,14 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    ETag: components["headers"]["ETag"];
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": {
-                        [key: string]: unknown;
-                    };
+                    "application/json": components["schemas"]["Rollout"];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -3106,16 +3414,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -3124,7 +3433,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Not Found */
+            /** @description Not Found: `not-found` */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -3133,7 +3442,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -3142,7 +3451,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -3153,81 +3462,7 @@ export interface operations {
             };
         };
     };
-    delete_rollout_api_v1_rollouts__rollout_id__delete: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                rollout_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            /** @description Bad Request */
-            400: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-            /** @description Unauthorized */
-            401: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-            /** @description Forbidden */
-            403: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-            /** @description Not Found */
-            404: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-            /** @description Request Entity Too Large */
-            413: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-            /** @description Unprocessable Entity */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-        };
-    };
-    export_rollout_api_v1_rollouts__rollout_id__export_get: {
+    export_rollout: {
         parameters: {
             query?: {
                 format?: "html" | "json" | "csv" | "npz" | "mcap";
@@ -3240,12 +3475,15 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description The file */
+            /** @description The file; its Content-Type is one of those listed, and it is bytes in any case */
             200: {
                 headers: {
+                    ETag: components["headers"]["ETag"];
+                    "Content-Disposition": components["headers"]["Content-Disposition"];
                     [name: string]: unknown;
                 };
                 content: {
+                    "application/octet-stream": string;
                     "text/html": string;
                     "application/json": unknown;
                     "text/csv": string;
@@ -3253,7 +3491,7 @@ export interface operations {
                     "application/x-mcap": string;
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -3262,16 +3500,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -3280,7 +3519,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Not Found */
+            /** @description Not Found: `not-found` */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -3289,7 +3528,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -3298,7 +3537,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -3307,18 +3546,20 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Too Many Requests */
+            /** @description Too Many Requests: `attempts`, `connections`, `queue-full`, `sessions` */
             429: {
                 headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
             503: {
                 headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
@@ -3327,81 +3568,7 @@ export interface operations {
             };
         };
     };
-    list_jobs_api_v1_jobs_get: {
-        parameters: {
-            query?: {
-                /** @description only in these states */
-                state?: ("queued" | "running" | "done" | "failed" | "cancelled")[];
-                /** @description only of these kinds */
-                kind?: "rollout"[];
-                /** @description at most this many */
-                limit?: number;
-                /** @description after this many */
-                offset?: number;
-            };
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["JobDocument"][];
-                };
-            };
-            /** @description Bad Request */
-            400: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-            /** @description Unauthorized */
-            401: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-            /** @description Forbidden */
-            403: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-            /** @description Request Entity Too Large */
-            413: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-            /** @description Unprocessable Entity */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemDocument"];
-                };
-            };
-        };
-    };
-    get_job_api_v1_jobs__job_id__get: {
+    get_job: {
         parameters: {
             query?: never;
             header?: never;
@@ -3421,7 +3588,7 @@ export interface operations {
                     "application/json": components["schemas"]["JobDocument"];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -3430,16 +3597,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -3448,7 +3616,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Not Found */
+            /** @description Not Found: `not-found` */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -3457,7 +3625,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -3466,7 +3634,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -3477,7 +3645,7 @@ export interface operations {
             };
         };
     };
-    cancel_job_api_v1_jobs__job_id__delete: {
+    cancel_job: {
         parameters: {
             query?: never;
             header?: never;
@@ -3497,7 +3665,7 @@ export interface operations {
                     "application/json": components["schemas"]["JobDocument"];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -3506,16 +3674,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -3524,7 +3693,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Not Found */
+            /** @description Not Found: `not-found` */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -3533,7 +3702,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -3542,7 +3711,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -3553,7 +3722,7 @@ export interface operations {
             };
         };
     };
-    job_events_api_v1_jobs__job_id__events_get: {
+    follow_job: {
         parameters: {
             query?: {
                 /** @description events named `series` as well */
@@ -3575,8 +3744,7 @@ export interface operations {
              *     that are new since the last one: `{"from": number of the first, "time": [n], "pitch": [n],
              *     "pitch_desired": [n], "progress": [n], "q": [n][12], "q_desired": [n][12],
              *     "base_position": [n][3], "base_quaternion": [n][4]}`, at 25 samples a simulated second, rounded to
-             *     1e-5. A stream that is opened late or again begins with all samples so far. A rollout whose worker
-             *     died begins anew: its job is queued again, and its series from sample 0.
+             *     1e-5. A stream that is opened late or again begins with all samples so far.
              */
             200: {
                 headers: {
@@ -3593,7 +3761,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -3602,16 +3770,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -3620,7 +3789,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Not Found */
+            /** @description Not Found: `not-found` */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -3629,7 +3798,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -3638,7 +3807,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -3649,7 +3818,7 @@ export interface operations {
             };
         };
     };
-    post_session_api_v1_sessions_post: {
+    create_session: {
         parameters: {
             query?: never;
             header?: {
@@ -3670,7 +3839,7 @@ export interface operations {
                     "application/json": components["schemas"]["SessionDocument"];
                 };
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -3679,16 +3848,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -3697,7 +3867,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Conflict */
+            /** @description Conflict: `cancelled`, `full`, `idempotency` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -3706,7 +3876,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -3715,7 +3885,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -3724,18 +3894,20 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Too Many Requests */
+            /** @description Too Many Requests: `attempts`, `connections`, `queue-full`, `sessions` */
             429: {
                 headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
             503: {
                 headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
@@ -3744,7 +3916,7 @@ export interface operations {
             };
         };
     };
-    put_scene_api_v1_sessions__session_id__scene_put: {
+    set_scene: {
         parameters: {
             query?: never;
             header?: never;
@@ -3766,7 +3938,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -3775,16 +3947,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -3793,7 +3966,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Not Found */
+            /** @description Not Found: `not-found` */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -3802,7 +3975,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -3811,7 +3984,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unsupported Media Type */
+            /** @description Unsupported Media Type: `media-type` */
             415: {
                 headers: {
                     [name: string]: unknown;
@@ -3820,7 +3993,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -3831,7 +4004,7 @@ export interface operations {
             };
         };
     };
-    put_playback_api_v1_sessions__session_id__playback_put: {
+    set_playback: {
         parameters: {
             query?: never;
             header?: never;
@@ -3853,7 +4026,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -3862,16 +4035,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -3880,7 +4054,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Not Found */
+            /** @description Not Found: `not-found` */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -3889,7 +4063,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -3898,7 +4072,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unsupported Media Type */
+            /** @description Unsupported Media Type: `media-type` */
             415: {
                 headers: {
                     [name: string]: unknown;
@@ -3907,7 +4081,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -3918,7 +4092,7 @@ export interface operations {
             };
         };
     };
-    delete_session_api_v1_sessions__session_id__delete: {
+    delete_session: {
         parameters: {
             query?: never;
             header?: never;
@@ -3936,7 +4110,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Bad Request */
+            /** @description Bad Request: `bad-json`, `host` */
             400: {
                 headers: {
                     [name: string]: unknown;
@@ -3945,16 +4119,17 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unauthorized */
+            /** @description Unauthorized: `token` */
             401: {
                 headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
                     [name: string]: unknown;
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Forbidden */
+            /** @description Forbidden: `origin`, `read-only` */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -3963,7 +4138,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Not Found */
+            /** @description Not Found: `not-found` */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -3972,7 +4147,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Request Entity Too Large */
+            /** @description Request Entity Too Large: `too-large` */
             413: {
                 headers: {
                     [name: string]: unknown;
@@ -3981,7 +4156,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Unprocessable Entity */
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
             422: {
                 headers: {
                     [name: string]: unknown;

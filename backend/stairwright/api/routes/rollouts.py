@@ -18,6 +18,7 @@ from stairwright.errors import InputError
 from stairwright.export.table import ROLLOUT_FORMATS
 from stairwright.jobs.questions import PlanQuestion, RolloutQuestion
 from stairwright.planning.plan import Plan
+from stairwright.simulation.result import Rollout
 
 from . import stored
 from .jobs import job_document
@@ -110,7 +111,7 @@ async def list_rollouts(
     return await stored.listing(request, services, "rollout", limit, offset)
 
 
-@router.get("/{rollout_id}", response_model=dict[str, Any], responses=describe(404))
+@router.get("/{rollout_id}", response_model=Rollout, responses=describe(404))
 async def get_rollout(request: Request, services: Service, rollout_id: RolloutId) -> Response:
     """One rollout with all its series; may be several MB."""
     return await stored.document(request, services, "rollout", rollout_id)
