@@ -208,11 +208,13 @@ def test_accepted_work_is_done_after_a_server_was_killed(start_server: Start) ->
 
 @pytest.mark.slow
 def test_a_second_server_on_the_same_folder_is_refused(start_server: Start) -> None:
-    with start_server() as server:
-        with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api:
-            job = long_rollout(api, 1)
-            wait_for(api, job, "running")
-            with pytest.raises(pytest.fail.Exception, match="uses the data folder"), start_server():
-                pass
-            assert api.get(f"/jobs/{job}").json()["state"] == "running"
-            api.delete(f"/jobs/{job}")
+    with (
+        start_server() as server,
+        httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api,
+    ):
+        job = long_rollout(api, 1)
+        wait_for(api, job, "running")
+        with pytest.raises(pytest.fail.Exception, match="uses the data folder"), start_server():
+            pass
+        assert api.get(f"/jobs/{job}").json()["state"] == "running"
+        api.delete(f"/jobs/{job}")

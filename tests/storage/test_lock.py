@@ -14,7 +14,7 @@ from stairwright.storage.lock import FolderLock
 
 def test_a_second_holder_is_told_who_has_it(tmp_path: Path) -> None:
     first = FolderLock(tmp_path)
-    with pytest.raises(InputError, match="another server \\(process [0-9]+\\)") as refused:
+    with pytest.raises(InputError, match=r"another server \(process [0-9]+\)") as refused:
         FolderLock(tmp_path, patience=0.1)
     assert "STAIRWRIGHT_DATA" in str(refused.value)
     first.release()

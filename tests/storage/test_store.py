@@ -115,9 +115,7 @@ def test_a_deleted_result_goes_with_its_content(tmp_path: Path) -> None:
     store = Store(tmp_path)
     digest, size = store.artefacts.put(b"{}"), 2
     for name in ("p-1", "p-2"):
-        store.shelve(
-            "plan", name, question=name, engine="e", digest=digest, size=size, summary={}
-        )
+        store.shelve("plan", name, question=name, engine="e", digest=digest, size=size, summary={})
     assert store.delete("plan", "p-1")
     assert store.artefacts.content(digest) == b"{}"  # the other one refers to it
     assert store.delete("plan", "p-2")
