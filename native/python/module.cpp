@@ -13,4 +13,5 @@ NB_MODULE(_core, m) {
     bind_statics(m);
     bind_smoothing(m);
     bind_poses(m);
+    bind_control(m);
 }
