@@ -11,5 +11,6 @@ void bind_statics(nanobind::module_& m);
 void bind_smoothing(nanobind::module_& m);
 void bind_poses(nanobind::module_& m);
 void bind_control(nanobind::module_& m);
+void bind_rollout(nanobind::module_& m);
 
 }  // namespace stairwright::python

@@ -5,6 +5,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "stairwright/control/controller.hpp"
+#include "stairwright/control/static_forces.hpp"
 
 namespace stairwright::python {
 
@@ -50,6 +51,21 @@ auto numbers(const std::array<double, N>& values) {
     return give(std::vector<double>(values.begin(), values.end()));
 }
 
+nb::ndarray<nb::numpy, double> static_forces_along(const WheelPath& path, double weight, double friction, const Points& places,
+                                                   const Points& com) {
+    if (places.shape(0) != com.shape(0)) throw std::invalid_argument("places and com must have as many rows");
+    std::vector<double> out;
+    {
+        nb::gil_scoped_release release;
+        for (std::size_t k = 0; k < places.shape(0); ++k) {
+            const StaticForces f = static_forces(path, weight, friction, {places(k, 0), places(k, 1)}, {com(k, 0), com(k, 1)});
+            out.insert(out.end(), {f.force[0].x, f.force[0].z, f.force[1].x, f.force[1].z, f.friction_share,
+                                   static_cast<double>(f.lean[0]), static_cast<double>(f.lean[1])});
+        }
+    }
+    return give(std::move(out), {places.shape(0), 7});
+}
+
 void bind_gains(nb::module_& m) {
     nb::class_<Gains>(m, "Gains", "Gains and weights of the controller, see native/include/stairwright/control.")
         .def(nb::init<>())
@@ -80,6 +96,10 @@ void bind_control(nb::module_& m) {
     m.def("balance_forces", &balance_forces, nb::arg("H"), nb::arg("g"), nb::arg("friction"), nb::arg("load_limit"),
           nb::arg("start"), nb::rv_policy::automatic,
           "Forces (8,) of the balance QP (eqs 11-12) [N], per wheel tangential and normal; `start` is a guess.");
+    m.def("static_forces", &static_forces_along, nb::arg("path"), nb::arg("weight"), nb::arg("friction"), nb::arg("places"),
+          nb::arg("com"), nb::rv_policy::automatic,
+          "Rows (n, 7): smallest forces of front and rear pair (x, z) at rest [N], share of the friction that they keep\n"
+          "to, and what front and rear wheels lean on in a corner; for places and mass centres (n, 2) [m].");
     bind_gains(m);
     nb::class_<Controller>(m, "Controller", "The balance controller, form contact; keeps forces and places.")
         .def(nb::init<Robot, WheelPath, double, const Gains&>(), nb::arg("robot"), nb::arg("path"), nb::arg("friction"), nb::arg("gains"))

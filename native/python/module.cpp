@@ -14,4 +14,5 @@ NB_MODULE(_core, m) {
     bind_smoothing(m);
     bind_poses(m);
     bind_control(m);
+    bind_rollout(m);
 }
