@@ -1,4 +1,4 @@
-"""Equations of the controller, and the compiled form against the plain one."""
+"""Equations of the controller; tests/native compares its native form with the plain one."""
 
 from __future__ import annotations
 
@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 
 from stairwright import load_robot, load_terrain, robots
-from stairwright.control import balance, compiled, rigid_body, rolling, tracking
+from stairwright.control import balance, rigid_body, rolling, tracking
 from stairwright.control.contact import face_normal
-from stairwright.control.controller import Controller
 from stairwright.control.measurement import measure
-from stairwright.control.setpoint import WIDTH, Setpoint
 from stairwright.control.settings import ControllerSettings, parse_settings
 from stairwright.errors import InputError
 from stairwright.robot import kinematics
@@ -155,52 +153,6 @@ def test_planned_face_at_a_concave_corner() -> None:
     np.testing.assert_allclose(normal(corner + 0.005, corner - 0.01), floor, atol=1e-9)
     # Far behind its plan, the wheel counts where it is.
     np.testing.assert_allclose(normal(corner - 0.2, corner + 0.2), floor, atol=1e-9)
-
-
-@pytest.mark.parametrize("name", robots())
-def test_compiled_equals_plain(name: str) -> None:
-    robot = load_robot(name)
-    path = wheel_path(load_terrain("single-stair-036"), robot.wheel.radius)
-    settings = ControllerSettings(solver="quadprog", beta=0.01)
-    record = compiled.parameters(robot, 0.6, settings)
-    random = np.random.default_rng(7)
-    for _ in range(100):
-        qpos, qvel = random_state(robot, random)
-        row = np.concatenate(
-            [
-                random.uniform(0.5, 3.0, 2),
-                random.normal(0, 1, 5),
-                qpos[[0, 2]] + random.normal(0, 0.05, 2),
-                qpos[[0, 2]] + random.normal(0, 0.05, 2),
-                random.normal(0, 0.2, 11),
-                [3.0, 29.0, -2.0, 27.0],
-                random.normal(0, 0.5, 3),
-                random.uniform(0.5, 1.0, 1),
-                [0.4],
-                random.integers(0, 3, 2),
-            ]
-        )
-        assert len(row) == WIDTH
-        plain = Controller(robot, path, 0.6, settings)
-        places, forces = np.full(4, np.nan), plain.forces.copy()
-        learnt, torques = np.zeros(1), np.empty(12)
-        for _ in range(3):  # memory of forces and places, too
-            expected = plain.step(qpos, qvel, Setpoint.from_row(row, 0.2))
-            compiled.contact_control(
-                record,
-                path.pieces,
-                path.corners,
-                qpos,
-                qvel,
-                row,
-                0.2,
-                places,
-                forces,
-                learnt,
-                torques,
-            )
-            np.testing.assert_allclose(places, plain.places, atol=1e-9)
-            np.testing.assert_allclose(torques, expected, atol=1e-5)
 
 
 def test_settings_say_what_is_wrong() -> None:

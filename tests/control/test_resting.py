@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from stairwright.control.resting import resting_forces
+from stairwright import _core
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
@@ -15,9 +15,7 @@ WEIGHT, RADIUS = 116.0, 0.05
 
 
 def resting(path: WheelPath, places, com, friction: float = 0.6):
-    out = np.zeros((len(places), 7))
-    ground = (path.pieces, path.corners, path.radius)
-    resting_forces(*ground, WEIGHT, friction, np.array(places), np.array(com), out)
+    out = _core.static_forces(path.native, WEIGHT, friction, np.array(places), np.array(com))
     return out[:, :4].reshape(-1, 2, 2)
 
 

@@ -11,12 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stairwright as sw
+from stairwright import _core
 from stairwright.control.setpoint import PROGRESS, RATES, SURGES, WIDTH
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
 from stairwright.planning.interpolation import reference
 from stairwright.robot.mujoco_model import build_spec
-from stairwright.simulation.actuators import available
 from stairwright.simulation.disturbance import (
     Disturbance,
     Sensors,
@@ -24,7 +24,7 @@ from stairwright.simulation.disturbance import (
     real_terrain,
 )
 from stairwright.simulation.drive import drive
-from stairwright.simulation.governor import advance, track
+from stairwright.simulation.governor import follower, track
 from stairwright.simulation.outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
 from stairwright.simulation.trials import (
     Ranges,
@@ -42,7 +42,7 @@ WEIGHT = 11.84 * 9.81
 
 @given(st.floats(-100, 100), st.floats(-60, 60))
 def test_motor_line(torque: float, speed: float) -> None:
-    got = available(torque, speed, 33.5, 21.0)
+    got = _core.available_torque(_core.Motor(33.5, 21.0), torque, speed)
     assert abs(got) <= min(abs(torque), 33.5) + 1e-12
     assert got * torque >= 0.0
     if torque * speed > 0.0:
@@ -59,30 +59,29 @@ def track_of(plan, **settings: float):
 
 def run_governor(lag: float, steps: int = 3000):
     line = track_of(sw.plan(FLAT, "a1_wheeled", method="nominal"), speed=0.1)
-    clock, target = np.array([line.start, 0.0, 0.0]), np.empty(WIDTH)
+    plan, target = follower(line, 0.012), np.empty(WIDTH)
     rates = []
     for _ in range(steps):
-        s = np.interp(clock[0], line.start + line.step * np.arange(len(line.rows)), line.rows[:, 0])
+        s = np.interp(plan.way, line.start + line.step * np.arange(len(line.rows)), line.rows[:, 0])
         behind = s - line.rows[0, 0] - lag
         places = np.repeat(line.rows[0, :2] + behind, 2)
-        course = (line.start, line.step, line.rows, line.speeds, 0.012)
-        advance(*course, places, True, 0.002, clock, target)
-        rates.append(clock[1])
-    return line, clock, target, np.array(rates)
+        target = plan.advance(places, True, 0.002)
+        rates.append(plan.rate)
+    return line, plan, target, np.array(rates)
 
 
 def test_governor_keeps_time_with_a_robot_that_follows() -> None:
-    line, clock, target, rates = run_governor(0.0)
+    line, timed, target, rates = run_governor(0.0)
     assert rates.max() == pytest.approx(0.1, rel=1e-6)
     assert np.abs(np.diff(rates)).max() <= 1.0 * 0.002 + 1e-9
-    assert target[RATES] == pytest.approx(clock[1], rel=1e-6)
-    assert clock[0] < line.end
+    assert target[RATES] == pytest.approx(timed.rate, rel=1e-6)
+    assert timed.way < line.end
 
 
 def test_governor_waits_for_a_held_robot_and_retreats_with_a_sliding_one() -> None:
-    _, clock, _, _ = run_governor(0.012)
-    assert clock[1] == pytest.approx(0.0, abs=1e-6)
-    _, clock, _, rates = run_governor(0.02)
+    _, held, _, _ = run_governor(0.012)
+    assert held.rate == pytest.approx(0.0, abs=1e-6)
+    _, _, _, rates = run_governor(0.02)
     assert rates.min() <= 0.0
     _, _, _, rates = run_governor(-0.05)
     assert rates.max() <= 0.15 + 1e-6  # it hurries, but does not jump
@@ -119,12 +118,10 @@ def test_a_trunk_that_swings_above_standing_wheels_takes_its_time() -> None:
 def test_accelerations_belong_to_the_speeds() -> None:
     """What is fed forward is the time derivative of the CoM velocity that is asked for."""
     line = track_of(sw.plan("curb-015", "a1_wheeled", method="critical"))
-    clock, target, dt = np.array([line.start, 0.0, 0.0]), np.empty(WIDTH), 0.002
+    plan, dt = follower(line, 0.01), 0.002
     places, rows = np.full(4, np.nan), []
-    while clock[0] < line.end - 1e-9:
-        course = (line.start, line.step, line.rows, line.speeds, 0.01, places)
-        advance(*course, True, dt, clock, target)
-        rows.append(target.copy())
+    while plan.way < line.end - 1e-9:
+        rows.append(plan.advance(places, True, dt))
     velocity, surge = np.array(rows)[:, RATES + 7], np.array(rows)[:, SURGES + 1]
     window = 25  # control steps: the table's rows are coarser than one
     change = (velocity[window:] - velocity[:-window]) / (window * dt)

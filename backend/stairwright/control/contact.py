@@ -18,7 +18,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.compiled import leaf
 from stairwright.terrain.wheel_path import curve_at, project
 
 Floats = NDArray[np.float64]
@@ -32,7 +31,6 @@ WIDEST = math.radians(80.0)  # half of the widest cone
 _BESIDE = 1e-6  # m
 
 
-@leaf
 def locate(pieces: Floats, radius: float, x: float, z: float, near: float) -> float:
     """Arc length of the wheel centre (x, z), near where it was; anywhere if `near` is NaN."""
     if math.isnan(near):
@@ -40,7 +38,6 @@ def locate(pieces: Floats, radius: float, x: float, z: float, near: float) -> fl
     return project(pieces, radius, x, z, max(0.0, near - WINDOW), near + WINDOW)
 
 
-@leaf
 def face_normal(
     pieces: Floats, radius: float, corners: Floats, measured: float, planned: float
 ) -> tuple[float, float]:
@@ -55,7 +52,6 @@ def face_normal(
     return nx, nz
 
 
-@leaf
 def support(
     pieces: Floats,
     radius: float,
@@ -92,7 +88,6 @@ def support(
     out[4], out[5], out[6], out[7] = nx, nz, nx, nz
 
 
-@leaf
 def wheel_traction(held: Floats, fx: float, fz: float) -> float:
     """Tangential force [N] that a wheel must drive when the ground's force on it is (fx, fz).
 

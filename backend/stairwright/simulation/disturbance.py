@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
@@ -111,7 +110,6 @@ class Sensors:
         return out
 
 
-@nb.njit(cache=True)
 def perceive(
     qpos: Floats,
     qvel: Floats,
@@ -128,8 +126,7 @@ def perceive(
     new[:19], new[19:] = qpos, qvel
     if len(draws):
         draw = draws[k]
-        for i in range(37):
-            new[i] += draw[i]
+        new += draw[:37]
         w, x, y, z = qpos[3], qpos[4], qpos[5], qpos[6]
         a, b, c = draw[37], draw[38], draw[39]
         new[3], new[4] = w - x * a - y * b - z * c, x + w * a + y * c - z * b

@@ -14,7 +14,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.control.compiled import parameters
+from stairwright import _core
 from stairwright.control.controller import LEG_PAIR, Controller
 from stairwright.control.measurement import measure
 from stairwright.control.rigid_body import GRAVITY
@@ -25,8 +25,6 @@ from stairwright.robot.description import Robot
 from stairwright.robot.mujoco_model import TIMESTEP, build_spec
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
-
-from .actuators import limit_torques
 
 Floats = NDArray[np.float64]
 Command = Callable[[float], tuple[float, float]]
@@ -81,7 +79,6 @@ def drive(
     data.qpos[2] = robot.nominal_height
     data.qpos[7:] = np.insert(standing.reshape(2, 2)[LEG_PAIR], 2, 0.0, axis=1).ravel()
     controller = Controller(robot, wheel_path(ground, robot.wheel.radius), friction, settings)
-    record = parameters(robot, friction, settings)
     base = _standing(robot, controller, standing)
     dt = CONTROL_STEPS * TIMESTEP
     speed = turn = added = pushed = 0.0
@@ -99,7 +96,7 @@ def drive(
         # The damping of eq 16 acts on the true error: what the integral adds must not feed it.
         share = added / (1.0 + settings.yaw_damping)
         torques = controller.step(qpos, qvel, _moving(base, speed, pushed, turn + share))
-        limit_torques(record, data.qvel[6:], torques, data.ctrl)
+        data.ctrl[:] = _core.limit_torques(robot.native, data.qvel[6:], torques)
         rows.append(
             [
                 data.time,

@@ -17,8 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.compiled import leaf
-from stairwright.control.resting import resting_forces
+from stairwright import _core
 from stairwright.control.rigid_body import GRAVITY
 from stairwright.control.setpoint import (
     COM,
@@ -49,12 +48,11 @@ LIMIT_REACH = 0.03  # m; a speed limit holds this far before and after its place
 ACCELERATION = 0.4  # m/s^2, along the plan
 MIN_SPEED = 0.01  # m/s
 WHEEL_SPEED_SHARE = 0.6  # of the no-load speed: the rest leaves torque
-HURRY = 1.5  # how much faster than planned it may follow a robot that is ahead
 
 
 @dataclass(frozen=True)
 class Track:
-    """A reference on an even grid of way, ready for compiled code.
+    """A reference on an even grid of way, ready for the native core.
 
     Attributes:
         start: Way of the first row, which is its progress [m].
@@ -128,10 +126,8 @@ def track(
         low, high = np.maximum(grid - RATE_REACH, first), np.minimum(grid + RATE_REACH, last)
         rows[:, k] = (np.interp(high, grid, rate) - np.interp(low, grid, rate)) / (high - low)
     places, com = np.ascontiguousarray(rows[:, WHEELS]), np.ascontiguousarray(rows[:, COM])
-    ground = (path.pieces, path.corners, path.radius)
     weight = robot.mass * GRAVITY
-    resting = np.empty((count, 7))
-    resting_forces(*ground, weight, friction, places, com, resting)
+    resting = _core.static_forces(path.native, weight, friction, places, com)
     rows[:, FORCES], rows[:, SHARE], rows[:, LEANS] = resting[:, :4], resting[:, 4], resting[:, 5:]
     rows[:, PROGRESS] = np.interp(grid, way, reference.progress)
     speeds = _speeds(np.interp(grid, way, reference.time), grid, rows, robot, settings)
@@ -176,71 +172,13 @@ def _speeds(
     return bounded
 
 
+def follower(line: Track, leash: float) -> _core.PlanFollower:
+    """What advances along `line`, at most `leash` [m] ahead of the wheels."""
+    return _core.PlanFollower(line.start, line.step, line.rows, line.speeds, maximum_lead=leash)
+
+
 def cruise(line: Track, way: float) -> Floats:
     """(2,) speeds of the wheel pairs at `way` when nothing holds the plan back [m/s]."""
     k = min(max(int((way - line.start) / line.step), 0), len(line.rows) - 1)
     speeds: Floats = line.speeds[k] * line.rows[k, RATES : RATES + 2]
     return speeds
-
-
-@leaf
-def advance(
-    start: float,
-    step: float,
-    rows: Floats,
-    speeds: Floats,
-    leash: float,
-    places: Floats,
-    moving: bool,
-    dt: float,
-    clock: Floats,
-    target: Floats,
-) -> None:
-    """Advance the plan by one control step and write the set point into `target` (33,).
-
-    `start`, `step`, `rows` and `speeds` are of the `Track`; `leash` is how far the plan may run
-    ahead [m]; `places` (4,) are where the wheels are, NaN before the first measurement; `moving`
-    tells whether the plan may advance yet; `clock` (3,) holds the way [m], its rate [m/s] and the
-    wheels' lag [m], and is updated in place.
-    """
-    last = len(rows) - 1
-    spot = min(max((clock[0] - start) / step, 0.0), float(last))
-    k = min(int(spot), last - 1)
-    share = spot - k
-    df = rows[k, RATES] + share * (rows[k + 1, RATES] - rows[k, RATES])
-    dr = rows[k, RATES + 1] + share * (rows[k + 1, RATES + 1] - rows[k, RATES + 1])
-    front = rows[k, 0] + share * (rows[k + 1, 0] - rows[k, 0])
-    rear = rows[k, 1] + share * (rows[k + 1, 1] - rows[k, 1])
-    lag = 0.0
-    if not math.isnan(places[0]):
-        behind_front = front - 0.5 * (places[0] + places[1])
-        behind_rear = rear - 0.5 * (places[2] + places[3])
-        # Along the plan's own direction, so that it also holds where a wheel rolls back.
-        lag = (behind_front * df + behind_rear * dr) / max(df * df + dr * dr, 1e-6)
-        lag *= 0.5 * (abs(df) + abs(dr))  # of wheels, not of a trunk that swings
-    rate = 0.0
-    if moving:
-        allowed = speeds[k] + share * (speeds[k + 1] - speeds[k])
-        if lag >= 0.0:
-            rate = allowed * min(1.0, max(-0.5, 2.0 * (leash - lag) / leash))
-        else:
-            rate = allowed * min(HURRY, 1.0 - lag / leash * (HURRY - 1.0))
-    reach = 1.0 * dt  # m/s: the rate itself changes by at most 1 m/s^2
-    rate = min(max(rate, clock[1] - 4 * reach), clock[1] + reach)
-    way = min(max(clock[0] + rate * dt, start), start + step * last)
-    rate = (way - clock[0]) / dt
-    clock[0], clock[1], clock[2] = way, rate, lag
-    spot = (way - start) / step
-    k = min(int(spot), last - 1)
-    share = spot - k
-    for j in range(rows.shape[1]):
-        target[j] = rows[k, j] + share * (rows[k + 1, j] - rows[k, j])
-    for j in range(LEANS.start, LEANS.stop):
-        target[j] = rows[k if share < 0.5 else k + 1, j]
-    # Speeding up or slowing down as the plan wants it, not as the leash does: that is noise.
-    allowed = speeds[k] + share * (speeds[k + 1] - speeds[k])
-    gain = rate * rate / allowed * (speeds[k + 1] - speeds[k]) / step if rate > 0.0 else 0.0
-    for j in range(SURGES, SHARE):
-        target[j] = target[j] * rate * rate + target[RATES + PITCH + j - SURGES] * gain
-    for j in range(RATES, 2 * RATES):
-        target[j] *= rate

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright import _core
 from stairwright.control.setpoint import JOINTS, PITCH, PROGRESS
 from stairwright.robot.description import LEGS
 
@@ -32,13 +32,17 @@ class Recorder:
         every: Control steps between samples.
         track: What is carried out.
         radius: Of the wheels [m].
+        native: The loop that keeps the samples itself, if it is the native one.
 
     Attributes:
-        samples: (capacity, 78), the first `len(recorder)` of them taken.
+        samples: (capacity, 78), the first `len(recorder)` of them taken; not used beside `native`.
         cursor: (2,) number of samples, and control steps to let pass before the next.
     """
 
-    def __init__(self, every: int, track: Track, radius: float) -> None:
+    def __init__(
+        self, every: int, track: Track, radius: float, native: _core.Rollout | None = None
+    ) -> None:
+        self.native = native
         self.every, self.track, self.radius = every, track, radius
         self.samples = np.empty((1024, _WIDTH))
         self.cursor = np.zeros(2, np.int64)
@@ -56,11 +60,14 @@ class Recorder:
 
     def __len__(self) -> int:
         """How many samples there are."""
-        return int(self.cursor[0])
+        return int(self.cursor[0]) if self.native is None else self.native.sample_count
 
     def series(self, first: int = 0, stride: int = 1) -> Series:
         """Every `stride`-th sample from `first` on, up to the first that is not finite."""
-        rows = self.samples[first : len(self) : stride]
+        if self.native is not None:
+            rows = self.native.samples(first, stride)
+        else:
+            rows = self.samples[first : len(self) : stride]
         bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
         rows = rows[: bad[0]] if len(bad) else rows
         qpos, target, n = rows[:, _QPOS], rows[:, _TARGET], len(rows)
@@ -104,7 +111,6 @@ class Recorder:
         return out
 
 
-@nb.njit(cache=True)
 def keep_sample(
     every: int,
     cursor: NDArray[np.int64],

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from typing import Any
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.control.compiled import parameters
+from stairwright import _core
 from stairwright.control.controller import Controller
+from stairwright.control.native import native_controller
 from stairwright.control.setpoint import PROGRESS, RATES, Setpoint
 from stairwright.control.settings import ControllerSettings
 from stairwright.documents import content_hash
@@ -23,20 +23,17 @@ from stairwright.robot.description import LEGS
 from stairwright.robot.mujoco_model import build_spec
 from stairwright.terrain.wheel_path import wheel_path
 
-from . import loop
-from . import tick as score
-from .actuators import limit_torques
+from . import score
 from .disturbance import (
     Disturbance,
     Sensors,
     disturb_trunk,
     real_terrain,
 )
-from .governor import Track, advance, cruise, track
+from .governor import Track, cruise, follower, track
 from .outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
 from .record import Recorder
 from .result import Metrics, Rollout
-from .stepping import addresses
 
 Floats = NDArray[np.float64]
 
@@ -51,8 +48,8 @@ _DIVERGED = (
 )
 
 
-def compiled(settings: ControllerSettings) -> bool:
-    """Whether these settings run in the compiled loop."""
+def runs_natively(settings: ControllerSettings) -> bool:
+    """Whether these settings run in the native loop."""
     return settings.form == "contact" and settings.solver == "native"
 
 
@@ -81,14 +78,9 @@ class Run:
         self.track: Track = self._track()
         self.limit = 2.5 * self.track.duration + 5.0
         self.sensors = Sensors(disturbance, self.dt, seed)
-        self.record = parameters(robot, plan.friction, settings)
-        self.controller = (
-            None if compiled(settings) else Controller(robot, self.path, plan.friction, settings)
-        )
-        self.clock = np.array([self.track.start, 0.0, 0.0])
+        self.way = self.track.start
+        self.follower = follower(self.track, settings.leash)
         self.places = np.full(4, np.nan)
-        self.forces = np.tile([0.0, robot.mass * 9.81 / 4], 4)
-        self.learnt = np.zeros(1)
         self.target = np.zeros(self.track.rows.shape[1])
         self.wanted = np.zeros(12)
         self.score = np.zeros(score.SCORES)
@@ -96,7 +88,13 @@ class Run:
         self.names = [self.model.geom(i).name for i in range(self.model.ngeom)]
         self.floor = float(terrain.vertices[:, 1].min())
         every = max(1, round(1.0 / (record_hz * self.dt)))
-        self.recorder = Recorder(every, self.track, robot.wheel.radius)
+        self.controller: Controller | None = None
+        self.native: _core.Rollout | None = None
+        if runs_natively(settings):
+            self.native = self._native(every)
+        else:
+            self.controller = Controller(robot, self.path, plan.friction, settings)
+        self.recorder = Recorder(every, self.track, robot.wheel.radius, self.native)
         self.wall = self.time = 0.0
         self._place()
 
@@ -108,6 +106,13 @@ class Run:
             settings = settings.model_copy(update={"speed": None})
         course = reference(plan, joint_rate=None)
         return track(course, self.robot, self.path, plan.friction, settings)
+
+    def _native(self, every: int) -> _core.Rollout:
+        controller = native_controller(self.robot, self.path, self.plan.friction, self.settings)
+        model, data = int(self.model._address), int(self.data._address)  # noqa: SLF001
+        delay = len(self.sensors.history) - 1
+        line = follower(self.track, self.settings.leash)
+        return _core.Rollout(model, data, controller, line, delay, every, CONTROL_STEPS)
 
     def _place(self) -> None:
         """Put the robot into the plan's first pose."""
@@ -137,7 +142,7 @@ class Run:
             cause = self._chunk(steps * self.dt >= SETTLE)
             steps += CHUNK
             now = self.time = steps * self.dt
-            done = (self.clock[0] - self.track.start) / total
+            done = (self.way - self.track.start) / total
             if progress is not None:
                 progress(min(1.0, 0.999 * done))
             if observe is not None:
@@ -149,7 +154,7 @@ class Run:
                 if settled * self.dt > SETTLE and (self._at_rest() or settled * self.dt > 2.0):
                     cause = ("arrived", "")
                     break
-            elif watch.stuck(now, self.clock[0]):
+            elif watch.stuck(now, self.way):
                 cause = ("stuck", "")
                 break
             if now > self.limit:
@@ -163,42 +168,34 @@ class Run:
     def _chunk(self, moving: bool) -> tuple[str, str] | None:
         """Some control steps; the cause and its words if the rollout is over."""
         data = self.data
-        if self.controller is None:
-            self._compiled_steps(moving)
+        if self.native is not None:
+            self._native_steps(self.native, moving)
         else:
             self._plain_steps(moving)
         # MuJoCo starts anew, with a warning, when it finds numbers that are not finite.
         warned = any(data.warning[kind].number for kind in _DIVERGED)
-        if warned or loop.diverged(data.qpos, data.qvel):
+        if warned or score.diverged(data.qpos, data.qvel):
             return "diverged", ""
         pitch_error, tilt = self.score[score.LAST_PITCH_ERROR], self.score[score.TILT]
         why = fallen(pitch_error, tilt, data.qpos[2], self.floor)
         return ("fell", why) if why else None
 
-    def _compiled_steps(self, moving: bool) -> None:
-        data, t, recorder, sensors = self.data, self.track, self.recorder, self.sensors
-        recorder.reserve(CHUNK)
-        go: Callable[..., int] = loop.run  # mypy cannot see through numba
-        where = addresses(self.model, data)
-        ground = (self.record, self.path.pieces, self.path.corners)
-        course = (t.start, t.step, t.rows, t.speeds, self.settings.leash)
-        state = (data.qpos, data.qvel, data.ctrl, data.sensordata)
-        senses = (sensors.draws(CHUNK), sensors.history, sensors.seen)
-        memory = (self.clock, self.places, self.forces, self.learnt, self.target, self.wanted)
-        book = (recorder.every, recorder.cursor, recorder.samples)
-        rest: tuple[Any, ...] = (self.time, self.dt, moving, *ground, *course, *state, *senses)
-        rest = (*rest, *memory, self.score, *book)
-        at = go(*where, CONTROL_STEPS, 0, CHUNK, False, bool(self.loads.loads), *rest)
+    def _native_steps(self, native: _core.Rollout, moving: bool) -> None:
+        noise, at, looked = self.sensors.draws(CHUNK), 0, False
         while at < CHUNK:
-            self._touch(self.time + at * self.dt)
             loaded = bool(self.loads.loads)
-            at = go(*where, CONTROL_STEPS, at, CHUNK, True, loaded, *rest)
+            at = native.run(at, CHUNK, looked, loaded, moving, self.time, noise)
+            if at < CHUNK:
+                self._touch(self.time + at * self.dt)
+                looked = True
+        self.way, self.target[:] = native.way, native.target
+        self.score[:] = score.numbers(native.score)
 
     def _plain_steps(self, moving: bool) -> None:
         assert self.controller is not None
         data = self.data
         for k in range(CHUNK):
-            if loop.diverged(data.qpos, data.qvel):
+            if score.diverged(data.qpos, data.qvel):
                 break
             wheels = self._tick(moving, *self.sensors.sense(data.qpos, data.qvel))
             self.recorder.take(data, self.target, self.places)
@@ -207,18 +204,18 @@ class Run:
             mujoco.mj_step(self.model, data, CONTROL_STEPS)
 
     def _tick(self, moving: bool, qpos: Floats, qvel: Floats) -> int:
-        """`tick.tick` with the numpy controller."""
+        """One control step with the numpy controller; how many contacts the wheels have."""
         assert self.controller is not None
         t = self.track
-        args = (t.start, t.step, t.rows, t.speeds, self.settings.leash, self.places)
-        advance(*args, moving, self.dt, self.clock, self.target)
-        if self.settings.form == "paper" and moving and self.clock[0] < t.end - 1e-9:
+        self.target[:] = self.follower.advance(self.places, moving, self.dt)
+        self.way = self.follower.way
+        if self.settings.form == "paper" and moving and self.way < t.end - 1e-9:
             # Eq 15 follows a speed and no place: slowed down by the leash it would never catch up.
-            self.target[RATES : RATES + 2] = cruise(t, self.clock[0])
+            self.target[RATES : RATES + 2] = cruise(t, self.way)
         self.wanted[:] = self.controller.step(qpos, qvel, Setpoint.from_row(self.target))
         self.places[:] = self.controller.places
         data = self.data
-        limit_torques(self.record, data.qvel[6:], self.wanted, data.ctrl)
+        data.ctrl[:] = _core.limit_torques(self.robot.native, data.qvel[6:], self.wanted)
         score.keep_score(data.qpos, data.qvel, data.ctrl, self.target, self.dt, self.score)
         return int(data.sensordata[0:16:4].sum())
 

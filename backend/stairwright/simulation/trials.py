@@ -23,7 +23,7 @@ from stairwright.planning.plan import Plan
 from .disturbance import Disturbance
 from .result import Outcome
 from .rollout import rollout
-from .run import compiled
+from .run import runs_natively
 
 Bound = Annotated[float, Field(ge=-5.0, le=5.0)]
 Range = tuple[Bound, Bound]
@@ -197,7 +197,7 @@ def _share(
 ) -> Iterator[Trial]:
     """Results of all `jobs`, in order.
 
-    The compiled loop runs without Python's lock, so threads share the work without any start-up
+    The native loop runs without Python's lock, so threads share the work without any start-up
     cost; other controllers are Python and need processes.
     """
     if workers == 1:
@@ -205,7 +205,7 @@ def _share(
         return
     pool: Executor
     work: Callable[[Job], Trial]
-    if compiled(settings):
+    if runs_natively(settings):
         pool = ThreadPoolExecutor(workers)
         work = partial(_one, plan, friction, settings)
     else:

@@ -1,19 +1,14 @@
-"""One control step, compiled: advance the plan, control, limit the motors, keep the score."""
+"""What a rollout is judged by, added up over its control steps; and whether it has diverged."""
 
 from __future__ import annotations
 
 import math
 
-import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.compiled import leaf
-from stairwright.control.compiled import contact_control
+from stairwright import _core
 from stairwright.control.setpoint import JOINTS, PITCH
-
-from .actuators import limit_torques
-from .governor import advance
 
 Floats = NDArray[np.float64]
 
@@ -32,9 +27,9 @@ _Q, _PITCH = JOINTS.start, PITCH
     TILT,
 ) = range(9)
 SCORES = 9
+BEYOND = 1e6  # m, m/s, rad or rad/s, summed up: no robot gets there
 
 
-@leaf
 def keep_score(
     qpos: Floats, qvel: Floats, torques: Floats, target: Floats, dt: float, score: Floats
 ) -> None:
@@ -62,50 +57,21 @@ def keep_score(
                 score[JOINT_SQUARES] += off * off
 
 
-@nb.njit(cache=True)
-def tick(
-    record: NDArray[np.void],
-    pieces: Floats,
-    corners: Floats,
-    start: float,
-    step: float,
-    rows: Floats,
-    speeds: Floats,
-    leash: float,
-    moving: bool,
-    dt: float,
-    qpos: Floats,
-    qvel: Floats,
-    sensed_qpos: Floats,
-    sensed_qvel: Floats,
-    clock: Floats,
-    places: Floats,
-    forces: Floats,
-    learnt: Floats,
-    target: Floats,
-    wanted: Floats,
-    ctrl: Floats,
-    score: Floats,
-    contacts: Floats,
-) -> int:
-    """Write the motors' torques into `ctrl`; returns how many contacts the wheels have.
-
-    `qpos` and `qvel` are the truth (motor speeds, score); the controller sees `sensed_*`.
-    """
-    advance(start, step, rows, speeds, leash, places, moving, dt, clock, target)
-    contact_control(
-        record,
-        pieces,
-        corners,
-        sensed_qpos,
-        sensed_qvel,
-        target,
-        0.0,
-        places,
-        forces,
-        learnt,
-        wanted,
+def numbers(native: _core.Score) -> tuple[float, ...]:
+    """The native loop's score in the order of this module's."""
+    return (
+        native.pitch_error_max,
+        native.pitch_error_squares,
+        native.joint_error_squares,
+        native.leg_torque_max,
+        native.wheel_torque_max,
+        native.energy,
+        native.steps,
+        native.pitch_error,
+        native.tilt,
     )
-    limit_torques(record, qvel[6:], wanted, ctrl)
-    keep_score(qpos, qvel, ctrl, target, dt, score)
-    return int(contacts[0] + contacts[4] + contacts[8] + contacts[12])
+
+
+def diverged(qpos: Floats, qvel: Floats) -> bool:
+    """Whether the state is not one to compute anything from: not finite, or beyond all reason."""
+    return not bool(np.abs(qpos).sum() + np.abs(qvel).sum() < BEYOND)

@@ -1,0 +1,99 @@
+// The balance controller (form `contact`): PD on mass centre and pitch, contact forces by a QP, torques by J' F,
+// joint tracking and rolling feedback. It needs neither Python nor a simulator.
+//
+// Wheels and legs are in the order FL, FR, RL, RR; pairs are front, rear. SI units; angles about +y.
+#pragma once
+
+#include <span>
+
+#include "stairwright/control/balance_qp.hpp"
+#include "stairwright/control/wheel_support.hpp"
+#include "stairwright/robot.hpp"
+
+namespace stairwright::control {
+
+inline constexpr double kPeriod = 0.002;  // s, between control steps
+
+// What is measured.
+struct RobotState {
+    std::array<double, 3> position{};               // trunk point in the world [m]
+    std::array<double, 4> quaternion{1.0, 0, 0, 0}; // trunk to world, w x y z
+    std::array<double, 12> joints{};                // thigh, calf, wheel of each leg [rad]
+    std::array<double, 3> velocity{};               // in the world [m/s]
+    std::array<double, 3> angular_velocity{};       // in the trunk frame [rad/s]
+    std::array<double, 12> joint_rates{};           // rad/s
+};
+inline constexpr std::size_t kPositions = 19, kVelocities = 18;  // numbers in the halves of a RobotState
+
+// Planned quantities, and likewise their rates.
+struct Planned {
+    std::array<double, 2> wheels{};  // place of each pair on the wheel-centre curve [m]
+    std::array<double, 4> joints{};  // front thigh, front calf, rear thigh, rear calf [rad]
+    double pitch = 0.0;
+    Vec2 com, trunk;
+};
+
+// One instant of the plan: what the robot is asked to do now. All numbers, in the order of a row of the plan's table.
+struct Reference {
+    Planned value, rate;
+    std::array<Vec2, 2> forces{};  // static force of the ground on each pair, world [N]
+    double pitch_acceleration = 0.0;
+    Vec2 com_acceleration;
+    double friction_share = 0.0;   // of the friction, that the static forces need
+    double progress = 0.0;         // the plan's [m]
+    std::array<double, 2> lean{2.0, 2.0};  // what each pair leans on in a corner, see Lean
+};
+inline constexpr std::size_t kReferenceWidth = 33;
+static_assert(sizeof(Reference) == kReferenceWidth * sizeof(double));
+static_assert(sizeof(RobotState) == (kPositions + kVelocities) * sizeof(double));
+
+// See the descriptions of the controller's settings; equation numbers are the paper's.
+struct Gains {
+    double joint_stiffness = 0.0, joint_damping = 0.0;  // eq 27 [Nm/rad, Nm s/rad]
+    double wheel_damping = 0.0;                         // eq 14 [Nm s/rad]
+    double wheel_sync = 0.0;                            // 1/s
+    double yaw_damping = 0.0;                           // eq 16, per wheel radius and track
+    double heading_stiffness = 0.0;                     // 1/s
+    double com_stiffness = 0.0, com_damping = 0.0;      // eq 8 [1/s^2, 1/s]
+    double pitch_stiffness = 0.0, pitch_damping = 0.0;  // eq 8 [1/s^2, 1/s]
+    double pitch_integral = 0.0;                        // 1/s^3
+    double roll_stiffness = 0.0, roll_damping = 0.0;    // 1/s^2, 1/s
+    double force_weight = 1.0, moment_weight = 1.0;     // S of eq 11
+    double alpha = 1e-3, beta = 0.0;                    // eq 11
+    double friction_share = 1.0;                        // of the friction, that the QP may use
+    double force_limit = 0.0;                           // largest normal force of a wheel [N]
+};
+
+using Torques = std::array<double, 12>;  // thigh, calf, wheel of each leg [Nm]
+
+class Controller {
+  public:
+    // `friction` is the one the plan was made for.
+    Controller(Robot robot, WheelPath path, double friction, const Gains& gains);
+
+    // Torques before the motors' limits; `yaw_rate` is commanded.
+    Torques step(const RobotState& state, const Reference& target, double yaw_rate = 0.0);
+
+    const Robot& robot() const { return robot_; }
+    const Forces& forces() const { return forces_; }
+    // Arc length of each wheel on the wheel-centre curve, NaN before the first step [m].
+    const std::array<double, 4>& places() const { return places_; }
+    // Pitch acceleration that the model does not know of [rad/s^2].
+    double pitch_integral() const { return pitch_integral_; }
+
+  private:
+    Robot robot_;
+    WheelPath path_;
+    double friction_, mass_;
+    Gains gains_;
+    Forces forces_{};
+    std::array<double, 4> places_;
+    double pitch_integral_ = 0.0;
+};
+
+// What a motor that turns at `speed` can give of `torque`: speed limits only torque in the direction of motion.
+double available_torque(const Motor& motor, double torque, double speed);
+// The same for all joints.
+Torques limit_torques(const Robot& robot, std::span<const double, 12> joint_rates, const Torques& wanted);
+
+}  // namespace stairwright::control

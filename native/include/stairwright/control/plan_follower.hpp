@@ -1,0 +1,45 @@
+// How fast the plan advances: its own timing, limits along it, and a largest lead over the robot.
+//
+// The plan runs on its own phase, because a purely measured progress stalls (the robot waits for the plan and the
+// plan for the robot). It slows down when it is ahead of the wheels, stops when it is too far ahead and retreats with
+// a robot that slides back. It hurries after a robot that runs ahead only a little, because it must not jump.
+#pragma once
+
+#include <vector>
+
+#include "stairwright/control/controller.hpp"
+
+namespace stairwright::control {
+
+class PlanFollower {
+  public:
+    // Set points on an even grid of way, the first at `start`, with rates per metre of way and accelerations per its
+    // square, the allowed `speeds` there [m/s], and how far the plan may be ahead of the wheels [m].
+    // Throws std::invalid_argument unless there are two rows at least and as many speeds.
+    PlanFollower(double start, double step, std::vector<Reference> rows, std::vector<double> speeds, double maximum_lead);
+
+    // One control step on; `places` of the wheels are NaN before the first measurement.
+    const Reference& advance(const std::array<double, 4>& places, bool moving, double dt);
+
+    double way() const { return way_; }    // m
+    double rate() const { return rate_; }  // m/s
+    double lag() const { return lag_; }    // of the wheels behind the plan [m]
+    const Reference& target() const { return target_; }
+
+  private:
+    struct Spot {
+        std::size_t row;
+        double share;
+    };
+    Spot spot(double way) const;
+    double wheel_lag(Spot at, const std::array<double, 4>& places) const;
+    void set_target(Spot at);
+
+    double start_, step_, maximum_lead_;
+    std::vector<Reference> rows_;
+    std::vector<double> speeds_;
+    double way_, rate_ = 0.0, lag_ = 0.0;
+    Reference target_{};
+};
+
+}  // namespace stairwright::control

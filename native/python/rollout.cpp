@@ -1,0 +1,101 @@
+#include "stairwright/rollout/rollout.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace stairwright::python {
+
+namespace {
+
+using namespace control;
+using namespace rollout;
+using rollout::Rollout;
+
+using Row = In<double, nb::shape<static_cast<nb::ssize_t>(kReferenceWidth)>>;
+using Rows = In<double, nb::shape<-1, static_cast<nb::ssize_t>(kReferenceWidth)>>;
+using Noise = In<double, nb::shape<-1, static_cast<nb::ssize_t>(kNoiseWidth)>>;
+
+Reference reference(const double* row) {
+    std::array<double, kReferenceWidth> numbers;
+    std::copy_n(row, kReferenceWidth, numbers.begin());
+    return std::bit_cast<Reference>(numbers);
+}
+
+std::vector<Reference> references(const Rows& rows) {
+    std::vector<Reference> out;
+    for (std::size_t i = 0; i < rows.shape(0); ++i) out.push_back(reference(rows.data() + i * kReferenceWidth));
+    return out;
+}
+
+auto row(const Reference& target) {
+    const auto numbers = std::bit_cast<std::array<double, kReferenceWidth>>(target);
+    return give(std::vector<double>(numbers.begin(), numbers.end()));
+}
+
+auto samples(const Rollout& run, std::size_t first, std::size_t stride) {
+    if (stride < 1) throw std::invalid_argument("stride must be at least 1");
+    std::vector<double> out;
+    const auto& kept = run.log().samples();
+    std::size_t count = 0;
+    for (std::size_t i = first; i < kept.size(); i += stride, ++count) {
+        const auto numbers = std::bit_cast<std::array<double, kSampleWidth>>(kept[i]);
+        out.insert(out.end(), numbers.begin(), numbers.end());
+    }
+    return give(std::move(out), {count, kSampleWidth});
+}
+
+void bind_follower(nb::module_& m) {
+    nb::class_<PlanFollower>(m, "PlanFollower", "Advances a plan, with a largest lead over the robot.")
+        .def("__init__", [](PlanFollower* self, double start, double step, const Rows& rows, const Vector& speeds, double maximum_lead) {
+            new (self) PlanFollower(start, step, references(rows), {speeds.data(), speeds.data() + speeds.size()}, maximum_lead);
+        }, nb::arg("start"), nb::arg("step"), nb::arg("rows"), nb::arg("speeds"), nb::arg("maximum_lead"))
+        .def("advance", [](PlanFollower& self, const In<double, nb::shape<4>>& places, bool moving, double dt) {
+            return row(self.advance({places(0), places(1), places(2), places(3)}, moving, dt));
+        }, nb::arg("places"), nb::arg("moving"), nb::arg("dt"), nb::rv_policy::automatic, "The next set point (33,).")
+        .def_prop_ro("way", &PlanFollower::way)
+        .def_prop_ro("rate", &PlanFollower::rate)
+        .def_prop_ro("lag", &PlanFollower::lag)
+        .def_prop_ro("target", [](const PlanFollower& f) { return row(f.target()); }, nb::rv_policy::automatic);
+}
+
+}  // namespace
+
+void bind_rollout(nb::module_& m) {
+    bind_follower(m);
+    nb::class_<Score>(m, "Score")
+        .def_ro("pitch_error_max", &Score::pitch_error_max)
+        .def_ro("pitch_error_squares", &Score::pitch_error_squares)
+        .def_ro("joint_error_squares", &Score::joint_error_squares)
+        .def_ro("leg_torque_max", &Score::leg_torque_max)
+        .def_ro("wheel_torque_max", &Score::wheel_torque_max)
+        .def_ro("energy", &Score::energy)
+        .def_ro("steps", &Score::steps)
+        .def_ro("pitch_error", &Score::pitch_error)
+        .def_ro("tilt", &Score::tilt);
+    nb::class_<Rollout>(m, "Rollout", "The closed loop in MuJoCo; keep model and data alive as long as it.")
+        .def("__init__", [](Rollout* self, std::uintptr_t model, std::uintptr_t data, const Controller& controller,
+                            const PlanFollower& follower, std::size_t delay_steps, std::size_t log_every, int substeps) {
+            if (model == 0 || data == 0) throw std::invalid_argument("model and data must be addresses");
+            new (self) Rollout(reinterpret_cast<const mjModel_*>(model), reinterpret_cast<mjData_*>(data), controller, follower,
+                               SensorModel(delay_steps), log_every, substeps);
+        }, nb::arg("model"), nb::arg("data"), nb::arg("controller"), nb::arg("follower"), nb::arg("delay_steps"),
+           nb::arg("log_every"), nb::arg("substeps"))
+        .def("run", [](Rollout& self, int first, int last, bool looked, bool loaded, bool moving, double begun, const Noise& noise) {
+            nb::gil_scoped_release release;
+            return self.run({std::max(first, 0), last, looked, loaded, moving, begun}, {noise.data(), noise.size()});
+        }, nb::arg("first"), nb::arg("last"), nb::arg("looked"), nb::arg("loaded"), nb::arg("moving"), nb::arg("begun"), nb::arg("noise"),
+           "Control steps; returns where it stopped to have contacts looked at, or `last`.")
+        .def("diverged", &Rollout::diverged)
+        .def_prop_ro("way", [](const Rollout& r) { return r.follower().way(); })
+        .def_prop_ro("target", [](const Rollout& r) { return row(r.follower().target()); }, nb::rv_policy::automatic)
+        .def_prop_ro("score", [](const Rollout& r) { return r.score(); })
+        .def_prop_ro("sample_count", [](const Rollout& r) { return r.log().samples().size(); })
+        .def("samples", &samples, nb::arg("first") = 0, nb::arg("stride") = 1, nb::rv_policy::automatic,
+             "Rows of the log, see rollout/log.hpp.");
+}
+
+}  // namespace stairwright::python

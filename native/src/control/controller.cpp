@@ -1,0 +1,171 @@
+#include "stairwright/control/controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "measurement.hpp"
+
+namespace stairwright::control {
+
+namespace {
+
+constexpr double kMaxAcceleration = 3.5;  // m/s^2 along x: a far-away reference must not throw the robot
+constexpr double kMaxPitchIntegral = 15.0;  // rad/s^2
+// Weight of the difference between left and right forces: where grip runs out the QP would rather carry all with
+// one wheel of a pair, and nothing else keeps the robot from rolling over.
+constexpr double kEven = 0.02;
+constexpr double kMostUneven = 0.8;  // of what a pair carries: left less right normal force
+
+using Supports = std::array<WheelSupport, 4>;
+
+struct Wrench {
+    double x, z, moment;
+};
+
+// Columns: the wrench on the body of each unit force (eqs 3-7).
+std::array<Wrench, 8> force_map(const Measurement& m, const Supports& supports) {
+    std::array<Wrench, 8> A;
+    for (int i = 0; i < 4; ++i) {
+        const Vec2 n = supports[i].normal, t = supports[i].tangent();
+        const Vec2 lever = {m.legs[i].wheel.x - supports[i].reach * n.x - m.com.x,
+                            m.legs[i].wheel.z - supports[i].reach * n.z - m.com.z};
+        A[2 * i] = {t.x, t.z, lever.z * t.x - lever.x * t.z};
+        A[2 * i + 1] = {n.x, n.z, lever.z * n.x - lever.x * n.z};
+    }
+    return A;
+}
+
+// What gives the body the wanted accelerations (eqs 8-9).
+Wrench desired_wrench(const Gains& g, double mass, const Measurement& m, const Reference& target, double integral) {
+    double ax = target.com_acceleration.x + g.com_stiffness * (target.value.com.x - m.com.x);
+    ax += g.com_damping * (target.rate.com.x - m.com_velocity.x);
+    ax = std::clamp(ax, -kMaxAcceleration, kMaxAcceleration);
+    double az = target.com_acceleration.z + g.com_stiffness * (target.value.com.z - m.com.z);
+    az += g.com_damping * (target.rate.com.z - m.com_velocity.z);
+    double spin = integral + target.pitch_acceleration + g.pitch_stiffness * (target.value.pitch - m.pitch);
+    spin += g.pitch_damping * (target.rate.pitch - m.pitch_rate);
+    return {mass * ax, mass * (az + kGravity), m.inertia * spin};
+}
+
+// Left less right normal force, as a share of what each pair carries, that keeps the robot from rolling over.
+// Against gravity its stiffness must be above g / h.
+double uneven_share(const Gains& g, double mass, const Robot& robot, const Measurement& m, const Reference& target,
+                    double radius) {
+    const double wheels = m.legs[0].wheel.z + m.legs[1].wheel.z + m.legs[2].wheel.z + m.legs[3].wheel.z;
+    const double height = m.com.z - 0.25 * wheels + radius;
+    const double roll = g.roll_stiffness * m.roll + g.roll_damping * m.roll_rate;
+    const double carried = std::max(target.forces[0].z, 0.0) + std::max(target.forces[1].z, 0.0);
+    const double share = -mass * height * height * roll / robot.half_track / std::max(carried, 1e-9);
+    return std::clamp(share, -kMostUneven, kMostUneven);
+}
+
+// Cost of eq 11: wrench error, distance from the plan's static forces, change, unevenness of left and right.
+BalanceQp balance_qp(const Gains& gains, const std::array<Wrench, 8>& A, const Wrench& wanted, const Supports& supports,
+                     const Reference& target, const Forces& last, double uneven) {
+    BalanceQp qp;
+    const double S = gains.force_weight, M = gains.moment_weight;
+    const Wrench b = {S * wanted.x, S * wanted.z, M * wanted.moment};
+    for (int i = 0; i < 8; ++i) {
+        for (int j = 0; j <= i; ++j)
+            qp.H[i][j] = qp.H[j][i] = S * A[i].x * A[j].x + S * A[i].z * A[j].z + M * A[i].moment * A[j].moment;
+        qp.H[i][i] += gains.alpha + gains.beta + kEven;
+        const Vec2 f = 0.5 * target.forces[i / 4];
+        const Vec2 n = supports[i / 2].normal;
+        const double resting = i % 2 == 0 ? f.x * n.z - f.z * n.x : f.x * n.x + f.z * n.z;
+        qp.g[i] = -A[i].x * b.x - A[i].z * b.z - A[i].moment * b.moment;
+        qp.g[i] -= gains.alpha * resting + gains.beta * last[i];
+    }
+    for (const int left : {0, 1, 4, 5}) {  // tangential and normal of the left wheel of a pair
+        const int right = left + 2;
+        qp.H[left][right] -= kEven;
+        qp.H[right][left] -= kEven;
+        if (left % 2 == 0) continue;
+        const double difference = std::max(target.forces[left / 4].z, 0.0) * uneven;
+        qp.g[left] -= kEven * difference;
+        qp.g[right] += kEven * difference;
+    }
+    for (int i = 0; i < 4; ++i) qp.friction[i] = supports[i].friction;
+    qp.load_limit = gains.force_limit;
+    return qp;
+}
+
+struct LegTorques {
+    double thigh, calf;
+};
+
+// Torques that put `force` on the body at `point` (J' F of eq 13) and carry the leg's own weight.
+LegTorques force_torques(const Leg& leg, const MeasuredLeg& at, Vec2 point, Vec2 force) {
+    const auto moment = [&](Vec2 joint) { return (point.x - joint.x) * force.z - (point.z - joint.z) * force.x; };
+    const double below_hip = leg.thigh.mass * (at.thigh_com.x - at.hip.x) + leg.calf.mass * (at.calf_com.x - at.hip.x) +
+                             leg.wheel.mass * (at.wheel.x - at.hip.x);
+    const double below_knee = leg.calf.mass * (at.calf_com.x - at.knee.x) + leg.wheel.mass * (at.wheel.x - at.knee.x);
+    return {moment(at.hip) - kGravity * below_hip, moment(at.knee) - kGravity * below_knee};
+}
+
+}  // namespace
+
+Controller::Controller(Robot robot, WheelPath path, double friction, const Gains& gains)
+    : robot_(std::move(robot)), path_(std::move(path)), friction_(friction), mass_(robot_.mass()), gains_(gains) {
+    for (int i = 0; i < 4; ++i) forces_[2 * i + 1] = mass_ * kGravity / 4;
+    places_.fill(std::numeric_limits<double>::quiet_NaN());
+}
+
+Torques Controller::step(const RobotState& state, const Reference& target, double yaw_rate) {
+    const Gains& g = gains_;
+    const Measurement m = measure(robot_, mass_, state);
+    const double usable = std::max(g.friction_share, target.friction_share) * friction_;
+    Supports supports;
+    for (int i = 0; i < 4; ++i) {
+        places_[i] = locate(path_, m.legs[i].wheel, places_[i]);
+        const auto lean = static_cast<Lean>(std::clamp(static_cast<int>(target.lean[i / 2]), 0, 2));
+        supports[i] = wheel_support(path_, places_[i], target.value.wheels[i / 2], usable, lean);
+    }
+    pitch_integral_ += kPeriod * g.pitch_integral * (target.value.pitch - m.pitch);
+    pitch_integral_ = std::clamp(pitch_integral_, -kMaxPitchIntegral, kMaxPitchIntegral);
+    const Wrench wanted = desired_wrench(g, mass_, m, target, pitch_integral_);
+    const double uneven = uneven_share(g, mass_, robot_, m, target, path_.radius());
+    solve(balance_qp(g, force_map(m, supports), wanted, supports, target, forces_, uneven), forces_);
+
+    // Torques: forces and weight, tracking (eq 27), rolling (eqs 14-16) with the traction fed forward.
+    const double turn = yaw_rate - g.heading_stiffness * m.heading;
+    const double difference = robot_.half_track / path_.radius() * (turn + g.yaw_damping * (turn - m.yaw_rate));
+    Torques out;
+    for (int i = 0; i < 4; ++i) {
+        const int pair = i / 2, j = 3 * i;
+        const Leg& leg = robot_.legs[pair];
+        const WheelSupport& s = supports[i];
+        const double t = forces_[2 * i], n = forces_[2 * i + 1];
+        const Vec2 force = {t * s.normal.z + n * s.normal.x, n * s.normal.z - t * s.normal.x};
+        const Vec2 point = m.legs[i].wheel - s.reach * s.normal;
+        const LegTorques carrying = force_torques(leg, m.legs[i], point, force);
+        const double balance[] = {carrying.thigh, carrying.calf};
+        for (int k = 0; k < 2; ++k)
+            out[j + k] = balance[k] + g.joint_stiffness * (target.value.joints[2 * pair + k] - state.joints[j + k]) +
+                         g.joint_damping * (target.rate.joints[2 * pair + k] - state.joint_rates[j + k]);
+        const double speed = target.rate.wheels[pair] + g.wheel_sync * (target.value.wheels[pair] - places_[i]);
+        const double rate = speed / leg.wheel.radius + (i % 2 == 0 ? -difference : difference);
+        const double rolled = state.joint_rates[j] + state.joint_rates[j + 1] + state.joint_rates[j + 2] + m.pitch_rate;
+        out[j + 2] = leg.wheel.radius * s.traction(force) + g.wheel_damping * (rate - rolled);
+    }
+    return out;
+}
+
+double available_torque(const Motor& motor, double torque, double speed) {
+    double limit = motor.torque;
+    if (torque * speed > 0.0) limit = motor.torque * std::max(0.0, 1.0 - std::abs(speed) / motor.speed);
+    return std::min(std::max(torque, -limit), limit);
+}
+
+Torques limit_torques(const Robot& robot, std::span<const double, 12> joint_rates, const Torques& wanted) {
+    Torques out;
+    for (int i = 0; i < 4; ++i) {
+        const Leg& leg = robot.legs[i / 2];
+        const Motor* motors[] = {&leg.thigh_motor, &leg.calf_motor, &leg.wheel_motor};
+        for (int k = 0; k < 3; ++k)
+            out[3 * i + k] = available_torque(*motors[k], wanted[3 * i + k], joint_rates[3 * i + k]);
+    }
+    return out;
+}
+
+}  // namespace stairwright::control

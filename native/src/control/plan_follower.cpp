@@ -1,0 +1,84 @@
+#include "stairwright/control/plan_follower.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+
+namespace stairwright::control {
+
+namespace {
+
+constexpr double kHurry = 1.5;            // how much faster than planned it may follow a robot that is ahead
+constexpr double kRateAcceleration = 1.0; // m/s^2 of the plan's rate
+
+using Row = std::array<double, kReferenceWidth>;
+
+double mix(double a, double b, double share) { return a + share * (b - a); }
+
+}  // namespace
+
+PlanFollower::PlanFollower(double start, double step, std::vector<Reference> rows, std::vector<double> speeds, double maximum_lead)
+    : start_(start), step_(step), maximum_lead_(maximum_lead), rows_(std::move(rows)), speeds_(std::move(speeds)), way_(start) {
+    if (rows_.size() < 2 || speeds_.size() != rows_.size()) throw std::invalid_argument("a plan needs two rows, and a speed for each");
+    if (!(step > 0.0) || !(maximum_lead > 0.0)) throw std::invalid_argument("step and maximum_lead must be positive");
+}
+
+PlanFollower::Spot PlanFollower::spot(double way) const {
+    const std::size_t last = rows_.size() - 1;
+    const double at = std::min(std::max((way - start_) / step_, 0.0), static_cast<double>(last));
+    const std::size_t k = std::min(static_cast<std::size_t>(at), last - 1);
+    return {k, at - static_cast<double>(k)};
+}
+
+double PlanFollower::wheel_lag(Spot at, const std::array<double, 4>& places) const {
+    if (std::isnan(places[0])) return 0.0;
+    const Reference &a = rows_[at.row], &b = rows_[at.row + 1];
+    const double df = mix(a.rate.wheels[0], b.rate.wheels[0], at.share), dr = mix(a.rate.wheels[1], b.rate.wheels[1], at.share);
+    const double front = mix(a.value.wheels[0], b.value.wheels[0], at.share) - 0.5 * (places[0] + places[1]);
+    const double rear = mix(a.value.wheels[1], b.value.wheels[1], at.share) - 0.5 * (places[2] + places[3]);
+    // Along the plan's own direction, so that it also holds where a wheel rolls back.
+    const double lag = (front * df + rear * dr) / std::max(df * df + dr * dr, 1e-6);
+    return lag * (0.5 * (std::abs(df) + std::abs(dr)));  // of wheels, not of a trunk that swings
+}
+
+const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool moving, double dt) {
+    const Spot now = spot(way_);
+    lag_ = wheel_lag(now, places);
+    double rate = 0.0;
+    if (moving) {
+        const double allowed = mix(speeds_[now.row], speeds_[now.row + 1], now.share);
+        if (lag_ >= 0.0)
+            rate = allowed * std::min(1.0, std::max(-0.5, 2.0 * (maximum_lead_ - lag_) / maximum_lead_));
+        else
+            rate = allowed * std::min(kHurry, 1.0 - lag_ / maximum_lead_ * (kHurry - 1.0));
+    }
+    const double reach = kRateAcceleration * dt;
+    rate = std::min(std::max(rate, rate_ - 4 * reach), rate_ + reach);
+    const double end = start_ + step_ * static_cast<double>(rows_.size() - 1);
+    const double way = std::min(std::max(way_ + rate * dt, start_), end);
+    rate_ = (way - way_) / dt;
+    way_ = way;
+    set_target(spot(way_));
+    return target_;
+}
+
+void PlanFollower::set_target(Spot at) {
+    const Row a = std::bit_cast<Row>(rows_[at.row]), b = std::bit_cast<Row>(rows_[at.row + 1]);
+    Row mixed;
+    for (std::size_t j = 0; j < mixed.size(); ++j) mixed[j] = mix(a[j], b[j], at.share);
+    target_ = std::bit_cast<Reference>(mixed);
+    target_.lean = rows_[at.share < 0.5 ? at.row : at.row + 1].lean;
+    // Speeding up or slowing down as the plan wants it, not as the lead does: that is noise.
+    const double rate = rate_, slow = speeds_[at.row], fast = speeds_[at.row + 1];
+    const double gain = rate > 0.0 ? rate * rate / mix(slow, fast, at.share) * (fast - slow) / step_ : 0.0;
+    const auto surge = [&](double curvature, double slope) { return curvature * rate * rate + slope * gain; };
+    target_.pitch_acceleration = surge(target_.pitch_acceleration, target_.rate.pitch);
+    target_.com_acceleration = {surge(target_.com_acceleration.x, target_.rate.com.x),
+                                surge(target_.com_acceleration.z, target_.rate.com.z)};
+    auto rates = std::bit_cast<std::array<double, 11>>(target_.rate);
+    for (double& r : rates) r *= rate;
+    target_.rate = std::bit_cast<Planned>(rates);
+}
+
+}  // namespace stairwright::control

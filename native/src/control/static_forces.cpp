@@ -1,0 +1,111 @@
+#include "stairwright/control/static_forces.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "stairwright/control/balance_qp.hpp"
+
+namespace stairwright::control {
+
+namespace {
+
+// Shares of the friction and largest normal force of a wheel in weights, tried in turn until the forces hold the
+// robot: little friction first, but not at the price of pinching.
+struct Attempt {
+    double friction_share, load_limit;
+};
+constexpr Attempt kAttempts[] = {{0.6, 0.6}, {0.75, 0.6}, {0.9, 0.6}, {1.0, 0.6}, {1.0, 10.0}};
+constexpr double kHeld = 0.01;    // of the weight; forces that miss less than this hold it
+constexpr double kMoment = 20.0;  // 1/m^2, weight of the moment against the forces
+constexpr double kSmall = 1e-4;   // weight of the forces' size
+
+struct Trial {
+    std::array<Vec2, 2> normal;  // of the faces that the pairs rest on
+    Forces forces{};
+    double missed = 0.0;  // weighted square of the wrench by which they miss holding the robot [N^2]
+};
+
+struct Pose {
+    std::array<double, 2> places;
+    Vec2 com;
+    double weight;
+};
+
+// Fills `trial` with the smallest forces that come nearest to holding the robot; its forces are the guess.
+void rest(const WheelPath& path, const Pose& pose, const std::array<Lean, 2>& lean, const std::array<double, 2>& friction,
+          double load_limit, Trial& trial) {
+    constexpr double S[3] = {1.0, 1.0, kMoment};
+    double A[3][8];
+    BalanceQp qp;
+    for (int wheel = 0; wheel < 4; ++wheel) {
+        const int pair = wheel / 2, t = 2 * wheel, n = t + 1;
+        const double s = pose.places[pair];
+        const WheelSupport support = wheel_support(path, s, s, friction[pair], lean[pair]);
+        const Vec2 normal = support.normal, centre = path.centre(s);
+        trial.normal[pair] = normal;
+        qp.friction[wheel] = support.friction;
+        const Vec2 lever = {centre.x - support.reach * normal.x - pose.com.x, centre.z - support.reach * normal.z - pose.com.z};
+        A[0][t] = normal.z, A[1][t] = -normal.x, A[2][t] = lever.z * normal.z + lever.x * normal.x;
+        A[0][n] = normal.x, A[1][n] = normal.z, A[2][n] = lever.z * normal.x - lever.x * normal.z;
+    }
+    for (int i = 0; i < 8; ++i) {
+        for (int j = 0; j < 8; ++j) {
+            qp.H[i][j] = i == j ? kSmall : 0.0;
+            for (int r = 0; r < 3; ++r) qp.H[i][j] += S[r] * A[r][i] * A[r][j];
+        }
+        qp.g[i] = -A[1][i] * pose.weight;
+    }
+    qp.load_limit = load_limit * pose.weight;
+    solve(qp, trial.forces);
+    trial.missed = 0.0;
+    for (int r = 0; r < 3; ++r) {
+        double total = r == 1 ? -pose.weight : 0.0;
+        for (int i = 0; i < 8; ++i) total += A[r][i] * trial.forces[i];
+        trial.missed += S[r] * total * total;
+    }
+}
+
+// In how many ways a wheel there may lean on the ground.
+int ways(const WheelPath& path, double s) {
+    const auto& corners = path.corners();
+    for (std::size_t k = path.corner_from(s - kCornerPlanned); k < corners.size() && corners[k] <= s + kCornerPlanned; ++k)
+        if (std::abs(s - corners[k]) < kCornerPlanned) return 3;
+    return 1;
+}
+
+}  // namespace
+
+StaticForces static_forces(const WheelPath& path, double weight, double friction, std::array<double, 2> places, Vec2 com) {
+    const Pose pose = {places, com, weight};
+    const int front = ways(path, places[0]), rear = ways(path, places[1]);
+    StaticForces out;
+    Trial trial;
+    for (const Attempt& attempt : kAttempts) {
+        bool held = false;
+        double best = std::numeric_limits<double>::infinity();
+        for (int way = 0; way < front * rear; ++way) {
+            const std::array<Lean, 2> lean = {static_cast<Lean>(2 - way % front), static_cast<Lean>(2 - way / front)};
+            // What leans on both faces takes no friction: else one of them would do.
+            const double usable = attempt.friction_share * friction;
+            rest(path, pose, lean, {lean[0] == Lean::both && front > 1 ? 0.0 : usable, lean[1] == Lean::both && rear > 1 ? 0.0 : usable},
+                 attempt.load_limit, trial);
+            const bool holds = trial.missed < (kHeld * weight) * (kHeld * weight);
+            double size = 0.0;
+            for (const double f : trial.forces) size += f * f;
+            const double value = holds ? size : trial.missed;
+            if (holds < held || (holds == held && value >= best)) continue;
+            held = holds, best = value;
+            out.friction_share = attempt.friction_share, out.lean = lean;
+            for (int pair = 0; pair < 2; ++pair) {
+                const Vec2 normal = trial.normal[pair];
+                const double t = trial.forces[4 * pair] + trial.forces[4 * pair + 2];
+                const double n = trial.forces[4 * pair + 1] + trial.forces[4 * pair + 3];
+                out.force[pair] = {t * normal.z + n * normal.x, n * normal.z - t * normal.x};
+            }
+        }
+        if (held) break;
+    }
+    return out;
+}
+
+}  // namespace stairwright::control

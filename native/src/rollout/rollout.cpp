@@ -1,0 +1,78 @@
+#include "stairwright/rollout/rollout.hpp"
+
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+
+namespace stairwright::rollout {
+
+namespace {
+
+constexpr double kBeyond = 1e6;  // m, m/s, rad or rad/s, summed up: no robot gets there
+constexpr int kAllContacts = 16;  // the sensor that counts every contact; before it 4 numbers a wheel
+
+}  // namespace
+
+Rollout::Rollout(const mjModel* model, mjData* data, control::Controller controller, control::PlanFollower follower,
+                 SensorModel sensors, std::size_t log_every, int substeps)
+    : model_(model), data_(data), controller_(std::move(controller)), follower_(std::move(follower)),
+      sensors_(std::move(sensors)), log_(log_every), substeps_(substeps), dt_(substeps * model->opt.timestep) {
+    if (model->nq != control::kPositions || model->nv != control::kVelocities || model->nu != 12 ||
+        model->nsensordata <= kAllContacts)
+        throw std::invalid_argument("the model is not one of a robot with four wheeled legs");
+    if (substeps < 1) throw std::invalid_argument("substeps must be at least 1");
+}
+
+RobotState Rollout::truth() const {
+    std::array<double, control::kPositions + control::kVelocities> numbers;
+    std::copy_n(data_->qpos, control::kPositions, numbers.begin());
+    std::copy_n(data_->qvel, control::kVelocities, numbers.begin() + control::kPositions);
+    return std::bit_cast<RobotState>(numbers);
+}
+
+bool Rollout::diverged() const {
+    double total = 0.0;
+    for (std::size_t i = 0; i < control::kPositions; ++i) total += std::abs(data_->qpos[i]);
+    for (std::size_t i = 0; i < control::kVelocities; ++i) total += std::abs(data_->qvel[i]);
+    return !(total < kBeyond);
+}
+
+void Rollout::control(const RobotState& seen, bool moving, double time) {
+    const RobotState state = truth();
+    const control::Reference& target = follower_.advance(controller_.places(), moving, dt_);
+    const control::Torques wanted = controller_.step(seen, target);
+    const control::Torques torques = control::limit_torques(controller_.robot(), std::span<const double, 12>(state.joint_rates), wanted);
+    std::copy(torques.begin(), torques.end(), data_->ctrl);
+    score_.add(state, torques, target, dt_);
+    if (!log_.due()) return;
+    Sample sample;
+    sample.time = time, sample.state = state, sample.torques = torques;
+    std::copy_n(data_->sensordata, sample.contacts.size(), sample.contacts.begin());
+    sample.progress = target.progress;
+    const auto& [front, rear] = target.value.wheels;
+    const auto& q = target.value.joints;
+    sample.target = {front, rear, q[0], q[1], q[2], q[3], target.value.pitch};
+    sample.places = controller_.places();
+    log_.add(sample);
+}
+
+int Rollout::run(const Chunk& chunk, std::span<const double> noise) {
+    for (int k = chunk.first; k < chunk.last; ++k) {
+        if (diverged()) return chunk.last;
+        if (!(chunk.looked && k == chunk.first)) {
+            const std::size_t row = static_cast<std::size_t>(k) * kNoiseWidth;
+            const auto drawn = row + kNoiseWidth <= noise.size() ? noise.subspan(row, kNoiseWidth) : std::span<const double>();
+            control(sensors_.perceive(truth(), drawn), chunk.moving, chunk.begun + k * dt_);
+            const double* found = data_->sensordata;
+            const int wheels = static_cast<int>(found[0] + found[4] + found[8] + found[12]);
+            if (chunk.loaded || static_cast<int>(found[kAllContacts]) != wheels) return k;
+        }
+        for (int i = 0; i < substeps_; ++i) mj_step(model_, data_);
+    }
+    return chunk.last;
+}
+
+}  // namespace stairwright::rollout
