@@ -10,5 +10,7 @@ void bind_terrain(nanobind::module_& m);
 void bind_statics(nanobind::module_& m);
 void bind_smoothing(nanobind::module_& m);
 void bind_poses(nanobind::module_& m);
+void bind_lattice(nanobind::module_& m);
+void bind_lattice_sweeps(nanobind::module_& m);
 
 }  // namespace stairwright::python

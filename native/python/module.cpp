@@ -13,4 +13,6 @@ NB_MODULE(_core, m) {
     bind_statics(m);
     bind_smoothing(m);
     bind_poses(m);
+    bind_lattice(m);
+    bind_lattice_sweeps(m);
 }
