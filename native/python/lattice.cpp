@@ -1,6 +1,7 @@
 // Problems on the body lattice: what the sweeps read. Tables stay where Python made them.
 #include "lattice.hpp"
 
+#include <cmath>
 #include <memory>
 
 #include "bindings.hpp"
@@ -59,8 +60,13 @@ KeptProblem make_problem(const RobotModel& robot, const Lattice& lattice, const 
     require(trunk.table.pitches == lattice.pitches && trunk.table.stored >= trunk.table.columns + lattice.nx,
             "trunk table: of these pitches, with a window's room beyond its last column");
     KeptProblem out{{robot, lattice, {s.data(), s.data() + s.size()}, points(centres), {front.table, rear.table},
-                     trunk.table, least_leg_distance, least_com_margin},
+                     trunk.table, {}, {}, least_leg_distance, least_com_margin},
                     {}};
+    for (int t = 0; t < lattice.pitches; ++t) {
+        const double pitch = (t - lattice.pitches / 2) * lattice.turn;
+        out.problem.cosines.push_back(std::cos(pitch));
+        out.problem.sines.push_back(std::sin(pitch));
+    }
     for (const auto* arrays : {&front.arrays, &rear.arrays, &trunk.arrays})
         out.arrays.insert(out.arrays.end(), arrays->begin(), arrays->end());
     return out;

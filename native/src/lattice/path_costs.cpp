@@ -75,7 +75,7 @@ void CheapestPaths::pose_costs(const Problem& problem, const Cell& cell, const C
     for (int t = std::max(0, range.low / lattice.layer() - 2); t < std::min(lattice.nt, range.high / lattice.layer() - 1); ++t) {
         const int pitch_index = cell.t0 + t;
         const double pitch = (pitch_index - lattice.pitches / 2) * lattice.turn, lean = pitch + 0.8 * cell.slope;
-        const float first = left + terms.trunk_offset(problem, std::cos(pitch), std::sin(pitch));
+        const float first = left + terms.trunk_offset(problem, problem.cosines[pitch_index], problem.sines[pitch_index]);
         const TableWindow at = table_window(problem, cell, t);
         const float *front_moments = front.moments(cell.front, pitch_index), *rear_moments = rear.moments(cell.rear, pitch_index);
         const float *front_costs = front.costs(cell.front, pitch_index), *rear_costs = rear.costs(cell.rear, pitch_index);

@@ -1,7 +1,6 @@
 #include "stairwright/lattice/widest_paths.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "stairwright/lattice/leg_clearance.hpp"
 #include "stairwright/simd.hpp"
@@ -120,8 +119,7 @@ int WidestPaths::collect(const Problem& problem, const Cell& cell, FlatRange ran
     int count = 0;
     for (int t = std::max(0, range.low / lattice.layer() - 2); t < std::min(lattice.nt, range.high / lattice.layer() - 1); ++t) {
         const int pitch_index = cell.t0 + t;
-        const double pitch = (pitch_index - lattice.pitches / 2) * lattice.turn;
-        const double cosine = std::cos(pitch), sine = std::sin(pitch);
+        const double cosine = problem.cosines[pitch_index], sine = problem.sines[pitch_index];
         const float cos = static_cast<float>(cosine), sin = static_cast<float>(sine);
         const float trunk_com = terms.trunk_offset(problem, cosine, sine);
         const TableWindow at = table_window(problem, cell, t);

@@ -77,6 +77,7 @@ struct Problem {
     std::vector<Vec2> centres;   // of the wheels there [m]
     std::array<LegTable, 2> legs;
     TrunkTable trunk;
+    std::vector<double> cosines, sines;  // of the lattice's pitches
     double least_leg_distance = 0.0;  // [m]
     double least_com_margin = 0.0;    // [m]
 };
