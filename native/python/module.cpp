@@ -15,4 +15,6 @@ NB_MODULE(_core, m) {
     bind_poses(m);
     bind_control(m);
     bind_rollout(m);
+    bind_lattice(m);
+    bind_lattice_sweeps(m);
 }

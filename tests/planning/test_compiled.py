@@ -100,7 +100,7 @@ def _called(function: Dispatcher) -> Iterator[Dispatcher]:
 
 def test_leaves_call_only_leaves_and_functions_of_numbers() -> None:
     leaves = [one for one in _dispatchers() if one.targetoptions.get("_nrt") is False]
-    assert len(leaves) > 50
+    assert len(leaves) > 20  # that they are found at all
     for one in leaves:
         for called in _called(one):
             assert called in leaves or _is_of_numbers(called), (one.py_func, called.py_func)

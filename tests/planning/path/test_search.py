@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from stairwright import _core
 from stairwright.library import load_robot
 from stairwright.planning.path import search
 from stairwright.planning.path.lattice import BOLD, HOPE, make_lattice
@@ -29,23 +30,28 @@ def search_of(course: Course, bounds) -> Search:
     return Search(course, *course.stands, make_lattice(course.robot, 2.0), bounds)
 
 
+def spied(monkeypatch, kind, everywhere: bool):
+    """The searches of a kind that sweep from now on, one entry a sweep."""
+    sweep, swept = kind.sweep, []
+
+    def spy(paths, *rest):
+        if everywhere:
+            paths.look_everywhere()
+        swept.append(paths)
+        return sweep(paths, *rest)
+
+    monkeypatch.setattr(kind, "sweep", spy)
+    return swept
+
+
 def swept(course: Course, monkeypatch, everywhere: bool):
     """What sweeps that roll back reach, how many there are, and how many cells they look at."""
-    flood, swept = search.flood, []
-
-    def spied(w, cells, v, *rest):
-        if everywhere:
-            v.sweeps.seen.fill(-1)
-        changed = flood(w, cells, v, *rest)
-        swept.append(v)
-        return changed
-
-    monkeypatch.setattr(search, "flood", spied)
+    sweeps = spied(monkeypatch, _core.WidestPaths, everywhere)
     search_of(course, HOPE).find(course.friction, course.reserve, HOPE.com, False, True)
     monkeypatch.undo()
-    v = swept[-1]
-    widths = {c: v.width[v.slot[c]].copy() for c in np.flatnonzero(v.best)}
-    return widths, len(swept), int(v.sweeps.clock[0])
+    widest = sweeps[-1]
+    widths = {int(c): widest.width(int(c)).copy() for c in np.flatnonzero(widest.best)}
+    return widths, len(sweeps), widest.visits
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -86,13 +92,14 @@ def way_of(course: Course, monkeypatch, back: bool):
 def test_the_cheapest_way_goes_through_cells_that_lead_to_the_goal(seed, back, monkeypatch):
     course = steps(seed, 0.12)
     found, spared = way_of(course, monkeypatch, back), []
-    leading_to = search.leading_to
+    leading_to = _core.WidestPaths.leading_to
 
-    def all_wide(cells, v, level, goal, moves):
-        spared.append((v.best >= level) & ~leading_to(cells, v, level, goal, moves))
-        return v.best >= level
+    def all_wide(widest, level, goal, moves):
+        wide = widest.best >= level
+        spared.append(wide & ~leading_to(widest, level, goal, moves))
+        return wide
 
-    monkeypatch.setattr(search, "leading_to", all_wide)
+    monkeypatch.setattr(_core.WidestPaths, "leading_to", all_wide)
     same = way_of(course, monkeypatch, back)
     assert np.array_equal(found.s, same.s)
     assert np.array_equal(found.body, same.body)
@@ -102,23 +109,11 @@ def test_the_cheapest_way_goes_through_cells_that_lead_to_the_goal(seed, back, m
 @pytest.mark.parametrize("seed", range(3))
 def test_the_cheapest_way_back_is_that_of_sweeps_that_look_everywhere(seed, monkeypatch):
     course = steps(seed, 0.12)
-    cheapest, looked = search.cheapest, []
-
-    def spied(everywhere):
-        def sweep(w, cells, v, costs, *rest):
-            if everywhere:
-                costs.sweeps.seen.fill(-1)
-            changed = cheapest(w, cells, v, costs, *rest)
-            looked.append(int(costs.sweeps.clock[0]))
-            return changed
-
-        return sweep
-
     ways, last = [], []
     for everywhere in (False, True):
-        monkeypatch.setattr(search, "cheapest", spied(everywhere))
+        sweeps = spied(monkeypatch, _core.CheapestPaths, everywhere)
         ways.append(way_of(course, monkeypatch, True))
-        last.append(looked[-1])
+        last.append(sweeps[-1].visits)
     assert last[0] < last[1]
     assert np.array_equal(ways[0].s, ways[1].s)
     assert np.array_equal(ways[0].body, ways[1].body)

@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from stairwright import _core
 from stairwright.library import load_robot
-from stairwright.planning.path.collide import legs_clear
 from stairwright.planning.path.ground import box_clearance, link_clearance, make_ground
-from stairwright.planning.path.kernels import dilate, gather, reach
-from stairwright.planning.path.lattice import make_lattice
 from stairwright.planning.path.legs import LEGS, REACH, RECORD, evaluate, make_legs
 from stairwright.planning.path.tables import alike
 
@@ -38,24 +36,6 @@ def test_level_samples_far_from_everything_are_alike():
     assert not like.any()
 
 
-def test_dilation_of_a_part_equals_that_of_the_whole():
-    lat = make_lattice(load_robot("a1_wheeled"), 2.0)
-    size, edge = (lat.nt + 4) * (lat.nz + 4) * lat.row, reach(lat)
-    rng = np.random.default_rng(2)
-    source = np.zeros(size, np.uint8)
-    at = rng.integers(size // 3, size // 2, 20)
-    source[at] = rng.integers(1, 255, 20)
-    lo, hi = int(at.min()), int(at.max()) + 1
-    answers = []
-    for first, last in ((lo - edge, hi + edge), (0, size)):
-        pad, out = np.zeros(size, np.uint8), np.zeros(size, np.uint8)
-        gather(source, lo, hi, 0, pad)
-        dilate(pad, out, max(0, first), min(size, last), lat)
-        answers.append(out)
-    assert np.array_equal(*answers)
-    assert answers[0].max() == source.max()
-
-
 @pytest.mark.parametrize("name", ["a1_wheeled", "a1_wheeled_x"])
 def test_legs_of_many_poses_are_told_apart_as_those_of_one(name):
     robot, gap = load_robot(name).planar, 0.06
@@ -71,9 +51,9 @@ def test_legs_of_many_poses_are_told_apart_as_those_of_one(name):
         evaluate(ground, robot, front, rear, world, wheels, 0.1, points, record)
     within = records[:, REACH] > 0.0  # the search asks about no others
     least, (x, z, pitch) = records[within, LEGS], bodies[within].T
-    columns = (c.astype(np.float32) for c in (x, z, np.cos(pitch), np.sin(pitch)))
-    clear = np.empty(len(x), np.bool_)
-    legs_clear(robot, front, rear, gap, apart, *columns, clear)
+    poses = np.array([x, z, np.cos(pitch), np.sin(pitch)], np.float32)
+    model = _core.RobotModel(load_robot(name).native)
+    clear = _core.legs_clear(model, gap, *apart, poses).astype(bool)
     close = np.abs(least - gap) < 1e-5
     assert np.array_equal(clear[~close], (least >= gap)[~close])
     assert min(clear.sum(), (~clear).sum()) > 100

@@ -13,24 +13,15 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.compiled import leaf, vector_leaf
-from stairwright.robot.description import Planar
+from stairwright.compiled import leaf
 from stairwright.statics.contact import CAP
 
 from .contacts import TOUCH, lagged_interval, make_scratch, pair_interval, steady_interval
-from .ground import Ground
-from .legs import Leg
-from .tables import Floats32, Lattice, LegTable
-from .trunk import TrunkTable
+from .tables import Lattice
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
-Bytes = NDArray[np.uint8]
 Flags = NDArray[np.bool_]
-
-FULL_MARGIN = 0.06  # m; more CoM margin is no better
-RESERVED = 101  # quality from here on: equilibrium also at the reserved friction
-
 
 # Wheel moves (front, rear); the first three roll forward.
 MOVES = np.array(
@@ -211,75 +202,3 @@ def _origins(s: Floats, corners: Floats, front: Ints, rear: Ints, number: Ints) 
             if i == f or j == r or (touch[i] == touch[f] and touch[j] == touch[r]):
                 out[c, m] = number[i, j]
     return out
-
-
-class World(NamedTuple):
-    """Everything that the kernels read."""
-
-    ground: Ground
-    robot: Planar
-    front: Leg
-    rear: Leg
-    centres: Floats
-    s: Floats
-    lat: Lattice
-    front_table: LegTable
-    rear_table: LegTable
-    trunk: TrunkTable
-    legs_gap: float
-    com: float
-
-
-@nb.njit(cache=True)
-def volume_size(lat: Lattice) -> int:
-    """Length of a flat volume."""
-    return (lat.nt + 4) * (lat.nz + 4) * lat.row
-
-
-@nb.njit(cache=True)
-def row_start(lat: Lattice, t: int, z: int) -> int:
-    """Position of column 0 of row (t, z) of a window in its flat volume."""
-    return ((t + 2) * (lat.nz + 4) + z + 2) * lat.row + 2
-
-
-@leaf
-def table_rows(
-    w: World, cells: Cells, c: int, t: int
-) -> tuple[int, int, int, int, int, int, int, int]:
-    """Where pitch `t` of cell `c` finds its values.
-
-    Returns:
-        Rows of front, rear and trunk table that its row 0 reads, shifts of their columns against
-        the window's, and the first of its rows that all three have and the one after the last.
-    """
-    i, j, tt = cells.front[c], cells.rear[c], cells.t0[c] + t
-    fz, rz = cells.z0[c] - w.front_table.z0[i, tt], cells.z0[c] - w.rear_table.z0[j, tt]
-    tz, rows = cells.z0[c] - w.trunk.z0, w.front_table.cost.shape[2]
-    low = max(0, -fz, -rz, -tz)
-    high = min(w.lat.nz, rows - fz, rows - rz, w.trunk.cost.shape[1] - tz)
-    sf, sr = cells.x0[c] - w.front_table.x0[i, tt], cells.x0[c] - w.rear_table.x0[j, tt]
-    return fz, rz, tz, sf, sr, cells.x0[c] - w.trunk.x0, low, high
-
-
-@vector_leaf
-def quality(spans: Floats, com: float, x: Floats32, out: Bytes) -> None:
-    """Quality (n,) of poses with their CoM at `x` (n,) [m]: more is safer, 0 is impossible.
-
-    Args:
-        spans: (6,) of the cell.
-        com: Least CoM margin [m].
-        x: Of the CoM.
-        out: Filled.
-    """
-    lo, hi = np.float32(spans[0]), np.float32(spans[1])
-    rlo, rhi = np.float32(spans[2]), np.float32(spans[3])
-    if rlo > rhi:
-        rlo, rhi = np.float32(1e6), np.float32(-1e6)
-    least, scale, one = np.float32(com), np.float32(1.0 / FULL_MARGIN), np.float32(1.0)
-    for k in range(len(x)):
-        m, mr = min(x[k] - lo, hi - x[k]), min(x[k] - rlo, rhi - x[k])
-        base = np.float32(99.0) * min(one, (m - least) * scale) + one
-        more = np.float32(154.0) * min(one, (mr - least) * scale) + np.float32(RESERVED)
-        level = more if mr >= least else base
-        level = level if m >= least else np.float32(0.0)
-        out[k] = np.uint8(level)

@@ -1,4 +1,4 @@
-"""Where ways begin and end: poses of a cell near a stand, with the widest or the cheapest way."""
+"""Where ways begin and end: poses of a cell near a stand, with the widest way."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .cells import Cells, volume_size
+from stairwright import _core
+
+from .cells import Cells
 from .course import Stand
-from .tables import INF, Lattice
-from .volumes import Costs, Volumes
+from .tables import Lattice
 
 Ints = NDArray[np.int32]
 Longs = NDArray[np.int64]
@@ -43,37 +44,30 @@ def anywhere(lat: Lattice) -> Ints:
     return np.array([[0, lat.nt], [0, lat.nz], [0, lat.nx]], np.int32)
 
 
-def arrival(lat: Lattice, v: Volumes, goals: Longs, target: Ints | None) -> tuple[int, int, Ints]:
+def arrival(
+    lat: Lattice, widest: _core.WidestPaths, goals: Longs, target: Ints | None
+) -> tuple[int, int, Ints]:
     """Best quality at one of the `goals` (cells), near the pose `target` (3,) if there is one.
 
     Returns:
         The quality (0: none is reached), the goal, and its pose.
     """
-    goal = int(goals[int(np.argmax(v.best[goals]))])
-    if v.best[goal] == 0:
+    best_of = widest.best
+    goal = int(goals[int(np.argmax(best_of[goals]))])
+    if best_of[goal] == 0:
         return 0, goal, np.zeros(3, np.int32)
     if target is None:
-        return int(v.best[goal]), goal, widest_pose(lat, v, goal)
+        return int(best_of[goal]), goal, widest_pose(lat, widest, goal)
     part = near(lat, target)
-    widths = _window(lat, v.width[v.slot[goal]])[_slices(part)]
+    widths = _window(lat, widest.width(goal))[_slices(part)]
     best = int(widths.max())
     return best, goal, part[:, 0] + _place(widths, int(widths.argmax())) if best else target
 
 
-def widest_pose(lat: Lattice, v: Volumes, c: int) -> Ints:
+def widest_pose(lat: Lattice, widest: _core.WidestPaths, c: int) -> Ints:
     """The pose of cell `c` with the widest way to it."""
-    widths = _window(lat, v.width[v.slot[c]])
+    widths = _window(lat, widest.width(c))
     return _place(widths, int(widths.argmax()))
-
-
-def cheapest_pose(lat: Lattice, costs: Costs, c: int, pose: Ints) -> Ints:
-    """The pose of cell `c` near `pose` with the cheapest way to it."""
-    flat = np.full(volume_size(lat), INF, np.float32)
-    low, high, at = costs.low[c], costs.high[c], costs.base[c]
-    flat[low:high] = costs.value[at + low : at + high]
-    part = near(lat, pose)
-    values = _window(lat, flat)[_slices(part)]
-    return part[:, 0] + _place(values, int(values.argmin()))
 
 
 def _window(lat: Lattice, volume: NDArray[Any]) -> NDArray[Any]:

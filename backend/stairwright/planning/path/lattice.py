@@ -12,10 +12,10 @@ from stairwright.robot.description import Robot
 
 from .legs import LEGS_GAP, make_legs
 from .tables import Bounds, Lattice
-from .words import WORD
 
 Floats = NDArray[np.float64]
 
+_WORD = 64  # columns of a row's bitset
 _PITCHES = 1.9  # rad; largest pitch searched: the trunk may lean back past vertical
 
 # What lattice poses keep: a little more than the final bounds (strict); as much less as rounding to
@@ -57,7 +57,7 @@ def make_lattice(robot: Robot, fine: float = 1.0) -> Lattice:
     turn = 0.12 * fine
     half = math.ceil(reach / (0.5 * step))
     row = 8 * math.ceil((2 * round(13 / fine) + 6) / 8)
-    assert row <= WORD, "a row of the lattice must fit into a word"
+    assert row <= _WORD, "a row of the lattice must fit into a word"
     return Lattice(
         step=step,
         turn=turn,

@@ -5,22 +5,20 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright import _core
 from stairwright.planning.threads import still_wanted
 
 from .cells import (
     FORWARD,
     MOVES,
     Cells,
-    World,
     build_cells,
     lag_spans,
     pitch_ranges,
     wheel_pairs,
 )
-from .cheapest import cheapest, trace
 from .course import Stand, sample_course, scale, stand_height
-from .ends import anywhere, arrival, cheapest_pose, near, pose_in, widest_pose
-from .flood import flood
+from .ends import anywhere, arrival, near, pose_in, widest_pose
 from .lattice import Finding
 from .legs import LEGS_GAP, Leg, farthest_apart
 from .question import LAG, Question
@@ -35,7 +33,6 @@ from .tables import (
     on_lattice,
 )
 from .trunk import trunk_table
-from .volumes import Volumes, leading_to, make_costs, make_volumes
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -135,42 +132,44 @@ class Search:
         if not entries.any() or not len(goals):
             return Finding(None, None, 0, None)
         still_wanted()
-        w = self._world(com)
+        problem = self._problem(com)
         source = int(np.argmax(entries))
         seed = pose_in(lat, cells, source, self.begin)
         first = anywhere(lat) if open_start else near(lat, seed)
-        v = make_volumes(len(cells.front), lat)
+        windows = _windows(problem, cells)
+        widest = _core.WidestPaths(problem, windows, cells.spans)
         moves = FORWARD
-        flood(w, cells, v, entries, first, moves)
-        best, goal, pose = arrival(lat, v, goals, target)
+        widest.sweep(entries, first, moves)
+        best, goal, pose = arrival(lat, widest, goals, target)
         if best == 0 and roll_back:
             moves = len(MOVES)
-            v.sweeps.seen.fill(-1)  # none has been looked at for ways back
+            widest.look_everywhere()  # no cell has been looked at for ways back
             for k in range(_SWEEPS):
-                if not flood(w, cells, v, entries, first, moves):
+                if not widest.sweep(entries, first, moves):
                     break
-                best, goal, pose = arrival(lat, v, goals, target)
+                best, goal, pose = arrival(lat, widest, goals, target)
                 if best > 0 and k > 1:
                     break
-        reached = None if best > 0 else self._farthest(cells, v)
+        reached = None if best > 0 else self._farthest(cells, widest)
         if best == 0 and (not partial or reached is None):
             return Finding(None, None, 0, reached)
         if best > 0 and not cheap:
             return Finding(None, None, best, None, moves > FORWARD)
         if best == 0:
             goal = int(cells.number[self._index(Stand(reached or (0.0, 0.0), self.end.body))])
-            pose = widest_pose(lat, v, goal)
+            pose = widest_pose(lat, widest, goal)
         still_wanted()
-        wide = best or int(v.best[goal])
+        wide = best or int(widest.best[goal])
         level = max(1, min(wide, 150) if wide > 100 else int(0.7 * wide))
-        wanted = leading_to(cells, v, level, goal, moves)
+        wanted = widest.leading_to(level, goal, moves)
         lag_spans(
             cells, wanted, self.path.pieces, self.path.corners, self.planar.wheel_radius,
             self.s, friction, LAG,
         )  # fmt: skip
-        rows = self._smoothest(w, cells, v, source, seed, goal, pose, moves, level, wanted)
+        costs = _core.CheapestPaths(widest, cells.spans, wanted, level, self._weights(), moves)
+        rows = self._smoothest(costs, source, seed, goal, pose, moves)
         if rows is None:
-            return Finding(None, None, 0, self._farthest(cells, v))
+            return Finding(None, None, 0, self._farthest(cells, widest))
         s = np.stack([self.s[rows[:, 0]], self.s[rows[:, 1]]], axis=1)
         body = np.stack(
             [rows[:, 4] * lat.step, rows[:, 3] * lat.step, rows[:, 2] * lat.turn], axis=1
@@ -184,18 +183,19 @@ class Search:
         Returns:
             Arc lengths of front and rear wheel, in order; empty where a way leads to the end.
         """
-        cells, w = self._cells(friction, 0.0, com), self._world(com)
+        cells, problem = self._cells(friction, 0.0, com), self._problem(com)
+        windows = _windows(problem, cells)
         goals, target = self._goals(cells, open_end)
         out: list[Place] = []
         row = 0
         while len(goals) and row <= cells.rear[goals].max():
-            v = make_volumes(len(cells.front), self.lattice)
-            flood(w, cells, v, cells.rear == row, anywhere(self.lattice), FORWARD)
-            end = self._farthest(cells, v)
+            widest = _core.WidestPaths(problem, windows, cells.spans)
+            widest.sweep(cells.rear == row, anywhere(self.lattice), FORWARD)
+            end = self._farthest(cells, widest)
             if end is None:
                 row += 1
                 continue
-            if arrival(self.lattice, v, goals, target)[0] > 0:
+            if arrival(self.lattice, widest, goals, target)[0] > 0:
                 break
             out.append(end)
             row = self._index(Stand(end, self.end.body))[0]
@@ -217,32 +217,33 @@ class Search:
         )  # fmt: skip
 
     def _smoothest(
-        self, w: World, cells: Cells, v: Volumes, source: int, seed: Ints, goal: int, pose: Ints,
-        moves: int, level: int, wanted: Flags,
-    ) -> Ints | None:  # fmt: skip
-        """Cheapest way at least `level` wide from cell `source` to `goal` through `wanted` cells.
-
-        See `cheapest`, `trace`.
+        self, costs: _core.CheapestPaths, source: int, seed: Ints, goal: int, pose: Ints, moves: int
+    ) -> Ints | None:
+        """Cheapest path from the pose `seed` of cell `source` to one near `pose` of cell `goal`.
 
         Returns:
             (n, 5) its front and rear samples and lattice poses (pitch, z, x), if it ends.
         """
-        height, wish = stand_height(self.robot), 0.09 * scale(self.robot)
-        pulls = np.array([self.weights.com_margin, self.weights.pitch, height, wish])
-        smooth = 0.25 * self.weights.smoothness
-        costs = make_costs(v, level, wanted)
         for _ in range(1 if moves == FORWARD else 2 * _SWEEPS):
-            if not cheapest(w, cells, v, costs, source, seed, moves, smooth, pulls, level):
+            if not costs.sweep(source, tuple(seed.tolist())):
                 break
-        rows = np.empty((4 * len(self.s) + 400, 5), np.int32)
-        last = cheapest_pose(self.lattice, costs, goal, pose)
-        count = trace(w, cells, costs, source, goal, last, moves, smooth, rows)
-        return rows[:count][::-1] if count >= 0 else None
+        last = costs.cheapest_pose(goal, near(self.lattice, pose))
+        return costs.backtrack(source, goal, last, 4 * len(self.s) + 400)
 
-    def _world(self, com: float) -> World:
-        return World(
-            self.ground, self.planar, *self.legs, self.centres, self.s, self.lattice,
-            self.front_table, self.rear_table, self.trunk,
+    def _weights(self) -> _core.LatticeWeights:
+        w = self.weights
+        height, wanted = stand_height(self.robot), 0.09 * scale(self.robot)
+        return _core.LatticeWeights(w.com_margin, w.pitch, height, wanted, 0.25 * w.smoothness)
+
+    def _problem(self, com: float) -> _core.LatticeProblem:
+        lat = self.lattice
+        shape = _core.Lattice(lat.step, lat.turn, lat.pitches, lat.nt, lat.nz, lat.nx, lat.row)
+        return _core.lattice_problem(
+            _core.RobotModel(self.robot.native), shape, self.s, self.centres,
+            _leg_table(self.front_table), _leg_table(self.rear_table),
+            _core.lattice_trunk_table(
+                self.trunk.cost, self.trunk.possible, self.trunk.x0, self.trunk.z0
+            ),
             self.bounds.legs, com,
         )  # fmt: skip
 
@@ -260,11 +261,24 @@ class Search:
             int(np.argmin(np.abs(self.s - where.wheels[1]))),
         )
 
-    def _farthest(self, cells: Cells, v: Volumes) -> Place | None:
+    def _farthest(self, cells: Cells, widest: _core.WidestPaths) -> Place | None:
         """The pair of places farthest along that was reached."""
-        found = np.flatnonzero(v.best)
+        found = np.flatnonzero(widest.best)
         if len(found) == 0:
             return None
         sums = self.s[cells.front[found]] + self.s[cells.rear[found]]
         c = found[int(np.argmax(sums))]
         return float(self.s[cells.front[c]]), float(self.s[cells.rear[c]])
+
+
+def _leg_table(table: LegTable) -> _core.LatticeLegTable:
+    return _core.lattice_leg_table(
+        table.cost, table.possible, table.moment, table.carried,
+        table.x0, table.z0, table.u, table.v,
+    )  # fmt: skip
+
+
+def _windows(problem: _core.LatticeProblem, cells: Cells) -> _core.LatticeCells:
+    return problem.cells(
+        cells.front, cells.rear, cells.t0, cells.z0, cells.x0, cells.slope, cells.origin
+    )

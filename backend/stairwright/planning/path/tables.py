@@ -259,14 +259,3 @@ def bits(row: Floats32) -> np.uint64:
     for k in range(len(row)):
         word |= np.uint64(row[k] < INF) << np.uint64(k)
     return word
-
-
-@nb.njit(cache=True, inline="always")
-def moments(table: LegTable, i: int, t: int, column: int, row: int) -> tuple[Floats32, int, int]:
-    """Moments of sample `i` at pitch `t`, less what it `carried`.
-
-    Returns:
-        Rows and columns of moments, and where in them a column and a row of the table lie.
-    """
-    u, v = table.u[i, t], table.v[i, t]
-    return table.moment[v % 2, u % 2], u // 2 + column, v // 2 + row
