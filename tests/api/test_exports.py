@@ -9,9 +9,9 @@ import httpx
 import numpy as np
 import pytest
 
+from stairwright.api.described import ANY_FILE
 from stairwright.client import Client, ServiceError
 from stairwright.export.table import FORMATS, ROBOT_FORMATS
-from stairwright.api.described import ANY_FILE
 from stairwright.library import load_robot, robots
 from tests.conftest import Server
 from tests.export.mcap_reading import messages
