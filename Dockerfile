@@ -37,9 +37,8 @@ RUN cmake -S native -B /tmp/native -G Ninja -DPython_EXECUTABLE="$(command -v py
     && cmake --build /tmp/native \
     && cmake --install /tmp/native --prefix backend/stairwright
 COPY --from=page /src/frontend/dist/ frontend/dist/
-# Compiled kernels fit one kind of processor; on another one they are compiled again at the start.
 RUN pip install --no-deps --no-build-isolation . \
-    && NUMBA_CACHE_DIR=/opt/stairwright/kernels python -m stairwright.warmup
+    && python -m stairwright.warmup
 
 FROM base
 LABEL org.opencontainers.image.title="Stairwright" \
@@ -47,13 +46,11 @@ LABEL org.opencontainers.image.title="Stairwright" \
 RUN useradd --uid 10001 --user-group --no-create-home --home-dir /data stairwright \
     && install --directory --owner stairwright --group stairwright /data
 COPY --from=program /opt/stairwright/ /opt/stairwright/
-COPY --chmod=755 docker-entrypoint.sh /usr/local/bin/
 # Only /data and /tmp are written to, so the root file system may be read-only.
 ENV PATH=/opt/stairwright/bin:$PATH \
     PYTHONUNBUFFERED=1 \
     PYTHONDONTWRITEBYTECODE=1 \
     MUJOCO_GL=disable \
-    NUMBA_CACHE_DIR=/tmp/stairwright-kernels \
     STAIRWRIGHT_DATA=/data
 USER 10001:10001
 WORKDIR /data
@@ -61,6 +58,6 @@ VOLUME /data
 EXPOSE 8000
 HEALTHCHECK --interval=15s --timeout=5s --start-period=120s --retries=3 \
     CMD ["python", "-c", "import urllib.request as r; r.urlopen('http://127.0.0.1:8000/api/v1/healthz', timeout=4)"]
-ENTRYPOINT ["docker-entrypoint.sh"]
+ENTRYPOINT ["stairwright"]
 # Others can reach a container, so serving from one asks for a secret: set STAIRWRIGHT_TOKEN.
 CMD ["serve", "--host", "0.0.0.0", "--port", "8000"]

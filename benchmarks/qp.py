@@ -79,7 +79,7 @@ def record(count: int) -> list[Problem]:
 
         qp.solve = keep
         try:
-            sw.rollout(plan, friction, {"solver": "daqp"}, progress=enough)
+            sw.rollout(plan, friction, {"solver": "clarabel"}, progress=enough)
         except Cancelled:
             pass  # as intended
         finally:

@@ -17,7 +17,7 @@ from typing import Any
 
 import httpx
 
-START_LIMIT = 300.0  # s; kernels may have to be compiled
+START_LIMIT = 120.0  # s
 STAIR = {"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
 LONG = {"points": [[-1.0, 0], [40.0, 0]]}
 

@@ -16,8 +16,6 @@ import stairwright
 STRANGER = ("unshare", "--user", "--map-user=12345")  # an id that no list of users knows
 MORTAL = ("setpriv", "--bounding-set=-dac_override,-dac_read_search")  # root obeys permissions
 IMPORTS = """
-from stairwright.kernel_cache import keep_kernels
-keep_kernels()
 import stairwright.simulation.rollout
 import stairwright.planning.planner
 """

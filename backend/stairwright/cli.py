@@ -109,10 +109,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             from .api.server import serve
 
             return serve(host=chosen.host, port=chosen.port)
-        from . import commands, kernel_cache, preparing
+        from . import commands
 
-        kernel_cache.keep_kernels()
-        preparing.listen(preparing.Teller())
         reason = commands.COMMANDS[chosen.command](chosen)
         sys.stdout.flush()
     except InputError as error:

@@ -1,61 +1,31 @@
-"""Compile and cache everything that is compiled on first use: ``python -m stairwright.warmup``.
+"""Compile to bytecode what a server imports: ``python -m stairwright.warmup``.
 
-Run once after installation, so that no user waits for a compiler: neither for numba's, nor for
-Python's own, which some installers leave for later and some environments never let write.
+Run once after installation: some installers leave it for later, and some environments never let it
+be written; each start then takes seconds longer.
 """
 
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import py_compile
 import sys
-import time
 from pathlib import Path
-
-from .library import load_robot, robots
-from .planning.interpolation import reference
-from .planning.planner import plan
-from .terrain.profile import Terrain
 
 SERVED = (
     "uvicorn.main",
     "stairwright.api.app",
     "stairwright.scene.session",
     "stairwright.export.formats",
+    "stairwright.planning.critical_poses",
+    "stairwright.planning.path.planner",
+    "stairwright.simulation.rollout",
 )
-_STEP = Terrain(points=[(-1.2, 0.0), (0.0, 0.0), (0.0, 0.1), (1.2, 0.1)])
-_WALL = Terrain(points=[(-1.2, 0.0), (0.0, 0.0), (0.0, 1.3), (1.2, 1.3)])
-# High enough to be out of clearance, low enough to be within reach: diagnosed by solving.
-_LOW_WALL = Terrain(points=[(-1.2, 0.0), (0.0, 0.0), (0.0, 0.85), (1.2, 0.85)])
-
-
-def warm_up() -> float:
-    """Plan small courses with every robot, one impossible, and roll one out; returns seconds."""
-    begun = time.perf_counter()
-    warm_up_plans()
-    if importlib.util.find_spec("stairwright.simulation.rollout") is not None:
-        from .simulation.rollout import rollout
-
-        flat = Terrain(points=[(0.0, 0.0), (1.0, 0.0)])
-        rollout(plan(flat, load_robot(robots()[0])))
-    return time.perf_counter() - begun
-
-
-def warm_up_plans() -> None:
-    """What a plan can need, whatever comes of it."""
-    for name in robots():
-        plan(_STEP, load_robot(name))
-        reference(plan(_STEP, load_robot(name), method="critical"))
-    plan(_WALL, load_robot(robots()[0]))
-    for wall in (_WALL, _LOW_WALL):
-        plan(wall, load_robot("a1_wheeled"), method="critical")
 
 
 def compile_bytecode() -> int:
     """Compile what a server imports to bytecode files where those are missing; how many.
 
-    Without them each start takes seconds longer. A folder that cannot be written is left alone.
+    A folder that cannot be written is left alone.
     """
     for name in SERVED:
         importlib.import_module(name)
@@ -82,6 +52,4 @@ def _is_fresh(bytecode: Path, source: Path) -> bool:
 
 
 if __name__ == "__main__":
-    seconds = warm_up()
-    modules = compile_bytecode()
-    sys.stdout.write(f"compiled code is warm ({seconds:.1f} s, {modules} modules)\n")
+    sys.stdout.write(f"{compile_bytecode()} modules were compiled to bytecode\n")

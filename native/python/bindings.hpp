@@ -14,5 +14,6 @@ void bind_control(nanobind::module_& m);
 void bind_rollout(nanobind::module_& m);
 void bind_lattice(nanobind::module_& m);
 void bind_lattice_sweeps(nanobind::module_& m);
+void bind_lattice_tables(nanobind::module_& m);
 
 }  // namespace stairwright::python

@@ -106,6 +106,7 @@ CellList make_cells(const KeptProblem& kept, const Column& front, const Column& 
 
 void bind_lattice(nb::module_& m) {
     m.attr("FORWARD_MOVES") = kForwardMoves;
+    m.attr("WHEEL_MOVES") = static_cast<int>(kMoves.size());
     nb::class_<Lattice>(m, "Lattice")
         .def("__init__", [](Lattice* self, double step, double turn, int pitches, int nt, int nz, int nx, int row) {
             require(step > 0.0 && turn > 0.0 && nt > 0 && nz > 0 && nx > 0 && pitches >= nt, "lattice: sizes above 0, no more pitches in a window than in all");

@@ -17,4 +17,5 @@ NB_MODULE(_core, m) {
     bind_rollout(m);
     bind_lattice(m);
     bind_lattice_sweeps(m);
+    bind_lattice_tables(m);
 }

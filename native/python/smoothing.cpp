@@ -3,6 +3,7 @@
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -103,7 +104,16 @@ RefinedPath run(const RefineProblem& problem, const Nodes& ends, const Nodes& po
 }  // namespace
 
 void bind_smoothing(nb::module_& m) {
-    nb::class_<RobotModel>(m, "RobotModel").def(nb::init<const Robot&>());
+    nb::class_<RobotModel>(m, "RobotModel", "A robot, with what planning derives from it once.")
+        .def(nb::init<const Robot&>())
+        .def_prop_ro("reach", [](const RobotModel& r) {
+            std::vector<std::pair<double, double>> out;
+            for (const LegModel& leg : r.legs) out.emplace_back(leg.reach.least, leg.reach.most);
+            return out;
+        }, "Least and largest distance from hip to wheel of front and rear leg [m].")
+        .def_prop_ro("most_wheel_distance", &RobotModel::most_wheel_distance, "Of the wheels' centres, in any pose [m].")
+        .def_prop_ro("legs_alike", &RobotModel::legs_alike, "Whether front and rear leg reach alike, whatever their hips.");
+    m.attr("LEGS_GAP") = kLegsGap;
     nb::class_<PathWeights>(m, "PathWeights")
         .def(nb::init<double, double, double, double, double>(), nb::arg("com_margin"), nb::arg("clearance"),
              nb::arg("torque"), nb::arg("smoothness"), nb::arg("pitch"));

@@ -27,9 +27,31 @@ void bind_statics(nb::module_& m) {
         const Interval found = com_interval(contacts(at, normals, friction), limit);
         return std::pair(found.lower, found.upper);
     }, nb::arg("points"), nb::arg("normals"), nb::arg("friction"), nb::arg("limit") = kRayLimit);
+    m.attr("GRAVITY") = kGravity;
+    m.attr("RAY_LIMIT") = kRayLimit;
+    m.attr("NOTHING_HOLDS") = kNothingHolds;
+    m.def("com_margin", [](std::pair<double, double> interval, double com_x) {
+        return com_margin({interval.first, interval.second}, com_x);
+    }, nb::arg("interval"), nb::arg("com_x"));
+    m.def("least_friction", [](const Points& at, const Points& normals, double com_x, double ample) {
+        const std::vector<Contact> given = contacts(at, normals, 0.0);
+        if (given.size() != 2) throw nb::value_error("two contacts, please");
+        std::array<ContactForce, 2> forces;
+        const double needed = least_friction({given[0], given[1]}, com_x, ample, forces);
+        return std::pair(needed, give(std::vector<double>{forces[0].tangential, forces[0].normal, forces[1].tangential, forces[1].normal}, {2, 2}));
+    }, nb::arg("points"), nb::arg("normals"), nb::arg("com_x"), nb::arg("ample") = 0.0,
+       "Friction needed, and forces (2, 2): tangential and normal of either contact, in weights.");
     m.def("friction_needed", [](const Points& at, const Points& normals, double com_x) {
         return friction_needed(contacts(at, normals, 0.0), com_x);
     });
+    m.def("pair_interval", [](const WheelPath& path, double front, double rear, double friction, double ray_limit) {
+        const Interval found = pair_interval(path, {front, rear}, friction, ray_limit);
+        return std::pair(found.lower, found.upper);
+    }, nb::arg("path"), nb::arg("front"), nb::arg("rear"), nb::arg("friction"), nb::arg("ray_limit") = kRayLimit);
+    m.def("steady_interval", [](const WheelPath& path, double front, double rear, double friction) {
+        const Interval found = steady_interval(path, {front, rear}, friction);
+        return std::pair(found.lower, found.upper);
+    }, nb::arg("path"), nb::arg("front"), nb::arg("rear"), nb::arg("friction"));
     m.def("com_intervals", [](const WheelPath& path, const In<double, nb::shape<-1, 2>>& s, double friction) {
         std::vector<double> out;
         for (std::size_t k = 0; k < s.shape(0); ++k) {

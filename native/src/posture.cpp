@@ -138,4 +138,24 @@ PoseGeometry pose_geometry(const Terrain& terrain, const RobotModel& robot, cons
     return out;
 }
 
+namespace {
+
+bool alike(const Link& a, const Link& b) {
+    const auto same = [](Vec2 u, Vec2 v) { return u.x == v.x && u.z == v.z; };
+    bool out = same(a.end, b.end) && same(a.com, b.com) && a.mass == b.mass && a.shape.size() == b.shape.size();
+    for (std::size_t k = 0; out && k < a.shape.size(); ++k)
+        out = same(a.shape[k].a, b.shape[k].a) && same(a.shape[k].b, b.shape[k].b) && a.shape[k].radius == b.shape[k].radius;
+    return out;
+}
+
+}  // namespace
+
+bool RobotModel::legs_alike() const {
+    const LegModel &front = legs[kFront], &rear = legs[kRear];
+    const Leg &a = front.leg, &b = rear.leg;
+    return alike(a.thigh, b.thigh) && alike(a.calf, b.calf) && a.knee == b.knee && a.wheel.mass == b.wheel.mass &&
+           a.thigh_motor.torque == b.thigh_motor.torque && a.calf_motor.torque == b.calf_motor.torque &&
+           front.reach.least == rear.reach.least && front.reach.most == rear.reach.most;
+}
+
 }  // namespace stairwright

@@ -1,9 +1,8 @@
-"""The first start on a machine, nothing compiled: slow, but nothing fails, and it says why."""
+"""Starts: what is asked early waits, ready means that a plan is answered, and it says why not."""
 
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import signal
 import socket
@@ -56,9 +55,8 @@ def starting(folder: Path, **variables: str) -> Iterator[str]:
 
 @pytest.fixture
 def cold(tmp_path: Path) -> Iterator[str]:
-    """The same with nothing compiled; a plan may take 3 s."""
-    kernels = str(tmp_path / "kernels")
-    with starting(tmp_path, NUMBA_CACHE_DIR=kernels, STAIRWRIGHT_PLAN_DEADLINE="3") as api:
+    """The same; a plan may take 3 s."""
+    with starting(tmp_path, STAIRWRIGHT_PLAN_DEADLINE="3") as api:
         yield api
 
 
@@ -100,8 +98,6 @@ def test_nothing_fails_because_it_is_cold(cold: str, tmp_path: Path) -> None:
     thread.join(PATIENCE)
     assert [answer.status_code for answer in early] == [200], early[0].text
     assert all(text.startswith("starting for ") for text in told)
-    if list((tmp_path / "kernels").rglob("*.nbi")):
-        assert any("functions so far" in text for text in told)
     # An import waits for its worker too, rather than fail.
     file = {"file": ("stairs.csv", b"x,z\n0,0\n1,0\n1,0.1\n2,0.1\n", "text/csv")}
     assert httpx.post(f"{cold}/terrains/import", files=file, timeout=PATIENCE).status_code == 200
@@ -132,45 +128,3 @@ def test_a_service_that_cannot_plan_is_not_ready(tmp_path: Path) -> None:
         broken.unlink()
         wait_for_health(api, 200, "ok")
         assert httpx.post(f"{api}/plans", json={"terrain": STAIR}, timeout=60).is_success
-
-
-@pytest.mark.slow
-def test_the_command_plan_says_that_it_compiles(tmp_path: Path) -> None:
-    kernels = tmp_path / "kernels"
-    terrain = tmp_path / "stair.json"
-    terrain.write_text(json.dumps(STAIR))
-    done = subprocess.run(
-        [sys.executable, "-m", "stairwright", "plan", str(terrain)],
-        env=os.environ | {"NUMBA_CACHE_DIR": str(kernels)},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert "feasible" in done.stdout
-    assert ("compiling for this machine" in done.stderr) == bool(list(kernels.rglob("*.nbi")))
-
-
-def test_the_command_line_says_what_it_compiles(tmp_path: Path) -> None:
-    """A kernel of our own stands for those that are there in greater number."""
-    (tmp_path / "kernel.py").write_text(
-        "from stairwright.compiled import leaf\n@leaf\ndef double(x):\n    return x * 2.0\n"
-    )
-    code = (
-        "from stairwright import preparing\npreparing.listen(preparing.Teller(0.0))\n"
-        "import kernel\nkernel.double(1.0)\nkernel.double(1)\n"
-    )
-    for expected in (2, 0):  # it is kept
-        env = os.environ | {"PYTHONDONTWRITEBYTECODE": "1"}
-        path = os.pathsep.join([str(tmp_path), env.get("PYTHONPATH", "")])
-        done = subprocess.run(
-            [sys.executable, "-c", code],
-            env=env | {"PYTHONPATH": path, "NUMBA_CACHE_DIR": str(tmp_path / "kernels")},
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        lines = done.stderr.splitlines()
-        assert len(lines) == expected, done.stderr
-        if expected:
-            assert "compiling for this machine" in lines[0]
-            assert "2 functions" in lines[1]

@@ -144,7 +144,7 @@ def test_planned_face_at_a_concave_corner() -> None:
     corner = float(path.corners[0])
 
     def normal(measured: float, planned: float):
-        return face_normal(path.pieces, path.radius, path.corners, measured, planned)
+        return face_normal(path, measured, planned)
 
     floor, wall = (0.0, 1.0), (-1.0, 0.0)
     np.testing.assert_allclose(normal(corner - 0.01, corner - 0.005), floor, atol=1e-9)

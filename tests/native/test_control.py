@@ -30,7 +30,7 @@ def state_and_row(robot, random: np.random.Generator):
 def test_native_controller_equals_plain(name: str) -> None:
     robot = load_robot(name)
     path = wheel_path(load_terrain("single-stair-036"), robot.wheel.radius)
-    settings = ControllerSettings(solver="quadprog", beta=0.01)
+    settings = ControllerSettings(solver="clarabel", beta=0.01)
     random = np.random.default_rng(7)
     for _ in range(100):
         qpos, qvel, row = state_and_row(robot, random)

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 import stairwright as sw
+from stairwright._core import GRAVITY
 from stairwright.errors import InputError
 from stairwright.planning.interpolation import reference
-from stairwright.statics.contact import GRAVITY
 from tests.shapely_checker import check
 
 CASES = [(t, r) for r in sw.robots() for t in ("ramp-30deg-025", "single-stair-036", "curb-015")]

@@ -10,7 +10,7 @@ import shapely
 from scipy.optimize import linprog
 
 import stairwright as sw
-from stairwright.statics.contact import CAP
+from stairwright._core import RAY_LIMIT
 from stairwright.terrain.stairs import stair
 
 TOUCHES = 0.0014  # m; a rim this near to a face touches it
@@ -46,7 +46,7 @@ def margin(points, normals, friction, x):
     rays = np.array(columns).T
     ends = []
     for sign in (1.0, -1.0):
-        answer = linprog(sign * rays[2], A_eq=rays[:2], b_eq=[0.0, 1.0], bounds=(0.0, CAP))
+        answer = linprog(sign * rays[2], A_eq=rays[:2], b_eq=[0.0, 1.0], bounds=(0.0, RAY_LIMIT))
         assert answer.status == 0
         ends.append(sign * answer.fun)
     return min(x - ends[0], ends[1] - x)

@@ -248,7 +248,9 @@ def test_trials_report() -> None:
 
 
 @pytest.mark.parametrize(
-    "solver", ["native", pytest.param("daqp", marks=pytest.mark.slow)], ids=["threads", "processes"]
+    "solver",
+    ["native", pytest.param("clarabel", marks=pytest.mark.slow)],
+    ids=["threads", "processes"],
 )
 def test_workers_change_nothing(solver: str) -> None:
     plan = sw.plan(FLAT, "a1_wheeled", method="nominal")

@@ -40,5 +40,5 @@ def configure(level: str) -> None:
     root = logging.getLogger()
     root.handlers[:] = [handler]
     root.setLevel(level.upper())
-    for noisy in ("uvicorn.access", "websockets", "httpx", "numba", "alembic"):
+    for noisy in ("uvicorn.access", "websockets", "httpx", "alembic"):
         logging.getLogger(noisy).setLevel(logging.WARNING)

@@ -6,7 +6,6 @@ import socket
 
 from stairwright.errors import InputError
 from stairwright.jobs.launch import launch
-from stairwright.kernel_cache import keep_kernels
 
 from .settings import Settings
 
@@ -22,7 +21,6 @@ def serve(host: str | None = None, port: int | None = None) -> int:
     settings = Settings.from_env(host=host, port=port)
     _check_address(settings.host, settings.port)
     descriptors = _raise_descriptor_limit()
-    keep_kernels(settings.data / "kernels")
     launch()  # gets ready while this process imports what follows
     import uvicorn
 

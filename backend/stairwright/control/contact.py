@@ -18,7 +18,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.terrain.wheel_path import curve_at, project
+from stairwright.terrain.wheel_path import WheelPath
 
 Floats = NDArray[np.float64]
 
@@ -31,36 +31,26 @@ WIDEST = math.radians(80.0)  # half of the widest cone
 _BESIDE = 1e-6  # m
 
 
-def locate(pieces: Floats, radius: float, x: float, z: float, near: float) -> float:
+def locate(path: WheelPath, x: float, z: float, near: float) -> float:
     """Arc length of the wheel centre (x, z), near where it was; anywhere if `near` is NaN."""
     if math.isnan(near):
-        return project(pieces, radius, x, z, 0.0, pieces[-1, 1] + pieces[-1, 2])
-    return project(pieces, radius, x, z, max(0.0, near - WINDOW), near + WINDOW)
+        return path.native.project(x, z, 0.0, path.length)
+    return path.native.project(x, z, max(0.0, near - WINDOW), near + WINDOW)
 
 
-def face_normal(
-    pieces: Floats, radius: float, corners: Floats, measured: float, planned: float
-) -> tuple[float, float]:
+def face_normal(path: WheelPath, measured: float, planned: float) -> tuple[float, float]:
     """Unit normal (x, z) of the face that the wheel at `measured` shall push on."""
     at = measured
     if abs(planned - measured) < CORNER_REACH:
         low, high = min(planned, measured), max(planned, measured)
-        for corner in corners:
+        for corner in path.corners:
             if low <= corner < high:
                 at = corner + _BESIDE if planned > measured else corner - _BESIDE
-    _, _, nx, nz = curve_at(pieces, radius, at)
-    return nx, nz
+    return path.normal(at)
 
 
 def support(
-    pieces: Floats,
-    radius: float,
-    corners: Floats,
-    measured: float,
-    planned: float,
-    friction: float,
-    lean: int,
-    out: Floats,
+    path: WheelPath, measured: float, planned: float, friction: float, lean: int, out: Floats
 ) -> None:
     """How the wheel at `measured` is carried, into `out` (8,); in a corner as `lean` says.
 
@@ -68,11 +58,10 @@ def support(
     far the force acts from the wheel's centre [m] (the radius; 0 in a corner), and the normals of
     the face before and after a corner (both the same elsewhere).
     """
-    for corner in corners:
+    for corner in path.corners:
         if abs(planned - corner) >= CORNER_PLANNED or abs(measured - corner) >= CORNER_MEASURED:
             continue
-        _, _, ax, az = curve_at(pieces, radius, corner - _BESIDE)
-        _, _, bx, bz = curve_at(pieces, radius, corner + _BESIDE)
+        (ax, az), (bx, bz) = path.normal(corner - _BESIDE), path.normal(corner + _BESIDE)
         if lean == BOTH:
             length = math.hypot(ax + bx, az + bz)
             half = 0.5 * math.acos(min(1.0, max(-1.0, ax * bx + az * bz)))
@@ -83,8 +72,8 @@ def support(
         nx, nz = (ax, az) if lean == BEFORE else (bx, bz)
         break
     else:
-        nx, nz = face_normal(pieces, radius, corners, measured, planned)
-    out[0], out[1], out[2], out[3] = nx, nz, friction, radius
+        nx, nz = face_normal(path, measured, planned)
+    out[0], out[1], out[2], out[3] = nx, nz, friction, path.radius
     out[4], out[5], out[6], out[7] = nx, nz, nx, nz
 
 

@@ -83,7 +83,7 @@ class Controller:
     def locate(self, state: Measurement) -> Floats:
         """Update and return the wheels' places (4,)."""
         for i, (x, z) in enumerate(state.wheels):
-            self.places[i] = locate(self.path.pieces, self.path.radius, x, z, self.places[i])
+            self.places[i] = locate(self.path, x, z, self.places[i])
         return self.places
 
     def step(self, qpos: Floats, qvel: Floats, target: Setpoint) -> Floats:
@@ -100,7 +100,7 @@ class Controller:
         held = np.empty((4, 8))
         leans = np.repeat(target.leans, 2)
         for row, here, there, lean in zip(held, self.places, planned, leans, strict=True):
-            support(self.path.pieces, radius, self.path.corners, here, there, usable, lean, row)
+            support(self.path, here, there, usable, lean, row)
         normals, friction, reach = held[:, :2], held[:, 2], held[:, 3:4]
         frames = rigid_body.contact_frames(normals)
         points = state.wheels - reach * normals

@@ -11,7 +11,7 @@ from stairwright.arguments import as_model
 from stairwright.documents import Model
 
 Form = Literal["contact", "paper"]
-Solver = Literal["native", "daqp", "clarabel", "quadprog", "proxqp", "piqp", "osqp"]
+Solver = Literal["native", "clarabel"]
 
 
 def _number(
@@ -38,8 +38,8 @@ class ControllerSettings(Model):
     solver: Solver = Field(
         "native",
         title="QP solver",
-        description="Solves the balance QP (eqs 11-12). native is compiled into the control loop; "
-        "the others go through qpsolvers; clarabel is the reference",
+        description="Solves the balance QP (eqs 11-12): native is part of the control loop; "
+        "clarabel, through qpsolvers, is the reference",
     )
     speed: float | None = _number(
         None, 0.02, 1.0, "m/s", "Speed", "Along the course; the plan's own timing if empty", "log"

@@ -7,9 +7,11 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from stairwright import _core
+
 _PACKAGE = Path(__file__).resolve().parents[1]
-_PLANNING = ("terrain", "robot", "statics", "planning")
-_LIBRARIES = ("numpy", "casadi", "mujoco", "numba", "scipy")
+_PLANNING = ("terrain", "robot", "planning")
+_LIBRARIES = ("numpy", "casadi", "mujoco", "scipy")
 
 
 @cache
@@ -25,7 +27,7 @@ def rollout_engine() -> str:
 
 
 def _fingerprint(folders: tuple[str, ...]) -> str:
-    total = hashlib.sha256()
+    total = hashlib.sha256(Path(_core.__file__).read_bytes())
     for folder in folders:
         for path in sorted((_PACKAGE / folder).rglob("*.py")):
             total.update(str(path.relative_to(_PACKAGE)).encode() + b"\0" + path.read_bytes())

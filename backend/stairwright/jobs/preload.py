@@ -1,9 +1,8 @@
 """Imported once by the process that workers are forked from, so that each starts warm.
 
 This module does work at import, because that is when the fork server can do it: it imports what
-workers need, loads the compiled kernels, and keeps numeric libraries to one thread each. What
-planning needs comes first, since somebody may wait for a plan; what only rollouts need comes when
-the workers for plans are there.
+workers need, and keeps numeric libraries to one thread each. What planning needs comes first, since
+somebody may wait for a plan; what only rollouts need comes when the workers for plans are there.
 """
 
 from __future__ import annotations
@@ -14,8 +13,7 @@ import signal
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_variable] = "1"
 
-from stairwright import preparing  # noqa: E402 - numeric libraries read the variables
-from stairwright.jobs import work  # noqa: E402
+from stairwright.jobs import work  # noqa: E402 - numeric libraries read the variables
 from stairwright.jobs.stage import Stage  # noqa: E402
 
 TICK = 0.5  # s between looks whether the service is still there
@@ -40,17 +38,10 @@ def _warm_rollouts(*_: object) -> None:
 
 
 def _warm_plans() -> None:
-    """One small plan brings everything into memory; if that had to be compiled, all is."""
+    """One small plan brings everything into memory."""
     stage = Stage.inherited()
     stage.tell("loading the planner")
-    preparing.listen(
-        lambda count: stage.tell(
-            f"compiling for this machine, which happens once: {count} functions so far"
-        )
-    )
     work.warm_plans()
-    if preparing.count():
-        work.warm_all_plans()
     stage.tell("starting workers")
 
 

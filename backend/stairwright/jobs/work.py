@@ -184,14 +184,6 @@ def warm_plans() -> None:
         plan(GENTLE, robots()[0], method="critical")
 
 
-def warm_all_plans() -> None:
-    """Every kind of plan: on a machine where nothing is compiled yet, nobody shall wait later."""
-    with _logged():
-        from stairwright.warmup import warm_up_plans
-
-        warm_up_plans()
-
-
 def rehearse() -> None:
     """A small plan in a worker, so that the first one that counts meets warm memory.
 

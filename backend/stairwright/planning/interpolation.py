@@ -21,7 +21,6 @@ from stairwright import _core
 from stairwright.errors import InputError
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
-from stairwright.statics.contact import GRAVITY
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
 from .balance_way import ROOM, com_ways, eased_shift
@@ -85,7 +84,7 @@ def reference(
         com=com,
         normals=normals,
         contacts=contacts,
-        forces=robot.mass * GRAVITY * _core.resting_forces(com[:, 0], contacts, normals),
+        forces=robot.mass * _core.GRAVITY * _core.resting_forces(com[:, 0], contacts, normals),
     )
 
 

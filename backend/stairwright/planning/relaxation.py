@@ -12,12 +12,11 @@ from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
 from .path.course import NoStand
-from .path.lattice import BOLD
+from .path.lattice import BOLD, Bounds
 from .path.node_margins import Motor
 from .path.pieces import pieces
 from .path.search import Place
 from .path.solve import Blocked, Course, Solved, pose_course
-from .path.tables import Bounds
 
 Kind = Literal["reach", "clearance", "statics", "torque", "joint_limit"]
 

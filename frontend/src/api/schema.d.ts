@@ -628,11 +628,11 @@ export interface components {
             form: "contact" | "paper";
             /**
              * QP solver
-             * @description Solves the balance QP (eqs 11-12). native is compiled into the control loop; the others go through qpsolvers; clarabel is the reference
+             * @description Solves the balance QP (eqs 11-12): native is part of the control loop; clarabel, through qpsolvers, is the reference
              * @default native
              * @enum {string}
              */
-            solver: "native" | "daqp" | "clarabel" | "quadprog" | "proxqp" | "piqp" | "osqp";
+            solver: "native" | "clarabel";
             /**
              * Speed
              * @description Along the course; the plan's own timing if empty

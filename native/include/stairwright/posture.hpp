@@ -27,6 +27,8 @@ struct RobotModel {
     double scale() const;
     // Distance of the wheels' centres that no pose of the trunk exceeds [m].
     double most_wheel_distance() const;
+    // Whether front and rear leg have the same links, knee side, motors and reach.
+    bool legs_alike() const;
 };
 
 using WheelCentres = std::array<Vec2, 2>;

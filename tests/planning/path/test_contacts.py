@@ -5,32 +5,22 @@ import math
 import numpy as np
 import pytest
 
-from stairwright.planning.path.contacts import (
-    STRAY,
-    make_scratch,
-    pair_interval,
-    steady_interval,
-    wheel_contacts,
-)
-from stairwright.statics.contact import com_interval
+from stairwright._core import com_intervals, pair_interval, steady_interval
 from stairwright.terrain.stairs import stair
 from stairwright.terrain.wheel_path import wheel_path
 
 RADIUS, FRICTION = 0.05, 0.5
 PATH = wheel_path(stair(0.2, 0.3, 2), RADIUS)
-GROUND = (PATH.pieces, PATH.corners, RADIUS)
+STRAY = 0.005  # m
 
 
-def interval(front, rear, friction=FRICTION, cap=1.0):
-    return pair_interval(*GROUND, front, rear, friction, cap, make_scratch())
+def interval(front, rear, cap=1.0):
+    return pair_interval(PATH.native, front, rear, FRICTION, cap)
 
 
 def all_faces(front, rear):
     """What friction on every touching face could hold."""
-    points, normals = np.empty((4, 2)), np.empty((4, 2))
-    n = wheel_contacts(*GROUND, front, points, normals, 0)
-    n += wheel_contacts(*GROUND, rear, points, normals, n)
-    return com_interval(points, normals, n, FRICTION)
+    return com_intervals(PATH.native, np.array([[front, rear]]), FRICTION)[0]
 
 
 def test_level_ground_carries_between_the_wheels():
@@ -74,7 +64,7 @@ def test_on_an_edge_a_wheel_may_stray():
     """Half round the first edge, the rear wheel on the level before the stair."""
     edge = PATH.corners[0] + 0.2 - RADIUS + 0.6 * RADIUS * math.pi / 2
     rear = PATH.corners[0] - 0.05
-    steady = steady_interval(*GROUND, edge, rear, FRICTION, make_scratch())
+    steady = steady_interval(PATH.native, edge, rear, FRICTION)
     assert steady[0] < steady[1]
     for stray in (-STRAY, 0.0, STRAY):
         low, high = interval(edge + stray, rear, cap=0.75)
@@ -84,6 +74,4 @@ def test_on_an_edge_a_wheel_may_stray():
 
 
 def test_on_level_ground_straying_changes_nothing():
-    assert steady_interval(*GROUND, 0.9, 0.6, FRICTION, make_scratch()) == interval(
-        0.9, 0.6, cap=0.75
-    )
+    assert steady_interval(PATH.native, 0.9, 0.6, FRICTION) == interval(0.9, 0.6, cap=0.75)

@@ -7,9 +7,8 @@ import pytest
 
 from stairwright import _core
 from stairwright.library import load_robot
-from stairwright.planning.path.ground import box_clearance, link_clearance, make_ground
-from stairwright.planning.path.legs import LEGS, REACH, RECORD, evaluate, make_legs
-from stairwright.planning.path.tables import alike
+from stairwright.planning.path.cells import alike
+from stairwright.robot import kinematics
 
 
 def stairs(n):
@@ -38,21 +37,21 @@ def test_level_samples_far_from_everything_are_alike():
 
 @pytest.mark.parametrize("name", ["a1_wheeled", "a1_wheeled_x"])
 def test_legs_of_many_poses_are_told_apart_as_those_of_one(name):
-    robot, gap = load_robot(name).planar, 0.06
-    front, rear = make_legs(robot)
-    ground = make_ground(np.array([[-2.0, -5.0], [2.0, -5.0]]))
+    robot, gap = load_robot(name), 0.06
+    model = _core.RobotModel(robot.native)
     rng = np.random.default_rng(11)
     bodies = rng.uniform((-0.35, 0.1, -1.2), (0.1, 0.4, 1.2), (6000, 3))
     origin, apart = np.array([40.0, 1.0]), (-0.27, 0.11)
-    wheels = np.array([*origin, *(origin + apart)])
-    points, records = np.empty((2, 3, 2)), np.empty((len(bodies), RECORD))
-    for body, record in zip(bodies, records, strict=True):
-        world = body + np.array([*origin, 0.0])
-        evaluate(ground, robot, front, rear, world, wheels, 0.1, points, record)
-    within = records[:, REACH] > 0.0  # the search asks about no others
-    least, (x, z, pitch) = records[within, LEGS], bodies[within].T
+    wheels = np.stack([origin, origin + apart])
+    x, z, pitch = (bodies + np.array([*origin, 0.0])).T
+    q = kinematics.inverse(robot, x, z, pitch, np.tile(wheels, (len(x), 1, 1)))
+    within = np.isfinite(q).all(axis=1)  # the search asks about no others
+    world = np.stack([x, z, pitch], axis=1)[within]
+    least = np.array(
+        [_core.legs_distance(robot.native, *one) for one in zip(world, q[within], strict=True)]
+    )
+    x, z, pitch = bodies[within].T
     poses = np.array([x, z, np.cos(pitch), np.sin(pitch)], np.float32)
-    model = _core.RobotModel(load_robot(name).native)
     clear = _core.legs_clear(model, gap, *apart, poses).astype(bool)
     close = np.abs(least - gap) < 1e-5
     assert np.array_equal(clear[~close], (least >= gap)[~close])
@@ -62,6 +61,9 @@ def test_legs_of_many_poses_are_told_apart_as_those_of_one(name):
 
 @pytest.mark.parametrize("height", [0.4, 2.0])
 def test_a_spike_through_trunk_or_link_is_deep(height):
-    ground = make_ground(np.array([[-1.0, 0.0], [0.0, 0.0], [0.0, height], [0.0, 0.0], [1.0, 0.0]]))
-    assert link_clearance(ground, -0.1, 0.3, 0.1, 0.31, 0.01, 0.05) < -0.012
-    assert box_clearance(ground, 0.0, 0.3, 1.0, 0.0, 0.12, 0.06, 0.05) < -0.009
+    ground = _core.Terrain(
+        np.array([[-1.0, 0.0], [0.0, 0.0], [0.0, height], [0.0, 0.0], [1.0, 0.0]])
+    )
+    box = _core.Polygon(0.01 * np.array([[-12.0, -6.0], [12.0, -6.0], [12.0, 6.0], [-12.0, 6.0]]))
+    assert ground.link_clearance(-0.1, 0.3, 0.1, 0.31, 0.01, 0.05) < -0.012
+    assert ground.polygon_clearance(box, 0.0, 0.3, 0.0, 0.05) < -0.009

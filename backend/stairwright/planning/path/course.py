@@ -10,13 +10,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright import _core
 from stairwright.arguments import MOST_FRICTION
 from stairwright.planning.plan import Limit
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath
-
-from .legs import make_legs
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -117,9 +116,10 @@ def stand_height(robot: Robot) -> float:
 
     Where the legs cannot give the robot's nominal height it is the nearest that they can.
     """
-    legs = make_legs(robot.planar)
-    low = max(leg.reach_min + 0.1 * (leg.reach_max - leg.reach_min) - leg.hip_z for leg in legs)
-    high = min(leg.reach_max - 0.02 * (leg.reach_max - leg.reach_min) - leg.hip_z for leg in legs)
+    hips = (robot.hips.front[1], robot.hips.rear[1])
+    ranges = list(zip(_core.RobotModel(robot.native).reach, hips, strict=True))
+    low = max(least + 0.1 * (most - least) - hip for (least, most), hip in ranges)
+    high = min(most - 0.02 * (most - least) - hip for (least, most), hip in ranges)
     return min(max(robot.nominal_height - robot.wheel.radius, low), max(high, low))
 
 

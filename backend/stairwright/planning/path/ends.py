@@ -11,7 +11,7 @@ from stairwright import _core
 
 from .cells import Cells
 from .course import Stand
-from .tables import Lattice
+from .lattice import Lattice
 
 Ints = NDArray[np.int32]
 Longs = NDArray[np.int64]

@@ -4,26 +4,68 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright import _core
 from stairwright.robot.description import Robot
-
-from .legs import LEGS_GAP, make_legs
-from .tables import Bounds, Lattice
 
 Floats = NDArray[np.float64]
 
 _WORD = 64  # columns of a row's bitset
 _PITCHES = 1.9  # rad; largest pitch searched: the trunk may lean back past vertical
 
+
+class Lattice(NamedTuple):
+    """The body lattice: x = i * step, z = j * step, pitch = (t - pitches // 2) * turn."""
+
+    step: float  # m
+    turn: float  # rad
+    pitches: int  # of the whole table
+    nt: int  # pitches of one cell's window
+    nz: int  # rows of one cell's window
+    nx: int  # columns of one cell's window
+    row: int  # columns stored per row: the window, its rim, and room for shifts
+    low: int  # first row of a window, relative to the mean wheel height
+    half: int  # the hip grid spans -half..half of step / 2 round the wheel
+
+    @property
+    def native(self) -> _core.Lattice:
+        """The same for the native core."""
+        return _core.Lattice(
+            self.step, self.turn, self.pitches, self.nt, self.nz, self.nx, self.row
+        )
+
+    @property
+    def windows(self) -> _core.WindowShape:
+        """How windows lie round pairs of wheels."""
+        return _core.WindowShape(self.native, self.low)
+
+
+class Bounds(NamedTuple):
+    """Bounds that every lattice pose keeps. The obstruction search relaxes one at a time."""
+
+    trunk: float  # least clearance of the trunk [m]
+    links: float  # least clearance of the links [m]
+    legs: float  # least gap between front and rear leg [m]
+    reach: float  # slack of the hip-wheel distance; negative widens the calf's range [m]
+    thigh: float  # slack of the thigh joints; negative widens their range [rad]
+    com: float  # least CoM margin [m]
+
+    @property
+    def tolerances(self) -> _core.Tolerances:
+        """What tables need of it."""
+        return _core.Tolerances(self.trunk, self.links, self.reach, self.thigh)
+
+
 # What lattice poses keep: a little more than the final bounds (strict); as much less as rounding to
 # the lattice may take from a pose that is really possible (bold: the polish must repair it); or so
 # much less that a search without success settles the matter (hope; the polish repairs many of its
 # finds, and sooner than a finer lattice would spare it the work); or what lies between (keen).
 # Where bare bounds of lattice poses (plain) leave a way, 19 of 20 become plans.
-STRICT = Bounds(trunk=0.006, links=0.006, legs=LEGS_GAP, reach=0.003, thigh=0.0, com=0.005)
+STRICT = Bounds(trunk=0.006, links=0.006, legs=_core.LEGS_GAP, reach=0.003, thigh=0.0, com=0.005)
 PLAIN = Bounds(trunk=0.0, links=0.0, legs=0.0, reach=0.0, thigh=0.0, com=0.0)
 BOLD = Bounds(trunk=-0.003, links=-0.003, legs=-0.003, reach=0.0, thigh=-0.02, com=-0.01)
 KEEN = Bounds(trunk=-0.006, links=-0.006, legs=-0.006, reach=-0.003, thigh=-0.04, com=-0.015)
@@ -51,8 +93,7 @@ class Finding:
 
 def make_lattice(robot: Robot, fine: float = 1.0) -> Lattice:
     """A lattice for legs of this size; `fine` < 1 refines it."""
-    legs = make_legs(robot.planar)
-    reach = max(leg.reach_max for leg in legs)
+    reach = max(most for _, most in _core.RobotModel(robot.native).reach)
     step = reach / 12.1 * fine
     turn = 0.12 * fine
     half = math.ceil(reach / (0.5 * step))

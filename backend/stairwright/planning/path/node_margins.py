@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .legs import LEGS_GAP
+from stairwright._core import LEGS_GAP
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

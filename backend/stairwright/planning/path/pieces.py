@@ -12,10 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from .course import Stand, scale
-from .legs import farthest_apart
+from .lattice import Bounds
 from .question import Question
 from .search import Place
-from .tables import Bounds
 from .windows import WINDOW, Searches, find_path, search_between
 
 _BEHIND, _BEYOND = 0.3, 1.0  # m; behind the rear and ahead of the front wheel, for legs of 0.4 m
@@ -113,7 +112,7 @@ def _round(q: Question, place: Place) -> Piece:
     low = max(place[1] - _BEHIND * size, begin.wheels[1])
     s = np.arange(place[0] + _BEYOND * size, end.wheels[0], 0.05)
     gaps = np.hypot(*(q.path.centres(s) - q.path.centres(np.array([low]))).T)
-    far = np.flatnonzero(gaps > farthest_apart(q.legs))
+    far = np.flatnonzero(gaps > q.robot_model.most_wheel_distance)
     high = float(s[far[0]]) if len(far) else end.wheels[0]
     return Piece(low, high, low > begin.wheels[1], high < end.wheels[0])
 

@@ -12,8 +12,6 @@ from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath
 
 from .course import Stand, stand_height
-from .ground import Ground
-from .legs import Leg, make_legs
 
 _RESERVE = 0.1  # friction that a plan does without where the terrain allows it
 LAG = 0.02  # m; how late a wheel may arrive at a corner
@@ -26,7 +24,7 @@ class Question:
     terrain: Terrain
     robot: Robot
     path: WheelPath
-    ground: Ground
+    ground: _core.Terrain
     stands: tuple[Stand, Stand]
     friction: float
     weights: PathWeights
@@ -41,9 +39,9 @@ class Question:
         """What the native core needs for smoothing."""
         w = self.weights
         return _core.RefineProblem(
-            _core.Terrain(self.path.vertices),
+            self.ground,
             self.path.native,
-            _core.RobotModel(self.robot.native),
+            self.robot_model,
             self.friction,
             self.reserve,
             LAG,
@@ -51,7 +49,7 @@ class Question:
             _core.PathWeights(w.com_margin, w.clearance, w.torque, w.smoothness, w.pitch),
         )
 
-    @property
-    def legs(self) -> tuple[Leg, Leg]:
-        """Front and rear leg."""
-        return make_legs(self.robot.planar)
+    @cached_property
+    def robot_model(self) -> _core.RobotModel:
+        """The robot, with what planning derives from it once."""
+        return _core.RobotModel(self.robot.native)

@@ -8,39 +8,17 @@ from numpy.typing import NDArray
 from stairwright import _core
 from stairwright.planning.threads import still_wanted
 
-from .cells import (
-    FORWARD,
-    MOVES,
-    Cells,
-    build_cells,
-    lag_spans,
-    pitch_ranges,
-    wheel_pairs,
-)
+from .cells import ALL_MOVES, FORWARD, Cells, alike
 from .course import Stand, sample_course, scale, stand_height
 from .ends import anywhere, arrival, near, pose_in, widest_pose
-from .lattice import Finding
-from .legs import LEGS_GAP, Leg, farthest_apart
+from .lattice import Bounds, Finding, Lattice
 from .question import LAG, Question
-from .tables import (
-    Bounds,
-    Floats32,
-    Lattice,
-    LegTable,
-    Pulls,
-    alike,
-    hip_grid,
-    on_lattice,
-)
-from .trunk import trunk_table
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Longs = NDArray[np.int64]
 Place = tuple[float, float]  # arc lengths of front and rear wheel [m]
 Flags = NDArray[np.bool_]
-
-HipGrid = tuple[Floats32, Floats32, Floats32]
 
 _APART = 0.01  # m; smoothing brings wheels together, and no polish parts them again
 _SWEEPS = 12  # most sweeps when wheels may roll back
@@ -52,54 +30,54 @@ class Search:
     def __init__(
         self, q: Question, begin: Stand, end: Stand, lattice: Lattice, bounds: Bounds
     ) -> None:
-        path, ground, robot, weights = q.path, q.ground, q.robot, q.weights
+        path, robot, model = q.path, q.robot, q.robot_model
         self.path, self.robot, self.lattice, self.bounds = path, robot, lattice, bounds
-        self.begin, self.end, self.weights = begin, end, weights
-        p = robot.planar
-        self.planar = p
-        self.legs = q.legs
-        size = scale(robot)
-        self.s = sample_course(path, begin, end, lattice.step, size)
-        self.centres = np.ascontiguousarray(path.centres(self.s))
-        self.pulls = Pulls(
-            weights.com_margin, weights.clearance, weights.torque, weights.smoothness, weights.pitch
-        )
-        front, rear = self.legs
-        close = 2 * p.wheel_radius + LEGS_GAP + _APART
-        far, ends = farthest_apart(self.legs), (self._index(begin)[0], self._index(end)[1])
-        self.pairs = wheel_pairs(self.centres, close, far, *ends)
-        widest = max(leg.reach_max for leg in self.legs) + 0.2 * (p.thigh + p.calf)
-        kept, like = alike(path.vertices, self.centres, widest)
-        pitches = pitch_ranges(self.centres, self.pairs, lattice)
-
-        def table(leg: Leg, grid: HipGrid) -> LegTable:
-            wanted = pitches[0 if leg is front else 1]
-            mass = p.thigh_mass + p.calf_mass + p.wheel_mass
-            slack = 0.02 + bounds.thigh
-            built: LegTable = on_lattice(
-                grid, like, leg, mass, self.centres, wanted, lattice, slack
-            )
-            return built
-
-        def hips(leg: Leg, samples: Ints) -> HipGrid:
-            grid: HipGrid = hip_grid(
-                ground, p, leg, self.centres[kept], np.unique(like[samples]), lattice, self.pulls,
-                bounds,
-            )  # fmt: skip
-            return grid
-
-        same = all(
-            getattr(front, a) == getattr(rear, a) for a in ("knee", "reach_min", "reach_max")
-        )
-        if same:
-            grid = hips(rear, np.concatenate(self.pairs))
-            self.front_table, self.rear_table = table(front, grid), table(rear, grid)
-        else:
-            self.front_table = table(front, hips(front, self.pairs[0]))
-            self.rear_table = table(rear, hips(rear, self.pairs[1]))
-        self.ground = ground
+        self.begin, self.end, self.weights, self.model = begin, end, q.weights, model
+        self.s = sample_course(path, begin, end, lattice.step, scale(robot))
+        self.centres = path.centres(self.s)
+        close = 2 * path.radius + _core.LEGS_GAP + _APART
+        ends = (self._index(begin)[0], self._index(end)[1])
+        self.pairs = _core.sample_pairs(self.centres, close, model.most_wheel_distance, *ends)
         still_wanted()
-        self.trunk = trunk_table(ground, p, lattice, self.pulls, bounds, self.centres, self.pairs)
+        costs = _core.TableWeights(q.weights.clearance, q.weights.torque)
+        self.legs = self._leg_tables(q.ground, costs)
+        still_wanted()
+        self.trunk = _core.lattice_trunk_table(
+            *_core.trunk_table(
+                q.ground, model, lattice.windows, costs, bounds.trunk, self.centres, self.pairs
+            )
+        )
+
+    def _leg_tables(
+        self, ground: _core.Terrain, costs: _core.TableWeights
+    ) -> tuple[_core.LatticeLegTable, _core.LatticeLegTable]:
+        """What front and rear leg cost; samples with the same ground around share a hip grid."""
+        lattice, model = self.lattice, self.model
+        links = self.robot.thigh.length + self.robot.calf.length
+        widest = max(most for _, most in model.reach) + 0.2 * links
+        kept, like = alike(self.path.vertices, self.centres, widest)
+        pitches = _core.pitch_ranges(self.centres, self.pairs, lattice.windows)
+
+        def grid(pair: int, samples: Ints) -> _core.HipGrid:
+            wanted = np.unique(like[samples])
+            return _core.hip_grid(
+                ground, model, pair, self.centres[kept], wanted, lattice.step, lattice.half,
+                costs, self.bounds.tolerances,
+            )  # fmt: skip
+
+        if model.legs_alike:
+            grids = [grid(0, self.pairs.ravel())] * 2
+        else:
+            grids = [grid(pair, self.pairs[:, pair]) for pair in range(2)]
+        slack = 0.02 + self.bounds.thigh
+
+        def table(pair: int) -> _core.LatticeLegTable:
+            columns = _core.leg_table(
+                grids[pair], model, pair, like, self.centres, pitches[pair], lattice.native, slack
+            )
+            return _core.lattice_leg_table(**columns)
+
+        return table(0), table(1)
 
     def find(
         self,
@@ -142,7 +120,7 @@ class Search:
         widest.sweep(entries, first, moves)
         best, goal, pose = arrival(lat, widest, goals, target)
         if best == 0 and roll_back:
-            moves = len(MOVES)
+            moves = ALL_MOVES
             widest.look_everywhere()  # no cell has been looked at for ways back
             for k in range(_SWEEPS):
                 if not widest.sweep(entries, first, moves):
@@ -162,10 +140,9 @@ class Search:
         wide = best or int(widest.best[goal])
         level = max(1, min(wide, 150) if wide > 100 else int(0.7 * wide))
         wanted = widest.leading_to(level, goal, moves)
-        lag_spans(
-            cells, wanted, self.path.pieces, self.path.corners, self.planar.wheel_radius,
-            self.s, friction, LAG,
-        )  # fmt: skip
+        _core.fill_lag_spans(
+            self.path.native, self.s, cells.front, cells.rear, wanted, cells.spans, friction, LAG
+        )
         costs = _core.CheapestPaths(widest, cells.spans, wanted, level, self._weights(), moves)
         rows = self._smoothest(costs, source, seed, goal, pose, moves)
         if rows is None:
@@ -211,10 +188,11 @@ class Search:
         return goals, pose_in(self.lattice, cells, int(goals[0]), self.end)
 
     def _cells(self, friction: float, reserve: float, com: float) -> Cells:
-        return build_cells(
-            self.path.pieces, self.path.corners, self.planar.wheel_radius, self.s, self.centres,
-            self.pairs, self.lattice, friction, reserve, com,
+        columns = _core.cells(
+            self.path.native, self.s, self.centres, self.pairs, self.lattice.windows,
+            friction, reserve, com,
         )  # fmt: skip
+        return Cells(**columns)
 
     def _smoothest(
         self, costs: _core.CheapestPaths, source: int, seed: Ints, goal: int, pose: Ints, moves: int
@@ -236,14 +214,8 @@ class Search:
         return _core.LatticeWeights(w.com_margin, w.pitch, height, wanted, 0.25 * w.smoothness)
 
     def _problem(self, com: float) -> _core.LatticeProblem:
-        lat = self.lattice
-        shape = _core.Lattice(lat.step, lat.turn, lat.pitches, lat.nt, lat.nz, lat.nx, lat.row)
         return _core.lattice_problem(
-            _core.RobotModel(self.robot.native), shape, self.s, self.centres,
-            _leg_table(self.front_table), _leg_table(self.rear_table),
-            _core.lattice_trunk_table(
-                self.trunk.cost, self.trunk.possible, self.trunk.x0, self.trunk.z0
-            ),
+            self.model, self.lattice.native, self.s, self.centres, *self.legs, self.trunk,
             self.bounds.legs, com,
         )  # fmt: skip
 
@@ -269,13 +241,6 @@ class Search:
         sums = self.s[cells.front[found]] + self.s[cells.rear[found]]
         c = found[int(np.argmax(sums))]
         return float(self.s[cells.front[c]]), float(self.s[cells.rear[c]])
-
-
-def _leg_table(table: LegTable) -> _core.LatticeLegTable:
-    return _core.lattice_leg_table(
-        table.cost, table.possible, table.moment, table.carried,
-        table.x0, table.z0, table.u, table.v,
-    )  # fmt: skip
 
 
 def _windows(problem: _core.LatticeProblem, cells: Cells) -> _core.LatticeCells:

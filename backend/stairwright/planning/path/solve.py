@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright import _core
 from stairwright.planning.certificate import judge
 from stairwright.planning.motion import Motion
 from stairwright.planning.plan import Certificate, Pose
@@ -20,15 +21,13 @@ from stairwright.terrain.wheel_path import wheel_path
 
 from .assemble import make_poses
 from .course import Stand, find_stands
-from .ground import make_ground
-from .lattice import BOLD, HOPE, KEEN, STRICT, Finding
+from .lattice import BOLD, HOPE, KEEN, STRICT, Bounds, Finding
 from .mend import STAGES, mend
 from .node_margins import Motor
 from .pieces import Piece, passes, pieces, stops
 from .question import Question
 from .refine import Refined, refine
 from .search import Place
-from .tables import Bounds
 from .timing import path_parameter
 from .windows import Searches, find_path
 
@@ -110,7 +109,7 @@ def pose_course(terrain: Terrain, robot: Robot, friction: float, weights: PathWe
     """
     path = wheel_path(terrain, robot.wheel.radius)
     stands = find_stands(terrain, robot, path)
-    return Course(terrain, robot, path, make_ground(path.vertices), stands, friction, weights)
+    return Course(terrain, robot, path, _core.Terrain(path.vertices), stands, friction, weights)
 
 
 @dataclass

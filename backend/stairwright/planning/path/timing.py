@@ -9,7 +9,6 @@ from stairwright import _core
 from stairwright.planning.plan import Plan
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
-from stairwright.statics.contact import GRAVITY
 from stairwright.terrain.wheel_path import wheel_path
 
 from .course import rolled
@@ -116,7 +115,7 @@ def _calmed(robot: Robot, times: Floats, body: Floats, q: Floats, margin: Floats
         padded = np.pad(x, reach, mode="edge")
         smooth = np.convolve(padded, window / window.sum(), "valid")
         sway = np.abs(np.gradient(np.gradient(smooth, _TICK), _TICK))
-        sway *= np.interp(even, times, height) / GRAVITY
+        sway *= np.interp(even, times, height) / _core.GRAVITY
         excess = sway / np.interp(even, times, allowed)
         if excess.max() < 1.05:
             break

@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 
 from .course import Stand, scale
-from .lattice import Finding, make_lattice
+from .lattice import Bounds, Finding, make_lattice
 from .question import Question
 from .search import Search
-from .tables import Bounds
 
 WINDOW = 5.0  # m, for legs of 0.4 m
 _LAST = 5.5  # m; what is left of a course when the last window takes it all
