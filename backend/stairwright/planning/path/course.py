@@ -22,6 +22,7 @@ Ints = NDArray[np.int64]
 End = Literal["start", "goal"]
 
 CORNER = 0.15  # rad; concave corners with a smaller kink need no samples of their own
+_MOST_CORNERS = 60  # of one lattice; memory grows with the square of its samples
 _EDGE = 0.0015  # m; samples this near to a corner touch both faces
 _LEVEL = 0.01  # m; a stretch whose wheel centre stays within this height is level
 _SLOPE = 0.2  # rad; and nowhere steeper than this
@@ -265,14 +266,19 @@ def sample_course(path: WheelPath, begin: Stand, end: Stand, step: float, size: 
     """Arc lengths (n,) of the lattice's wheel positions, rising.
 
     They are at most `step` apart; round every concave corner two touch both faces and two, a little
-    farther away, touch one: they force a pose that stands on one face alone.
+    farther away, touch one: they force a pose that stands on one face alone. A saw has more corners
+    than a lattice can hold: there only the sharpest of those that lie close together are sampled,
+    and what lies between is left to the smoothing and the certificate.
     """
     s0, s1 = begin.wheels[1], end.wheels[0]
     marks = [begin.wheels[0], begin.wheels[1], end.wheels[0], end.wheels[1]]
-    for corner in path.corners[(path.corners > s0) & (path.corners < s1)]:
-        if kink(path, float(corner)) > CORNER:
-            for offset in (-0.008 * size, -_EDGE, _EDGE, 0.008 * size):
-                marks.append(float(corner) + offset)
+    apart = 0.0
+    corners = _sharp_corners(path, s0, s1, apart)
+    while len(corners) > _MOST_CORNERS:
+        apart = max(2 * apart, 0.008 * size)
+        corners = _sharp_corners(path, s0, s1, apart)
+    for corner in corners:
+        marks += [corner + offset for offset in (-0.008 * size, -_EDGE, _EDGE, 0.008 * size)]
     fixed = set(marks[:4])
     kept: list[float] = []
     for mark in sorted(m for m in marks if s0 <= m <= s1):
@@ -290,6 +296,17 @@ def sample_course(path: WheelPath, begin: Stand, end: Stand, step: float, size: 
         n = max(1, math.ceil((b - a) / step - 1e-6))
         out.extend(a + (b - a) * k / n for k in range(n))
     return np.array([*out, kept[-1]])
+
+
+def _sharp_corners(path: WheelPath, s0: float, s1: float, apart: float) -> list[float]:
+    """Concave corners between `s0` and `s1`, none within `apart` of a sharper one [m]."""
+    corners = path.corners[(path.corners > s0) & (path.corners < s1)]
+    kinks = np.array([kink(path, float(corner)) for corner in corners])
+    kept: list[float] = []
+    for i in np.argsort(-kinks, kind="stable"):
+        if kinks[i] > CORNER and all(abs(corners[i] - one) >= apart for one in kept):
+            kept.append(float(corners[i]))
+    return kept
 
 
 def kink(path: WheelPath, corner: float) -> float:
