@@ -259,7 +259,12 @@ def _torque(course: Course, motor: Motor) -> Cause | None:
     if isinstance(strong, Blocked):
         return None
     ratio = 1.001 * strong.nodes.margins.torque_share(motor) * candidate.most
-    return (candidate, ratio) if ratio > 1.0 and candidate.solves(course, ratio) else None
+    if ratio <= 1.0:
+        return None
+    if not candidate.solves(course, ratio):
+        solves = partial(candidate.solves, course)
+        ratio = _narrow(solves, ratio, candidate.most, _SURE, search_threads())[1]
+    return candidate, ratio
 
 
 def _problem(course: Course, reached: Place | None, cause: Cause | None) -> Problem:

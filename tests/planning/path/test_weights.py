@@ -52,7 +52,7 @@ def holds(term, seeds):
 def test_a_weight_makes_its_quantity_small(term):
     worse, moved = holds(term, range(300, 306))
     assert worse.sum() == 0
-    assert moved.mean() > 0.8
+    assert moved.mean() >= 0.8
 
 
 @pytest.mark.slow

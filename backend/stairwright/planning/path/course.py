@@ -22,8 +22,8 @@ Ints = NDArray[np.int64]
 End = Literal["start", "goal"]
 
 CORNER = 0.15  # rad; concave corners with a smaller kink need no samples of their own
+_APART = 5e-5  # m; samples are no closer
 _MOST_CORNERS = 60  # of one lattice; memory grows with the square of its samples
-_EDGE = 0.0015  # m; samples this near to a corner touch both faces
 _LEVEL = 0.01  # m; a stretch whose wheel centre stays within this height is level
 _SLOPE = 0.2  # rad; and nowhere steeper than this
 _FACE = math.atan(MOST_FRICTION)  # rad; no friction holds a wheel on what is steeper
@@ -265,10 +265,11 @@ def _resting(path: WheelPath, robot: Robot, x: float) -> Stand | None:
 def sample_course(path: WheelPath, begin: Stand, end: Stand, step: float, size: float) -> Floats:
     """Arc lengths (n,) of the lattice's wheel positions, rising.
 
-    They are at most `step` apart; round every concave corner two touch both faces and two, a little
-    farther away, touch one: they force a pose that stands on one face alone. A saw has more corners
-    than a lattice can hold: there only the sharpest of those that lie close together are sampled,
-    and what lies between is left to the smoothing and the certificate.
+    They are at most `step` apart. In a concave corner a wheel touches two faces, a tenth of a
+    millimetre beside it one: samples at all three make a pose that stands on one face alone come
+    before and after any that leans on both. A saw has more corners than a lattice can hold: there
+    only the sharpest of those that lie close together are sampled, and what lies between is left to
+    the smoothing and the certificate.
     """
     s0, s1 = begin.wheels[1], end.wheels[0]
     marks = [begin.wheels[0], begin.wheels[1], end.wheels[0], end.wheels[1]]
@@ -278,11 +279,11 @@ def sample_course(path: WheelPath, begin: Stand, end: Stand, step: float, size: 
         apart = max(2 * apart, 0.008 * size)
         corners = _sharp_corners(path, s0, s1, apart)
     for corner in corners:
-        marks += [corner + offset for offset in (-0.008 * size, -_EDGE, _EDGE, 0.008 * size)]
+        marks += [corner - _core.BESIDE, corner, corner + _core.BESIDE]
     fixed = set(marks[:4])
     kept: list[float] = []
     for mark in sorted(m for m in marks if s0 <= m <= s1):
-        if kept and mark - kept[-1] < 5e-4:
+        if kept and mark - kept[-1] < _APART:
             if mark in fixed and kept[-1] not in fixed:
                 kept[-1] = mark
             elif mark not in fixed or mark - kept[-1] < 1e-12:

@@ -108,9 +108,10 @@ class NodeMargins:
 
     @property
     def overloaded(self) -> Motor | None:
-        """The motors whose torque is the one bound that is violated."""
-        broken = np.flatnonzero(self._slacks.min(axis=1) < 0.0) - len(self._slacks)
-        return _LAST_SLACKS.get(int(broken[0])) if len(broken) == 1 else None
+        """The motors whose torque is violated most, if that of any is."""
+        shares = {motor: self.torque_share(motor) for motor in _JOINTS}
+        worst = max(shares, key=lambda motor: shares[motor])
+        return worst if shares[worst] > 1.0 else None
 
     @property
     def worst(self) -> float:
@@ -123,7 +124,6 @@ class NodeMargins:
         return np.flatnonzero(self.least_slack < _SPARE)
 
 
-_LAST_SLACKS: dict[int, Motor] = {-2: "wheel", -1: "leg"}
 _OF_NODES = [one.name for one in fields(NodeMargins)][2:]
 
 

@@ -91,7 +91,7 @@ class Blocked:
         reached: Arc lengths where the way ends, or where a found way breaks a bound worst.
         stops: Where bold searches end: the place from the start, and others farther on.
         opened: Whether a search came through at all.
-        weak: Motors whose torque was the one bound that a found way broke.
+        weak: Motors whose torque a found way exceeded.
     """
 
     reached: Place | None
