@@ -104,7 +104,7 @@ def test_a_trunk_that_swings_above_standing_wheels_takes_its_time() -> None:
     plan = sw.plan({"points": [*ramp, (0.886, 0.294), (2.186, 0.294)]}, "a1_wheeled", 0.35)
     course, line = reference(plan), track_of(plan)
     moved = travel(course.trunk[:, :2])
-    assert (np.diff(moved) / np.diff(course.progress)).max() > 30.0
+    assert (np.diff(moved) / np.diff(course.progress)).max() > 5.0
     way = travel(line.rows[:, 9:11])
     mean = 0.5 * (line.speeds[1:] + line.speeds[:-1])
     driven = np.concatenate([[0.0], np.cumsum(line.step / mean)])
