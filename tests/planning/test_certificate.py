@@ -97,6 +97,7 @@ def test_balance_on_level_ground_ends_at_the_wheels():
     vertices = np.array([[-1.0, 0.0], [1.0, 0.0]])
     wheels = np.tile([[0.2, 0.05], [-0.2, 0.05]], (4, 1, 1))
     com, second = np.array([-0.21, -0.19, 0.19, 0.21]), np.full((4, 2), 0.05)
-    assert balanced(vertices, wheels, com, 0.052, 0.5, second).tolist() == [False, True, True, False]
+    held = balanced(vertices, wheels, com, 0.052, 0.5, second)
+    assert held.tolist() == [False, True, True, False]
     wheels[:, :, 1] += 0.01  # in the air
     assert not balanced(vertices, wheels, com, 0.052, 0.5, second).any()

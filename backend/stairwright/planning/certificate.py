@@ -122,8 +122,8 @@ class _Checker:
         """How near a second face must be to a wheel's centre (n, 2) for balance to lean on it [m].
 
         Only what is truly touched counts: a wheel nearly in a corner is balanced on the one face
-        that it is on. Where it stays in a corner from one pose to the next, interpolated joints take
-        it up to a millimetre out of it in between; it touches both faces all the same.
+        that it is on. Where it stays in a corner from one pose to the next, interpolated joints
+        take it up to a millimetre out of it in between; it touches both faces all the same.
         """
         samples, motion = self.samples, self.samples.motion
         r = motion.robot.wheel.radius
