@@ -48,7 +48,7 @@ def test_kinematics_and_com_equal_the_planners(robot: Robot) -> None:
             for part, expected in points:
                 found = data.body(f"{name}_{part}").xpos[[0, 2]]
                 np.testing.assert_allclose(found, expected[leg // 2], atol=1e-9)
-        com = kinematics.com(robot, np.asarray(x), np.asarray(z), frames)
+        com = kinematics.com(robot, np.asarray(x), np.asarray(z), np.asarray(pitch), frames)
         np.testing.assert_allclose(data.subtree_com[0][[0, 2]], com, atol=1e-9)
 
 

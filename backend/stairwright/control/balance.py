@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.robot.description import Robot
+from stairwright.robot.kinematics import link_com
 
 from .measurement import Measurement
 from .rigid_body import GRAVITY, wrench
@@ -121,14 +122,16 @@ def force_torques(state: Measurement, points: Floats, forces: Floats) -> Floats:
 
 def leg_weight_torques(robot: Robot, state: Measurement) -> Floats:
     """(4, 2) thigh and calf torques that carry the legs' own weight."""
-    thigh = state.hips + robot.thigh.com * (state.knees - state.hips)
-    calf = state.knees + robot.calf.com * (state.wheels - state.knees)
-    parts = ((thigh, robot.thigh.mass), (calf, robot.calf.mass), (state.wheels, robot.wheel.mass))
     torques = np.zeros((4, 2))
-    for place, mass in parts:
-        torques[:, 0] -= mass * GRAVITY * (place - state.hips)[:, 0]
-    for place, mass in parts[1:]:
-        torques[:, 1] -= mass * GRAVITY * (place - state.knees)[:, 0]
+    for k in range(4):
+        leg, hip, knee, wheel = robot.legs[k // 2], state.hips[k], state.knees[k], state.wheels[k]
+        parts = (
+            (link_com(leg.thigh, hip, knee), leg.thigh.mass),
+            (link_com(leg.calf, knee, wheel), leg.calf.mass),
+            (wheel, leg.wheel.mass),
+        )
+        torques[k, 0] = -sum(mass * GRAVITY * (place - hip)[0] for place, mass in parts)
+        torques[k, 1] = -sum(mass * GRAVITY * (place - knee)[0] for place, mass in parts[1:])
     return torques
 
 

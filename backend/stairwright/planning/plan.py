@@ -126,8 +126,7 @@ class Plan(Model):
                 raise InputError("must be more than at the pose before", ("poses", k, "progress"))
             if b.time < a.time:
                 raise InputError("must not be before the last pose's", ("poses", k, "time"))
-        layout = self.robot_description.collision_points
-        count = len(layout.trunk) + 2 * (len(layout.thigh) + len(layout.calf))
+        count = self.robot_description.points.count
         for k, pose in enumerate(self.poses):
             if len(pose.collision_points) != count:
                 wrong = f"must be {count} points, as the robot has"

@@ -84,7 +84,7 @@ def test_points_are_those_of_the_kinematics(seed):
     points, q = search.problem.points(y)
     x, z, pitch = (np.asarray(v) for v in y[:3])
     frames = kinematics.forward(search.robot, x, z, pitch, q)
-    centre = kinematics.com(search.robot, x, z, frames)
+    centre = kinematics.com(search.robot, x, z, pitch, frames)
     expected = np.concatenate([frames.hips, frames.knees, frames.wheels, centre[None]])
     assert np.allclose(points, expected, atol=1e-12)
     assert np.allclose(frames.wheels, search.path.centres(y[3:]), atol=1e-12)

@@ -62,7 +62,7 @@ class Stand:
 
 def scale(robot: Robot) -> float:
     """Size of the robot's legs against those the lengths here were chosen with (0.4 m)."""
-    return (robot.thigh.length + robot.calf.length) / 0.4
+    return min(leg.reach for leg in robot.legs) / 0.4
 
 
 def stretches(path: WheelPath) -> tuple[tuple[float, float], tuple[float, float]]:

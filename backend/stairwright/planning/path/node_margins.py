@@ -26,7 +26,7 @@ LEAST_COM = 0.001  # m; no robot's centre of mass is known better
 # that slides a little tips the robot.
 THIN_COM, FIRM_GRIP = 0.006, 0.08
 _SPARE = 5e-4  # m
-_JOINTS: dict[Motor, slice] = {"leg": slice(0, 2), "wheel": slice(2, 3)}
+JOINTS: dict[Motor, slice] = {"leg": slice(0, 2), "wheel": slice(2, 3)}
 
 
 @dataclass(frozen=True)
@@ -76,12 +76,12 @@ class NodeMargins:
     def torque_margin(self, motor: Motor) -> Floats:
         """(n,) limit minus static torque of the motors that have least to spare [Nm]."""
         spare = self.torque_limits - np.abs(self.torques)
-        least: Floats = spare[:, :, _JOINTS[motor]].min(axis=(1, 2))
+        least: Floats = spare[:, :, JOINTS[motor]].min(axis=(1, 2))
         return least
 
     def torque_share(self, motor: Motor) -> float:
         """Largest static torque of such motors anywhere, over their limit."""
-        return float((np.abs(self.torques) / self.torque_limits)[:, :, _JOINTS[motor]].max())
+        return float((np.abs(self.torques) / self.torque_limits)[:, :, JOINTS[motor]].max())
 
     @cached_property
     def _slacks(self) -> Floats:
@@ -109,7 +109,7 @@ class NodeMargins:
     @property
     def overloaded(self) -> Motor | None:
         """The motors whose torque is violated most, if that of any is."""
-        shares = {motor: self.torque_share(motor) for motor in _JOINTS}
+        shares = {motor: self.torque_share(motor) for motor in JOINTS}
         worst = max(shares, key=lambda motor: shares[motor])
         return worst if shares[worst] > 1.0 else None
 

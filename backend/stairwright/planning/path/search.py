@@ -53,7 +53,7 @@ class Search:
     ) -> tuple[_core.LatticeLegTable, _core.LatticeLegTable]:
         """What front and rear leg cost; samples with the same ground around share a hip grid."""
         lattice, model = self.lattice, self.model
-        links = self.robot.thigh.length + self.robot.calf.length
+        links = max(leg.reach for leg in self.robot.legs)
         widest = max(most for _, most in model.reach) + 0.2 * links
         kept, like = alike(self.path.vertices, self.centres, widest)
         pitches = _core.pitch_ranges(self.centres, self.pairs, lattice.windows)

@@ -51,8 +51,8 @@ def pose_times(
         margin: (n,) CoM margin [m]; thin margins slow the robot down.
         speed: Wished mean wheel speed [m/s].
     """
-    wheel_cap = 0.5 * robot.actuators.wheel.speed * robot.wheel.radius
-    joint_cap = min(JOINT_RATE, 0.3 * robot.actuators.leg.speed)
+    wheel_cap = 0.5 * robot.wheel_speed * robot.wheel.radius
+    joint_cap = min(JOINT_RATE, 0.3 * robot.leg_speed)
     ds = np.abs(np.diff(s, axis=0))
     length = np.diff(path_parameter(s, body))
     thin = np.clip(np.minimum(margin[:-1], margin[1:]) / _THIN, _SLOWEST, 1.0)
@@ -102,7 +102,8 @@ def _calmed(robot: Robot, times: Floats, body: Floats, q: Floats, margin: Floats
     to stay within the margin as well. Slower by a factor, accelerations fall by its square.
     """
     frames = kinematics.forward(robot, body[:, 0], body[:, 1], body[:, 2], q)
-    com = kinematics.com(robot, body[:, 0], body[:, 1], frames)
+    x, z, pitch = body.T
+    com = kinematics.com(robot, x, z, pitch, frames)
     height = com[:, 1] - frames.wheels[..., 1].min(axis=1) + robot.wheel.radius
     allowed = np.maximum(_SWAY * margin, _LEAST_SWAY)
     reach = int(4 * _WINDOW / _TICK)
