@@ -47,7 +47,9 @@ def test_poses_are_consistent(stair_plan):
     for pose in stair_plan.poses[::20]:
         frames = kin.forward(robot, pose.x_c, pose.z_c, pose.pitch, np.array(pose.q))
         assert frames.wheels == pytest.approx(np.array(pose.wheels), abs=1e-9)
-        assert kin.com(robot, pose.x_c, pose.z_c, pose.pitch, frames) == pytest.approx(pose.com, abs=1e-9)
+        assert kin.com(robot, pose.x_c, pose.z_c, pose.pitch, frames) == pytest.approx(
+            pose.com, abs=1e-9
+        )
         forces = np.array(pose.forces)
         assert np.all(forces[:, 1] > 0)
         assert min(pose.margins.model_dump().values()) > 0

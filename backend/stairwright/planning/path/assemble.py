@@ -7,6 +7,7 @@ import time as clock
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.planning.binding import binding_of
 from stairwright.planning.plan import Margins, Plan, Pose, Problem, Timing, plan_id
 from stairwright.planning.weights import PathWeights
 from stairwright.robot import kinematics as kin
@@ -125,4 +126,6 @@ def make_plan(
         timing=Timing(total=total),
         solve_time=clock.perf_counter() - begun,
         certificate=None,
+        knees=None,
+        binding=binding_of(robot, friction, poses or []),
     )

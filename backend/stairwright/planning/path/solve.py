@@ -56,7 +56,7 @@ LADDER = (  # rungs of one step are tried together; the first path is taken
     (Rung(1.7, HOPE), Rung(1.4, KEEN), BACK),
 )
 _COARSE = 2  # steps of the ladder that are compared where a path is thin
-_THIN = 0.01  # m; CoM margin
+THIN = 0.01  # m; CoM margin
 
 
 @dataclass(frozen=True)
@@ -162,7 +162,7 @@ class Course(Question):
                         best = answer
                     if best is not None and height > _COARSE:
                         break
-            if best is not None and (height >= _COARSE or best.margin > _THIN):
+            if best is not None and (height >= _COARSE or best.margin > THIN):
                 return best
             if height == 1 and best is None:
                 ends, hopeless = self._ahead(blocked[0], pool)
