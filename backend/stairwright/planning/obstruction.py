@@ -17,7 +17,6 @@ from functools import cache, partial
 import numpy as np
 
 from .path.lattice import PLAIN
-from .path.node_margins import Motor
 from .path.pieces import pieces
 from .path.search import Place
 from .path.solve import Blocked, Course, Solved, Way
@@ -30,7 +29,6 @@ from .relaxation import (
     bold_candidates,
     candidates_of,
     leads_past,
-    motor_torque,
 )
 from .threads import race, search_threads
 
@@ -52,6 +50,8 @@ def explain(course: Course, blocked: Blocked) -> tuple[Problem, Way]:
         course: The question without an answer.
         blocked: What its solution attempt returned.
     """
+    if blocked.weak:
+        course = course.within_torques
     pool = search_threads()
     # As far as it goes: found beside the first plan that is tried, where a thread is at leisure.
     partial_way = cache(lambda: pool.submit(course.partial))
@@ -65,9 +65,6 @@ def _cause(
     course: Course, blocked: Blocked, pool: Executor, meanwhile: Callable[[], object]
 ) -> Cause | None:
     """The single change that opens the way, if one does."""
-    torque = _torque(course, blocked.weak) if blocked.weak else None
-    if torque is not None:
-        return torque
     candidates = candidates_of(course)
     places = list(blocked.stops)
     if not _whole(course, places) and leads_past(course, places):
@@ -249,21 +246,6 @@ def _confirmed(
     candidate = ranked[k][0]
     if k in low:
         ratio = _narrow(partial(candidate.solves, course), low[k], ratio, _SURE, pool)[1]
-    return candidate, ratio
-
-
-def _torque(course: Course, motor: Motor) -> Cause | None:
-    """The torque of one kind of motors, if that alone stands in the way."""
-    candidate = motor_torque(course.robot, motor)
-    strong = candidate.change(course, candidate.limit).quick()
-    if isinstance(strong, Blocked):
-        return None
-    ratio = 1.001 * strong.nodes.margins.torque_share(motor) * candidate.most
-    if ratio <= 1.0:
-        return None
-    if not candidate.solves(course, ratio):
-        solves = partial(candidate.solves, course)
-        ratio = _narrow(solves, ratio, candidate.most, _SURE, search_threads())[1]
     return candidate, ratio
 
 

@@ -104,6 +104,7 @@ def candidates_of(course: Course) -> list[Candidate]:
                   lambda c, v: _with_robot(c, _wider(robot, "calf", v - ranges["calf"]))),
         Candidate("joint_limit", "thigh range", "rad", ranges["thigh"], ranges["thigh"] + 1.0,
                   lambda c, v: _with_robot(c, _wider(robot, "thigh", v - ranges["thigh"]))),
+        *(motor_torque(robot, motor) for motor in JOINTS if course.torques),
     ]  # fmt: skip
 
 
@@ -138,7 +139,8 @@ def bold_candidates(course: Course) -> list[Candidate]:
         document = c.terrain.model_dump()
         low = base + (points[:, 1] - base) * (v / height)
         document["points"] = np.stack([points[:, 0], low], axis=1).tolist()
-        return pose_course(Terrain.model_validate(document), c.robot, c.friction, c.weights)
+        changed = pose_course(Terrain.model_validate(document), c.robot, c.friction, c.weights)
+        return replace(changed, torques=c.torques)
 
     if height > 0.0:  # in the end it is flat, which opens every way
         lower = Candidate("reach", "profile height", "m", height, _FLAT * height, lowered)
@@ -148,7 +150,8 @@ def bold_candidates(course: Course) -> list[Candidate]:
 
 def _with_robot(course: Course, robot: Robot) -> Course:
     """The same question for another robot, which stands as it would."""
-    return pose_course(course.terrain, robot, course.friction, course.weights)
+    changed = pose_course(course.terrain, robot, course.friction, course.weights)
+    return replace(changed, torques=course.torques)
 
 
 def _changed(robot: Robot, change: Callable[[dict[str, Any]], None]) -> Robot:

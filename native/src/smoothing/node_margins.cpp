@@ -1,65 +1,12 @@
 #include "stairwright/smoothing/node_margins.hpp"
 
-#include <cmath>
+#include "stairwright/gentlest_support.hpp"
 
 namespace stairwright::smoothing {
 
 namespace {
 
 constexpr double kQueryRadius = 0.3;  // m; larger clearances are not told apart
-constexpr double kPinched = 1.6;      // weights; wheels that press harder pinch something between them
-// Shares of the friction that forces may take without harm, tried in turn.
-constexpr std::array<double, 2> kAmple = {0.75, 0.98};
-
-// A wheel's contacts, and where it touches two faces the bisector of both: it stands for leaning on both, with a cone
-// that is narrower than the true one.
-struct Faces {
-    std::array<Contact, 3> at;
-    int count = 0;
-};
-
-Faces with_bisector(const WheelContacts& contacts, Vec2 centre, double radius) {
-    Faces out;
-    for (const Contact& contact : contacts.span()) out.at[out.count++] = contact;
-    if (out.count < 2) return out;
-    const Vec2 sum = out.at[0].normal + out.at[1].normal;
-    const double length = norm(sum);
-    if (length < 0.2) return out;  // opposite walls: no direction between them
-    const Vec2 normal = {sum.x / length, sum.z / length};
-    out.at[out.count++] = {centre - radius * normal, normal, contacts.at[0].friction};
-    return out;
-}
-
-// Forces on both wheel pairs in weights, and the faces that they push on.
-struct Support {
-    std::array<ContactForce, 2> forces;
-    std::array<Contact, 2> faces;
-    bool found = false;
-};
-
-// The gentlest pair of faces that holds the robot.
-Support gentlest_support(const Faces& front, const Faces& rear, double com_x, double friction) {
-    Support out;
-    double least = std::numeric_limits<double>::infinity();
-    for (const double share : kAmple) {
-        // Wheels that pinch a curb between them press hard at low friction: use more of it.
-        if (share != kAmple.front() && least < kPinched) break;
-        const double ample = share * friction;
-        for (int i = front.count - 1; i >= 0; --i) {
-            for (int j = rear.count - 1; j >= 0; --j) {
-                std::array<ContactForce, 2> forces;
-                const std::array<Contact, 2> faces = {front.at[i], rear.at[j]};
-                const double needed = least_friction(faces, com_x, ample, forces);
-                const double score = needed <= ample ? forces[0].normal + forces[1].normal : 100.0 + needed;
-                if (score >= least - 1e-9) continue;
-                least = score;
-                out = {forces, faces, true};
-            }
-        }
-    }
-    return out;
-}
-
 }  // namespace
 
 std::vector<NodeMargins> node_margins(const Terrain& terrain, const WheelPath& path, const RobotModel& robot,

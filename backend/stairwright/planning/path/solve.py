@@ -137,14 +137,17 @@ class Course(Question):
         """Climb the ladder until a path passes the certificate and is not needlessly thin.
 
         Weights say which path, never whether: where they find none the default ones are tried.
+        Where motors are too weak for what was found, the search asks for what they hold.
 
         Args:
             pool: Who tries the rungs of one step.
         """
         found = self._climb(pool)
-        if isinstance(found, Solved) or self.unweighted is None:
+        if isinstance(found, Solved):
             return found
-        return self.unweighted.solve(pool)
+        if found.weak and not self.torques:
+            return self.within_torques.solve(pool)
+        return self.unweighted.solve(pool) if self.unweighted else found
 
     def _climb(self, pool: Executor) -> Solved | Blocked:
         best: Solved | None = None
@@ -208,6 +211,8 @@ class Course(Question):
         Where a search comes through and no path follows, a more forgiving one seldom does better.
         """
         bold = self.attempt(Rung(1.7, BOLD))
+        if isinstance(bold, Blocked) and bold.weak and not self.torques:
+            return self.within_torques.quick()
         if isinstance(bold, Solved) or bold.opened:
             return bold
         hope = self.attempt(Rung(1.7, HOPE))
@@ -245,6 +250,11 @@ class Course(Question):
 
     def _path_cost(self, nodes: Refined) -> tuple[float, dict[str, float]]:
         return self.refine_problem.cost(np.hstack([nodes.s, nodes.body]))
+
+    @cached_property
+    def within_torques(self) -> Course:
+        """The same question, asked so that every pose of the search is held by the motors."""
+        return replace(self, torques=True)
 
     @cached_property
     def unweighted(self) -> Course | None:
