@@ -53,31 +53,71 @@ Support gentlest_support(const Faces& front, const Faces& rear, double com_x, do
     return out;
 }
 
-WheelLoads::WheelLoads(const WheelPath& path, WheelPlaces s, double friction, Interval com, double weight)
-    : first_(com.lower), step_((com.upper - com.lower) / (kSamples - 1)) {
-    std::array<Faces, 2> faces;
-    std::array<Vec2, 2> centres;
-    for (const int pair : {kFront, kRear}) {
-        centres[pair] = path.centre(s[pair]);
-        faces[pair] = with_bisector(wheel_contacts(path, s[pair], friction), centres[pair], path.radius());
+Support resting_support(const Faces& front, const Faces& rear, double com_x, double friction) {
+    Support out;
+    double least = std::numeric_limits<double>::infinity();
+    for (const double share : kAmple) {
+        const double ample = share * friction;
+        for (int i = 0; i < std::min(front.count, 2); ++i) {
+            for (int j = 0; j < std::min(rear.count, 2); ++j) {
+                std::array<ContactForce, 2> forces;
+                const std::array<Contact, 2> faces = {front.at[i], rear.at[j]};
+                if (least_friction(faces, com_x, ample, forces) > ample) continue;
+                double size = 0.0;
+                for (const ContactForce& f : forces) size += f.tangential * f.tangential + f.normal * f.normal;
+                if (size >= least - 1e-9) continue;
+                least = size;
+                out = {forces, faces, true};
+            }
+        }
+        if (out.found) return out;
     }
-    for (int k = 0; k < kSamples; ++k) {
-        const Support support = gentlest_support(faces[kFront], faces[kRear], first_ + k * step_, friction);
-        for (const int pair : {kFront, kRear})
-            if (support.found)
-                samples_[k][pair] = load_on_one(support.faces[pair], support.forces[pair], centres[pair], weight);
+    return gentlest_support(front, rear, com_x, friction);
+}
+
+Touches touches(const WheelPath& path, WheelPlaces s, double friction, double lag) {
+    Touches out;
+    std::array<Faces, 2> in_time;
+    for (const int pair : {kFront, kRear})
+        in_time[pair] = with_bisector(wheel_contacts(path, s[pair], friction), path.centre(s[pair]), path.radius());
+    out.ways[out.count++] = in_time;
+    for (const int pair : {kFront, kRear}) {
+        const std::size_t k = path.corner_from(s[pair]);
+        if (k == 0 || s[pair] - path.corners()[k - 1] > lag || in_time[pair].count > 1) continue;
+        const Vec2 centre = path.centre(s[pair]), normal = path.normal(path.corners()[k - 1] - 1e-7);
+        out.ways[out.count] = in_time;
+        out.ways[out.count][pair] = {{Contact{centre - path.radius() * normal, normal, friction}}, 1};
+        ++out.count;
+    }
+    return out;
+}
+
+WheelLoads::WheelLoads(const WheelPath& path, WheelPlaces s, double friction, double lag, Interval com, double weight)
+    : first_(com.lower), step_((com.upper - com.lower) / (kSamples - 1)) {
+    const Touches at = touches(path, s, friction, lag);
+    const std::array<Vec2, 2> centres = {path.centre(s.front), path.centre(s.rear)};
+    count_ = at.count;
+    for (int way = 0; way < count_; ++way) {
+        for (int k = 0; k < kSamples; ++k) {
+            const Support support = resting_support(at.ways[way][kFront], at.ways[way][kRear], first_ + k * step_, friction);
+            Sample& sample = samples_[way][k];
+            sample.held = support.found;
+            for (const int pair : {kFront, kRear})
+                if (support.found) sample.loads[pair] = load_on_one(support.faces[pair], support.forces[pair], centres[pair], weight);
+        }
     }
 }
 
-std::array<WheelLoad, 2> WheelLoads::at(double com_x) const {
+std::optional<std::array<WheelLoad, 2>> WheelLoads::at(int way, double com_x) const {
     const double u = step_ > 0.0 ? std::clamp((com_x - first_) / step_, 0.0, kSamples - 1.0) : 0.0;
     const int k = std::min(static_cast<int>(u), kSamples - 2);
     const double share = u - k;
+    const Sample &a = samples_[way][k], &b = samples_[way][k + 1];
+    if (!a.held || !b.held) return std::nullopt;
     std::array<WheelLoad, 2> out;
-    for (const int pair : {kFront, kRear}) {
-        const WheelLoad &a = samples_[k][pair], &b = samples_[k + 1][pair];
-        out[pair] = {a.force + share * (b.force - a.force), a.moment + share * (b.moment - a.moment)};
-    }
+    for (const int pair : {kFront, kRear})
+        out[pair] = {a.loads[pair].force + share * (b.loads[pair].force - a.loads[pair].force),
+                     a.loads[pair].moment + share * (b.loads[pair].moment - a.loads[pair].moment)};
     return out;
 }
 

@@ -10,16 +10,20 @@ bool TorqueLimits::hold(const Problem& problem, const Cell& cell, std::size_t nu
     const double weight = problem.robot.mass * kGravity;
     if (!loads) {
         const WheelPlaces s = {problem.s[cell.front], problem.s[cell.rear]};
-        loads.emplace(path_, s, friction_, stairwright::Interval{com.friction.lower, com.friction.upper}, weight);
+        loads.emplace(path_, s, friction_, lag_, stairwright::Interval{com.friction.lower, com.friction.upper}, weight);
     }
-    const std::array<WheelLoad, 2> load = loads->at(com_x);
     const std::array<Vec2, 2> wheels = {problem.centres[cell.front], problem.centres[cell.rear]};
     for (const int pair : {kFront, kRear}) {
         const Leg& leg = problem.robot.legs[pair].leg;
-        const LegTorques torques = static_torques(leg, place_leg(leg, body, pitch, wheels[pair]), load[pair]);
-        if (std::abs(torques.thigh) > share_ * leg.thigh_motor.torque || std::abs(torques.calf) > share_ * leg.calf_motor.torque ||
-            std::abs(torques.wheel) > share_ * leg.wheel_motor.torque)
-            return false;
+        const LegPoints points = place_leg(leg, body, pitch, wheels[pair]);
+        for (int way = 0; way < loads->ways(); ++way) {
+            const auto load = loads->at(way, com_x);
+            if (!load) continue;
+            const LegTorques torques = static_torques(leg, points, (*load)[pair]);
+            if (std::abs(torques.thigh) > share_ * leg.thigh_motor.torque || std::abs(torques.calf) > share_ * leg.calf_motor.torque ||
+                std::abs(torques.wheel) > share_ * leg.wheel_motor.torque)
+                return false;
+        }
     }
     return true;
 }

@@ -7,10 +7,33 @@ namespace stairwright::smoothing {
 namespace {
 
 constexpr double kQueryRadius = 0.3;  // m; larger clearances are not told apart
+double larger(double a, double b) { return std::abs(b) > std::abs(a) ? b : a; }
+
+// Largest static torques of both legs of all ways of touching the ground that hold the robot; of `otherwise` if none does.
+std::array<LegTorques, 2> worst_torques(const RobotModel& robot, const Posture& posture, const Touches& touches, double friction,
+                                        double weight, const Support& otherwise) {
+    std::array<LegTorques, 2> out;
+    bool any = false;
+    const auto count = [&](const Support& support, double unit) {
+        for (const int pair : {kFront, kRear}) {
+            const ContactForce f = {0.5 * unit * support.forces[pair].tangential, 0.5 * unit * support.forces[pair].normal};
+            const LegTorques t = static_torques(robot.legs[pair].leg, posture.legs[pair], support.faces[pair], f);
+            out[pair] = {larger(out[pair].thigh, t.thigh), larger(out[pair].calf, t.calf), larger(out[pair].wheel, t.wheel)};
+        }
+        any = true;
+    };
+    for (int way = 0; way < touches.count; ++way) {
+        const Support support = resting_support(touches.ways[way][kFront], touches.ways[way][kRear], posture.com.x, friction);
+        if (support.found) count(support, weight);
+    }
+    if (!any) count(otherwise, 1.0);
+    return out;
+}
+
 }  // namespace
 
 std::vector<NodeMargins> node_margins(const Terrain& terrain, const WheelPath& path, const RobotModel& robot,
-                                      std::span<const Node> nodes, double friction) {
+                                      std::span<const Node> nodes, double friction, double lag) {
     std::vector<NodeMargins> out(nodes.size());
     const double weight = robot.mass * kGravity;
     std::array<ContactForce, 2> before = {ContactForce{0.0, 0.5 * weight}, ContactForce{0.0, 0.5 * weight}};
@@ -38,11 +61,7 @@ std::vector<NodeMargins> node_margins(const Terrain& terrain, const WheelPath& p
         else
             support = {before, {front.at[0], rear.at[0]}, true};
         node.forces = before = support.forces;
-        for (const int pair : {kFront, kRear}) {
-            const ContactForce of_one_leg = {0.5 * support.forces[pair].tangential, 0.5 * support.forces[pair].normal};
-            node.torques[pair] = static_torques(robot.legs[pair].leg, node.geometry.posture.legs[pair],
-                                                support.faces[pair], of_one_leg);
-        }
+        node.torques = worst_torques(robot, node.geometry.posture, touches(path, s, friction, lag), friction, weight, support);
     }
     return out;
 }

@@ -53,6 +53,7 @@ class Question:
             LAG,
             stand_height(self.robot),
             _core.PathWeights(w.com_margin, w.clearance, w.torque, w.smoothness, w.pitch),
+            self.torques,
         )
 
     @cached_property

@@ -188,7 +188,7 @@ class Search:
     ) -> _core.WidestPaths:  # fmt: skip
         widest = _core.WidestPaths(problem, windows, cells.spans)
         if torque is not None:
-            widest.limit_torques(self.path.native, friction, torque)
+            widest.limit_torques(self.path.native, friction, LAG, torque)
         return widest
 
     def _goals(self, cells: Cells, open_end: bool) -> tuple[Longs, Ints | None]:
