@@ -29,6 +29,7 @@ from .relaxation import (
     bold_candidates,
     candidates_of,
     leads_past,
+    motor_torque,
 )
 from .threads import race, search_threads
 
@@ -65,6 +66,12 @@ def _cause(
     course: Course, blocked: Blocked, pool: Executor, meanwhile: Callable[[], object]
 ) -> Cause | None:
     """The single change that opens the way, if one does."""
+    if blocked.weak and blocked.opened:
+        # A search came through: a little more torque is what its path most likely lacks.
+        motors = [(motor_torque(course.robot, blocked.weak), 1.0)]
+        answer = _confirmed(course, motors, [], pool)
+        if answer is not None and not isinstance(answer, Beyond):
+            return answer
     candidates = candidates_of(course)
     places = list(blocked.stops)
     if not _whole(course, places) and leads_past(course, places):

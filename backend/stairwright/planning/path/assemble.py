@@ -28,9 +28,7 @@ def make_poses(
     """Poses, indices of the key poses, and the duration [s]."""
     s, body, m = found.s, found.body, found.margins
     q = m.q
-    time = pose_times(
-        robot, s, body, q, m.firm_com_margin, m.torque_shares("leg"), weights.speed
-    )
+    time = pose_times(robot, s, body, q, m.firm_com_margin, m.torque_shares("leg"), weights.speed)
     progress = path_parameter(s, body)
     wheels = np.stack([path.centres(s[:, k]) for k in range(2)], axis=1)
     contacts = np.stack([path.contacts(s[:, k]) for k in range(2)], axis=1)

@@ -26,6 +26,7 @@ LEAST_COM = 0.001  # m; no robot's centre of mass is known better
 # that slides a little tips the robot.
 THIN_COM, FIRM_GRIP = 0.006, 0.08
 FIRM_TORQUE = 0.9  # of the motors' torques that standing may take: the rest moves and corrects
+BEYOND_REPAIR = 0.15  # of a motor's torque; where more is lacking somewhere another path is needed
 _SPARE = 5e-4  # m
 JOINTS: dict[Motor, slice] = {"leg": slice(0, 2), "wheel": slice(2, 3)}
 
@@ -107,6 +108,11 @@ class NodeMargins:
         """(n,) least of all margins."""
         least: Floats = self._slacks.min(axis=0)
         return least
+
+    @property
+    def torque_excess(self) -> float:
+        """Largest share of a motor's torque that standing takes beyond what it may."""
+        return max(float(self.torque_shares(motor).max()) for motor in JOINTS) - FIRM_TORQUE
 
     @property
     def overloaded(self) -> Motor | None:

@@ -23,7 +23,7 @@ from .assemble import make_poses
 from .course import Stand, find_stands
 from .lattice import BOLD, HOPE, KEEN, STRICT, Bounds, Finding
 from .mend import STAGES, mend
-from .node_margins import Motor
+from .node_margins import BEYOND_REPAIR, Motor
 from .pieces import Piece, passes, pieces, stops
 from .question import Question
 from .refine import Refined, refine
@@ -146,7 +146,8 @@ class Course(Question):
         if isinstance(found, Solved):
             return found
         if found.weak and not self.torques:
-            return self.within_torques.solve(pool)
+            held = self.within_torques.solve(pool)
+            return held if isinstance(held, Solved) else replace(held, weak=held.weak or found.weak)
         return self.unweighted.solve(pool) if self.unweighted else found
 
     def _climb(self, pool: Executor) -> Solved | Blocked:
@@ -167,6 +168,9 @@ class Course(Question):
                         break
             if best is not None and (height >= _COARSE or best.margin > THIN):
                 return best
+            weak = next((one for one in blocked if one.weak), None)
+            if weak is not None and best is None and not self.torques:
+                return weak  # the search has to look at torques first
             if height == 1 and best is None:
                 ends, hopeless = self._ahead(blocked[0], pool)
                 if hopeless:
@@ -284,7 +288,9 @@ class Course(Question):
         still_wanted()
         found = refine(self, self.stands, finding.s, finding.body)
         judged: Refined | None = None
-        for stage in (*STAGES, None):
+        # No local repair makes motors hold much more: another way does.
+        stages = () if found.margins.torque_excess > BEYOND_REPAIR else STAGES
+        for stage in (*stages, None):
             still_wanted()
             if found is not judged:
                 judged, bad = found, found.margins.bad
