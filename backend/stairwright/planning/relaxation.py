@@ -201,7 +201,7 @@ def _wider(robot: Robot, part: str, extra: float) -> Robot:
     for name in ("front", "rear"):
         leg = getattr(robot.joints, name).model_dump()
         low, high = leg[part]
-        wide = [max(low - extra / 2, -6.28), min(high + extra / 2, 6.28)]
+        wide = [low - extra / 2, high + extra / 2]
         if part == "calf":  # the knee keeps its side and does not fold onto itself
             wide = [
                 max(wide[0], 0.05 if low > 0 else -3.1),
@@ -218,6 +218,6 @@ def _stronger(robot: Robot, motor: Motor, factor: float) -> Robot:
         for motors in _parts(data, "actuators"):
             for name in ("wheel",) if motor == "wheel" else ("leg", "thigh", "calf"):
                 if motors.get(name):
-                    motors[name]["torque"] *= factor
+                    motors[name]["torque"] = min(motors[name]["torque"] * factor, STRONGEST)
 
     return _changed(robot, change)
