@@ -7,7 +7,6 @@ import copy
 import mujoco
 import numpy as np
 import pytest
-from tests.robot.random_robots import random_robot
 
 from stairwright import _core
 from stairwright.errors import InputError
@@ -15,6 +14,7 @@ from stairwright.library import load_robot
 from stairwright.robot import kinematics, spatial
 from stairwright.robot.description import LEGS, Robot
 from stairwright.robot.mujoco_model import build_model
+from tests.robot.random_robots import random_robot
 
 FIRST = load_robot("a1_wheeled").model_dump()
 SEEDS = range(6)

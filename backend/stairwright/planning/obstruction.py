@@ -39,7 +39,6 @@ Ranked = list[Cause]
 _ROUGH = 1.3  # relative precision of a factor before other quantities were asked
 _MORE = (1.005, 1.05, 1.15, 1.3, 1.7, 2.5, 4.0)  # on the least factor: planning is tried there
 _BETWEEN = 1.05  # of them is left out where not even a search that forgives nothing finds a way
-_SURE = 1.15  # relative precision of a value that only whole plans can tell
 _RIVALS = 2  # candidates for which planning is tried
 _ASKED = 2  # times that candidates are ranked anew, without those that led nowhere
 
@@ -217,7 +216,7 @@ def _confirmed(
     """The least factor with which a certified plan exists, and on which of the `ranked`.
 
     Factors from those told on are tried, the least first, two at once. `_BETWEEN` may be left out:
-    those before and after it are within `_SURE` of each other.
+    those before and after it are within 15 % of each other.
 
     Args:
         course: The question.
@@ -252,7 +251,7 @@ def _confirmed(
             return None
     candidate = ranked[k][0]
     if k in low:
-        ratio = _narrow(partial(candidate.solves, course), low[k], ratio, _SURE, pool)[1]
+        ratio = _narrow(partial(candidate.solves, course), low[k], ratio, candidate.sure, pool)[1]
     return candidate, ratio
 
 

@@ -39,6 +39,7 @@ class Candidate:
     limit: float
     change: Callable[[Course, float], Course]
     given: str = ""  # what else the change needs
+    sure: float = 1.15  # relative precision of a value that only whole plans can tell
 
     def at(self, ratio: float) -> float:
         """The value that differs from what there is by the factor `ratio` > 1."""
@@ -114,6 +115,7 @@ def motor_torque(robot: Robot, motor: Motor) -> Candidate:
     return Candidate(
         "torque", f"{motor} torque", "Nm", most, STRONGEST,
         lambda c, v: _with_robot(c, _stronger(robot, motor, v / most)),
+        sure=1.02,
     )  # fmt: skip
 
 
