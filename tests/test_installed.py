@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import socket
 import subprocess
 import sys
 import time
+import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import httpx
 import pytest
+from packaging.requirements import Requirement
 
 ROOT = Path(__file__).resolve().parents[1]
+LARGEST = 500 * 2**20  # bytes of the whole environment, made smaller by slim.py
 PATIENCE = 60.0  # s; on a quiet machine the first plan is there in less than 3
 MORTAL = ("setpriv", "--bounding-set=-dac_override,-dac_read_search")  # root obeys permissions
 PYTHON = Path("venv", "bin", "python")
@@ -45,6 +49,15 @@ def _installer(python: Path) -> Callable[..., None]:
     return install
 
 
+def _without_build_tools() -> str:
+    """What is locked, less what only building needs."""
+    groups = tomllib.loads((ROOT / "pyproject.toml").read_text())["dependency-groups"]
+    tools = {Requirement(text).name for text in groups["build"]}
+    lock = (ROOT / "requirements.lock").read_text()
+    blocks = re.findall(r"^\S.*\n(?:\s+.*\n)*", lock, flags=re.MULTILINE)
+    return "".join(block for block in blocks if block.partition("==")[0] not in tools)
+
+
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """A folder with an environment in `venv` that holds the wheel and cannot be written to."""
@@ -56,8 +69,11 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     (wheel,) = folder.glob("*.whl")
     _run(sys.executable, "-m", "venv", "--without-pip", folder / "venv")
     install = _installer(folder / PYTHON)
-    install("--require-hashes", "-r", ROOT / "requirements.lock")
+    lock = folder / "requirements.lock"
+    lock.write_text(_without_build_tools())
+    install("--require-hashes", "-r", lock)
     install(wheel)
+    _run(folder / PYTHON, ROOT / "slim.py")
     (packages,) = (folder / "venv").glob("lib/python*/site-packages")
     places = [packages, *(path for path in packages.rglob("*") if path.is_dir())]
     for place in places:
@@ -65,6 +81,13 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     yield folder
     for place in places:
         place.chmod(0o755)
+
+
+def test_the_environment_is_small(installed: Path) -> None:
+    files = [path.lstat() for path in (installed / "venv").rglob("*")]
+    taken = {status.st_ino: status.st_blocks * 512 for status in files}
+    print(f"{sum(taken.values()) / 2**20:.0f} MB")
+    assert sum(taken.values()) < LARGEST
 
 
 def _environment(folder: Path) -> dict[str, str]:
@@ -142,5 +165,6 @@ def test_the_command_plans_rolls_out_and_exports(installed: Path) -> None:
     stairwright("plan", "single-stair-036", "--method", "critical", "--solver", "ipopt")
     stairwright("rollout", "plan.json", "-o", "run.html")
     stairwright("export", "a1_wheeled", "-o", "robot.urdf")
+    stairwright("export", "plan.json", "-o", "plan.mcap")
     assert json.loads((installed / "plan.json").read_text())["status"] == "feasible"
     assert (installed / "run.html").stat().st_size > 100_000
