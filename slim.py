@@ -1,9 +1,9 @@
 """Make an environment smaller: `python slim.py` in the environment that is meant.
 
 Many wheels hold what running this product never reads: their own tests, C headers and static
-libraries, documentation of build tools, an application, solvers that are not offered here. And a wheel cannot hold
-links: CasADi's libraries come two or three times under different names. Both go: files of the
-lists below are removed, and files with the same content become hard links to one.
+libraries, documentation of build tools, an application, solvers that are not offered here. And a
+wheel cannot hold links: CasADi's libraries come two or three times under different names. Both go:
+files of the lists below are removed, files with the same content become hard links to one.
 
 Only packages that are named here, and folders called `tests`, are touched. Run again after each
 installation; what is gone already does not matter.
