@@ -21,11 +21,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 SMALLEST = 4096  # bytes; sharing smaller files saves nothing
-# CasADi finds solvers by the names of their libraries. This product offers IPOPT.
+# CasADi finds solvers by the names of their libraries. This product uses IPOPT and, small, daqp.
 OTHER_SOLVERS = (
     *("Cbc", "Cgl", "Clp", "CoinUtils", "Osi", "alpaqa", "antlr4", "blasfeo", "bonmin", "fatrop"),
     *("highs", "hpipm", "lacemodelica", "osqp", "piqp", "proxqp", "sipopt", "sleqp", "uno"),
-    *("casadi_conic", "casadi_graphmodel", "casadi_onnx"),
+    *("casadi_graphmodel", "casadi_onnx"),
 )
 NEEDLESS = {
     "casadi": (

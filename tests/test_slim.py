@@ -25,7 +25,10 @@ def test_what_is_needless_goes_and_nothing_else(tmp_path: Path) -> None:
         write(tmp_path / "cmake" / "data" / "share" / "cmake-4.4" / "Help" / "it.rst", b""),
     ]
     kept = [
-        *(write(tmp_path / "casadi" / name, b"") for name in ("libipopt.so.3", "casadi.py")),
+        *(
+            write(tmp_path / "casadi" / name, b"")
+            for name in ("libipopt.so.3", "libcasadi_conic_daqp.so")
+        ),
         write(tmp_path / "casadi" / "libcasadi_nlpsol_ipopt.so", b""),
         write(tmp_path / "numpy" / "_core" / "tests" / "_natype.py", b""),
         write(tmp_path / "else" / "include" / "it.h", b""),
