@@ -22,12 +22,10 @@ ENV PATH=/opt/stairwright/bin:$PATH \
     PIP_NO_CACHE_DIR=1
 WORKDIR /src
 RUN python -m venv /opt/stairwright
-COPY requirements.lock ./
-# Without the packages' own tests and CasADi's headers; libraries that a wheel holds twice become one.
+COPY requirements.lock slim.py ./
+# Without what running needs not; libraries that a wheel holds twice become one.
 RUN pip install --require-hashes --requirement requirements.lock \
-    && find /opt/stairwright -depth -type d \( -name tests -o -path '*/casadi/include' \) \
-        -exec rm -r {} \; \
-    && hardlink --quiet /opt/stairwright
+    && python slim.py
 COPY pyproject.toml hatch_build.py README.md LICENSE ./
 COPY terrains/ terrains/
 COPY robots/ robots/

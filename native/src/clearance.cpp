@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stairwright/whole.hpp"
+
 namespace stairwright {
 
 namespace {
@@ -26,7 +28,7 @@ class Search {
             keep(apart - radius, near);
             return;
         }
-        const int steps = std::max(1, static_cast<int>(norm(b - a) / kRaster));
+        const auto steps = static_cast<int>(std::max<std::size_t>(1, whole_part(norm(b - a) / kRaster)));
         for (int i = 0; i <= steps; ++i) {
             const Vec2 at = {a.x + (b.x - a.x) * i / steps, a.z + (b.z - a.z) * i / steps};
             if (at.z <= terrain_.height(at.x)) keep(-terrain_.distance(at, kFar) - radius, at);

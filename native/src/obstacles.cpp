@@ -38,8 +38,8 @@ Samples sampled(const WheelPath& path, double lower, double upper) {
     Samples out{{lower}, {}, {0}};
     for (std::size_t k = 0; k + 1 < marks.size(); ++k) {
         const double a = marks[k], b = marks[k + 1];
-        const int n = std::max(1, static_cast<int>(std::ceil((b - a) / kStep)));
-        for (int i = 1; i < n; ++i) out.s.push_back(a + i * ((b - a) / n));
+        const double n = std::max(1.0, std::ceil((b - a) / kStep));
+        for (double i = 1.0; i < n; ++i) out.s.push_back(a + i * ((b - a) / n));
         if (b > out.s.back()) {  // a piece may have no length
             out.ends.push_back(out.count());
             out.s.push_back(b);
@@ -124,6 +124,7 @@ Obstacle obstacle(const WheelPath& path, const Samples& at, Stretch run) {
 }  // namespace
 
 std::vector<Obstacle> find_obstacles(const WheelPath& path, double lower, double upper) {
+    lower = std::max(lower, 0.0), upper = std::min(upper, path.length());
     if (!(lower < upper)) return {};
     const Samples at = sampled(path, lower, upper);
     std::vector<Obstacle> out;

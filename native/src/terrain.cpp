@@ -4,13 +4,27 @@
 #include <limits>
 #include <stdexcept>
 
+#include "stairwright/whole.hpp"
+
 namespace stairwright {
 
 namespace {
 constexpr double kBucket = 0.02;    // m
 constexpr double kPierced = 0.005;  // m; depth of what a spike goes through that has no width to be deep in
 constexpr double kDeepest = 0.5;    // m; larger depths are not told apart
+constexpr double kFarthest = 1e4;  // m
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void check_profile(const std::vector<Vec2>& vertices) {
+    if (vertices.size() < 2) throw std::invalid_argument("a profile needs at least two points");
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const Vec2 p = vertices[i];
+        if (!(std::abs(p.x) <= kFarthest && std::abs(p.z) <= kFarthest))
+            throw std::invalid_argument("a profile's coordinates must be numbers up to 10,000 m");
+        if (i > 0 && p.x < vertices[i - 1].x) throw std::invalid_argument("along a profile x must never decrease");
+    }
+}
+
 }  // namespace
 
 double segment_distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
@@ -22,7 +36,7 @@ double segment_distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
 }
 
 Terrain::Terrain(std::vector<Vec2> vertices) : vertices_(std::move(vertices)) {
-    if (vertices_.size() < 2) throw std::invalid_argument("a profile needs at least two points");
+    check_profile(vertices_);
     const double begin = vertices_.front().x;
     const auto buckets = static_cast<std::size_t>((vertices_.back().x - begin) / kBucket) + 2;
     first_.resize(buckets);
@@ -36,8 +50,7 @@ Terrain::Terrain(std::vector<Vec2> vertices) : vertices_(std::move(vertices)) {
 
 std::size_t Terrain::first_segment(double x) const {
     const double bucket = (x - vertices_.front().x) / kBucket;
-    if (!(bucket > 0.0)) return static_cast<std::size_t>(first_.front());
-    return static_cast<std::size_t>(first_[std::min(static_cast<std::size_t>(std::fmin(bucket, 1e9)), first_.size() - 1)]);
+    return static_cast<std::size_t>(first_[whole_part(bucket, first_.size() - 1)]);
 }
 
 double Terrain::height(double x) const {

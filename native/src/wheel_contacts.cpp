@@ -15,6 +15,9 @@ struct Counted {
     std::size_t count = 0;
 
     void add(const Contact& contact) { at[count++] = contact; }
+    void add_all(const WheelContacts& wheel) {
+        for (const Contact& contact : wheel.span()) add(contact);
+    }
     std::span<const Contact> span() const { return {at.data(), count}; }
 };
 
@@ -41,7 +44,7 @@ enum Timing { kInTime = 0, kLate = 1, kLittleLate = 2, kAhead = 3 };
 // Contacts of a wheel that is not where it was planned.
 void add_strayed(Counted& out, const WheelPath& path, double s, double friction, int timing, double lag) {
     if (timing == kInTime) {
-        for (const Contact& contact : wheel_contacts(path, s, friction).span()) out.add(contact);
+        out.add_all(wheel_contacts(path, s, friction));
         return;
     }
     double other = timing == kLate ? s - lag : s - 0.3 * lag;
@@ -92,8 +95,7 @@ Interval pair_interval(const WheelPath& path, WheelPlaces s, double friction, do
 
 Interval stated_interval(const WheelPath& path, WheelPlaces s, double friction) {
     Counted counted;
-    for (const double at : {s.front, s.rear})
-        for (const Contact& contact : wheel_contacts(path, at, friction).span()) counted.add(contact);
+    for (const double at : {s.front, s.rear}) counted.add_all(wheel_contacts(path, at, friction));
     return com_interval(counted.span());
 }
 

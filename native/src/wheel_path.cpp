@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <stdexcept>
 
@@ -23,6 +24,7 @@ std::vector<Piece> offset_pieces(const std::vector<Vec2>& p, double r) {
     for (std::size_t i = 0; i + 1 < p.size(); ++i) {
         const Vec2 d = p[i + 1] - p[i];
         const double length = std::hypot(d.x, d.z);  // exact along an axis, unlike norm()
+        if (length == 0.0) throw std::invalid_argument("a point of the profile is repeated");
         const Vec2 t = {d.x / length, d.z / length};
         double turn = i > 0 ? std::atan2(cross(before, t), dot(before, t)) : 0.0;
         if (std::abs(std::abs(turn) - pi) < 1e-9) turn = -pi;  // the tip of a zero-width spike (slits are closed beforehand)
@@ -74,6 +76,7 @@ int crossings(const Piece& a, const Piece& b, double r, std::array<Vec2, 2>& out
 
 // Cut every raw piece at every crossing; keep the parts that are `r` away from the terrain.
 std::vector<Piece> trim(const std::vector<Piece>& raw, const Terrain& terrain, double r) {
+    if (!(r > 0.0 && std::isfinite(r))) throw std::invalid_argument("the wheel's radius must be above 0");
     const std::size_t n = raw.size();
     std::vector<double> lo(n), hi(n);
     for (std::size_t i = 0; i < n; ++i) {

@@ -39,3 +39,13 @@ def test_com_falls_behind_on_the_ramp():
     plan = sw.plan("ramp-30deg-025", method="nominal")
     first = next(p for p in plan.poses if p.margins.com < 0)
     assert first.com[0] < first.contacts[1][0] + 0.02
+
+
+def test_legs_that_cannot_fold_to_the_nominal_height_stand_nowhere() -> None:
+    robot = sw.load_robot("a1_wheeled").model_dump()
+    robot["calf"]["length"], robot["nominal_height"] = 0.001, 0.2
+    plan = sw.plan("curb-015", robot, method="nominal")
+    assert plan.problem is not None
+    assert plan.problem.kind == "start"
+    assert plan.problem.limit is not None
+    assert plan.problem.limit.needed == pytest.approx(0.249)

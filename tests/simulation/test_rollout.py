@@ -232,3 +232,11 @@ def test_the_papers_cases(terrain: str, robot: str) -> None:
     assert run.outcome == "success", run.reason
     assert run.metrics.link_contacts == 0
     assert run.metrics.pitch_error_max < math.radians(5)
+
+
+def test_poses_too_far_apart_are_refused() -> None:
+    plan = sw.plan("flat", method="nominal").model_dump()
+    plan["poses"][-1]["x_c"] = 1e6
+    with pytest.raises(InputError, match="at most 500 m") as caught:
+        sw.rollout(plan)
+    assert caught.value.field == ("plan", "poses")

@@ -45,6 +45,7 @@ def plan_nominal(terrain: Terrain, robot: Robot, friction: float, weights: Nomin
     try:
         path = wheel_path(terrain, robot.wheel.radius)
         begin, end = find_stands(terrain, robot, path)
+        _check_standing(robot, begin.wheels[0])
     except NoStand as error:
         stop = no_stand(terrain, robot, error)
         return assemble(
@@ -72,6 +73,15 @@ def plan_nominal(terrain: Terrain, robot: Robot, friction: float, weights: Nomin
         problem,
         seconds=perf_counter() - started,
     )
+
+
+def _check_standing(robot: Robot, s: float) -> None:
+    """Refuse a robot whose legs cannot fold as far as its nominal height asks."""
+    if np.isnan(kinematics.standing_joints(robot)).any():
+        least = robot.wheel.radius + abs(robot.thigh.length - robot.calf.length)
+        text = f"folded, the legs hold the trunk {least:g} m above the ground"
+        why = f"{text}, which is more than its nominal height"
+        raise NoStand("start", s, least, robot.nominal_height, why, "nominal height")
 
 
 def _wheelbase(robot: Robot) -> float:

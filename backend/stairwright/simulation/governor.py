@@ -34,12 +34,14 @@ from stairwright.control.setpoint import (
     WIDTH,
 )
 from stairwright.control.settings import ControllerSettings
+from stairwright.errors import InputError
 from stairwright.planning.reference import Reference
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
 Floats = NDArray[np.float64]
 
+LONGEST_WAY = 500.0  # m; the longest level terrain is 200 m
 STEP = 0.0025  # m of way between the rows of a track
 SWING = 0.3  # of the trunk's motion counts as way, where that is more than the progress
 TURN = 0.25  # m that a radian of the trunk's pitch counts as
@@ -92,9 +94,15 @@ def track(
         path: Its wheel-centre curve.
         friction: The plan's Coulomb friction.
         settings: Speed and joint speed are limited by them.
+
+    Raises:
+        InputError: If the poses are too far apart for any rollout to end.
     """
     way = _way(reference)
     first, last = float(way[0]), float(way[-1])
+    if not last - first <= LONGEST_WAY:
+        text = f"the poses are {last - first:.3g} m apart in all; at most {LONGEST_WAY:g} m can be"
+        raise InputError(f"{text} carried out", ("plan", "poses"))
     count = max(3, math.ceil((last - first) / STEP) + 1)
     grid = np.linspace(first, last, count)
     columns = np.column_stack(

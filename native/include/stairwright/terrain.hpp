@@ -25,6 +25,7 @@ double segment_distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d);
 // A profile whose x never decreases (equal x: a vertical face), indexed by buckets of x.
 class Terrain {
   public:
+    // Throws std::invalid_argument if `vertices` are fewer than two, run back or hold what is no number.
     explicit Terrain(std::vector<Vec2> vertices);
 
     const std::vector<Vec2>& vertices() const { return vertices_; }

@@ -19,7 +19,8 @@ struct WheelContacts {
     std::array<Contact, 2> at;
     std::size_t count = 0;
 
-    std::span<const Contact> span() const { return {at.data(), count}; }
+    std::span<const Contact> span() const& { return {at.data(), count}; }
+    void span() const&& = delete;  // of a temporary: a loop over it would read what is gone
 };
 
 // Arc lengths of the front and the rear wheels.

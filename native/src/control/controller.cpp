@@ -6,6 +6,8 @@
 
 #include "measurement.hpp"
 
+#include "stairwright/whole.hpp"
+
 namespace stairwright::control {
 
 namespace {
@@ -118,7 +120,7 @@ Torques Controller::step(const RobotState& state, const Reference& target, doubl
     Supports supports;
     for (int i = 0; i < 4; ++i) {
         places_[i] = locate(path_, m.legs[i].wheel, places_[i]);
-        const auto lean = static_cast<Lean>(std::clamp(static_cast<int>(target.lean[i / 2]), 0, 2));
+        const auto lean = static_cast<Lean>(whole_part(target.lean[i / 2], 2));
         supports[i] = wheel_support(path_, places_[i], target.value.wheels[i / 2], usable, lean);
     }
     pitch_integral_ += kPeriod * g.pitch_integral * (target.value.pitch - m.pitch);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "stairwright/whole.hpp"
+
 namespace stairwright::control {
 
 namespace {
@@ -27,7 +29,7 @@ PlanFollower::PlanFollower(double start, double step, std::vector<Reference> row
 PlanFollower::Spot PlanFollower::spot(double way) const {
     const std::size_t last = rows_.size() - 1;
     const double at = std::min(std::max((way - start_) / step_, 0.0), static_cast<double>(last));
-    const std::size_t k = std::min(static_cast<std::size_t>(at), last - 1);
+    const std::size_t k = whole_part(at, last - 1);
     return {k, at - static_cast<double>(k)};
 }
 

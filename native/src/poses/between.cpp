@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "stairwright/wheel_contacts.hpp"
+#include "stairwright/whole.hpp"
 
 namespace stairwright::poses {
 
@@ -97,7 +98,7 @@ PoseSlack pose_slack(const PoseProblem& problem, const PoseRules& rules, const U
 
 double balance_lost(const PoseProblem& problem, const PoseRules& rules, const Variables& begin, const Variables& end) {
     const double longest = std::max(end[7] - begin[7], end[8] - begin[8]);
-    const int n = std::max(1, static_cast<int>(std::ceil(longest / kStep)));
+    const auto n = static_cast<int>(std::max<std::size_t>(1, whole_part(std::ceil(longest / kStep))));
     PoseState state(problem.robot);
     std::vector<int> tipping;
     std::vector<double> missing(static_cast<std::size_t>(n), 0.0);

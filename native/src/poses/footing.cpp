@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "stairwright/wheel_contacts.hpp"
+#include "stairwright/whole.hpp"
 
 namespace stairwright::poses {
 
@@ -31,7 +32,7 @@ bool rests(const WheelPath& path, double s, double friction, double scale) {
 
 double steep_ahead(const WheelPath& path, double s, double friction, double scale) {
     const double most = kGrip * std::atan(friction);
-    for (int k = 0; k < static_cast<int>(kAhead * scale / kStride); ++k)
+    for (int k = 0; k < static_cast<int>(whole_part(kAhead * scale / kStride)); ++k)
         if (slope(path, s + k * kStride) > most) return s + k * kStride;
     return std::numeric_limits<double>::infinity();
 }
@@ -54,7 +55,7 @@ std::vector<double> rear_places(const WheelPath& path, const RearSearch& query) 
         double s, off;
     };
     std::vector<Place> found;
-    const int count = std::max(1, static_cast<int>((upper - lower) / query.step) + 1);
+    const auto count = static_cast<int>(whole_part((upper - lower) / query.step) + 1);
     const Vec2 front = path.centre(query.front);
     for (int k = 0; k < count; ++k) {
         const double s = lower + (upper - lower) * k / std::max(1, count - 1);

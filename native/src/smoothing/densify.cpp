@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stairwright/whole.hpp"
+
 namespace stairwright::smoothing {
 
 namespace {
@@ -12,7 +14,7 @@ constexpr int kPasses = 10;
 
 // The node at a fractional node number.
 Node interpolate(std::span<const Node> nodes, double at) {
-    const auto k = std::min(static_cast<std::size_t>(at), nodes.size() - 1);
+    const auto k = whole_part(at, nodes.size() - 1);
     const double share = at - static_cast<double>(k);
     return share <= 0.0 || k + 1 >= nodes.size() ? nodes[k] : between(nodes[k], nodes[k + 1], share);
 }
@@ -105,7 +107,7 @@ std::vector<NodeIntervals> intervals_along(const WheelPath& path, std::span<cons
     for (const double at : changes) {
         const NodeIntervals there = node_intervals(path, interpolate(nodes, at).s, friction, reserve, lag);
         for (const double k : {std::floor(at), std::ceil(at)}) {
-            NodeIntervals& node = out[std::min(static_cast<std::size_t>(k), nodes.size() - 1)];
+            NodeIntervals& node = out[whole_part(k, nodes.size() - 1)];
             keep(node.full, there.full);
             keep(node.reserve, there.reserve);
             keep(node.lagged, there.lagged);

@@ -7,6 +7,7 @@
 #include "residuals.hpp"
 #include "stairwright/smoothing/densify.hpp"
 #include "stairwright/smoothing/resample.hpp"
+#include "stairwright/whole.hpp"
 
 namespace stairwright::smoothing {
 
@@ -72,7 +73,7 @@ PathCost path_cost(const RefineProblem& problem, std::span<const Node> path) {
     const NodeSpacing spacing;
     const Column u = path_parameter(path, spacing.swing);
     const double step = kUsualSpacing * problem.robot.scale();
-    const std::size_t count = std::max<std::size_t>(20, static_cast<std::size_t>(u.back() / step));
+    const std::size_t count = std::max<std::size_t>(20, whole_part(u.back() / step));
     const std::vector<Node> nodes = resample(path, u, count);
     const std::vector<double> changes = contact_changes(problem.path, nodes);
     const std::vector<NodeIntervals> intervals =

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "stairwright/smoothing/densify.hpp"
 #include "stairwright/smoothing/objective.hpp"
 #include "stairwright/smoothing/resample.hpp"
 #include "stairwright/smoothing/smoothing.hpp"
+#include "stairwright/whole.hpp"
 
 namespace stairwright::smoothing {
 
@@ -36,7 +38,7 @@ std::vector<Node> nodes_of(const std::array<Column, 5>& c) {
 Column gaussian(const Column& a, double sigma) {
     if (sigma < 0.3) return a;
     const auto n = static_cast<std::ptrdiff_t>(a.size());
-    const std::ptrdiff_t reach = std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(4 * sigma) + 1, n - 1);
+    const std::ptrdiff_t reach = std::min(static_cast<std::ptrdiff_t>(whole_part(4 * sigma, a.size())) + 1, n - 1);
     Column kernel;
     double total = 0.0;
     for (std::ptrdiff_t k = -reach; k <= reach; ++k) {
@@ -76,11 +78,13 @@ void keep_rising(Column& s, double first, double last) {
 
 RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends, std::span<const Node> poses,
                    const NodeSpacing& spacing, std::size_t held) {
+    if (poses.size() < 2 || held < 1 || held > kFewestNodes)
+        throw std::invalid_argument("a path has two poses or more; from 1 to 40 nodes at its ends can be held");
     std::vector<Node> way(poses.begin(), poses.end());
     way.front() = ends[0], way.back() = ends[1];
     const double size = problem.robot.scale();
     const Column u = path_parameter(way, spacing.swing);
-    const std::size_t n = std::max(kFewestNodes, static_cast<std::size_t>(u.back() / (spacing.spacing * size)));
+    const std::size_t n = std::max(kFewestNodes, whole_part(u.back() / (spacing.spacing * size)));
     const double hop = u.back() / static_cast<double>(n - 1);
     const std::vector<Node> laid = resample(way, u, n);
     std::array<Column, 5> smoothed = columns(laid);
