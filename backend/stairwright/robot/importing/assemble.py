@@ -100,9 +100,9 @@ def assemble(
         "source": origin,
         "joint_names": _names(legs),
     }
-    for joint, at in held.items():
-        if joint not in tree.free:
-            notes.assume(f"abduction {source.joint(joint)!r} is locked at {at:.4g} rad")
+    locked = [f"{source.joint(j)} {at:.4g}" for j, at in held.items() if j not in tree.free]
+    if locked:
+        notes.assume(f"abduction joints are locked [rad]: {', '.join(locked)}")
     _note_maps(legs, notes)
     document["assumed"] = notes.assumed
     try:

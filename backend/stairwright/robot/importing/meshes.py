@@ -8,8 +8,11 @@ from pathlib import PurePosixPath
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .upload import Upload
+
+Floats = NDArray[np.float64]
 
 _NATIVE = (".stl", ".obj", ".msh")  # read by MuJoCo
 _CONVERTED = (".ply", ".off")
@@ -49,19 +52,28 @@ def _is_text_stl(content: bytes, suffix: str) -> bool:
 
 def _convert(mesh: Any, content: bytes, suffix: str) -> bool:
     """Read what MuJoCo cannot; False if nothing comes of it."""
-    kind = suffix.removeprefix(".")
     if suffix not in (".stl", *_CONVERTED):
         return False
-    import trimesh
-
-    load: Callable[..., Any] = trimesh.load
-    try:
-        read = load(io.BytesIO(content), file_type=kind, force="mesh", process=False)
-        vertices, faces = np.asarray(read.vertices, float), np.asarray(read.faces, int)
-    except Exception:  # noqa: BLE001 - trimesh raises whatever its readers do
+    read = read_mesh(content, suffix.removeprefix("."))
+    if read is None:
         return False
+    vertices, faces = read
     if not (4 <= len(vertices) <= _MOST_VERTICES and len(faces) and np.isfinite(vertices).all()):
         return False
     mesh.file = ""
     mesh.uservert, mesh.userface = vertices.ravel(), faces.ravel()
     return True
+
+
+def read_mesh(content: bytes, kind: str) -> tuple[Floats, NDArray[np.int64]] | None:
+    """Vertices (n, 3) and triangles (m, 3) of a mesh; None if it cannot be read."""
+    import trimesh
+
+    load: Callable[..., Any] = trimesh.load
+    try:
+        read = load(io.BytesIO(content), file_type=kind, force="mesh", process=False)
+        return np.asarray(read.vertices, float), np.asarray(read.faces, np.int64)
+    except MemoryError:
+        raise
+    except Exception:  # noqa: BLE001 - trimesh raises whatever its readers do
+        return None

@@ -11,6 +11,11 @@ import mujoco
 from .report import Notes
 from .source import Source
 
+# Of MuJoCo's enumerations, whose members do not compare with NumPy's integers.
+_AT_JOINTS = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
+_PLAIN = (
+    int(mujoco.mjtGain.mjGAIN_FIXED), int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtDyn.mjDYN_NONE)
+)  # fmt: skip
 _PLACEHOLDER_SPEED = 100.0  # rad/s; no joint of a legged robot is as fast
 _PLACEHOLDER_TORQUE = 1000.0  # Nm
 
@@ -40,15 +45,12 @@ def read_drive(source: Source, joint: int, notes: Notes) -> Drive:
     dof = int(model.jnt_dofadr[joint])
     places: dict[str, float] = {}
     armature = float(model.dof_armature[dof])
-    for k in range(model.nu):
-        kind = model.actuator_trntype[k]
-        if kind not in (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT):
-            continue
-        if model.actuator_trnid[k, 0] != joint:
+    for k in range(model.nactuator):
+        if int(model.actuator_trntype[k]) not in _AT_JOINTS or model.actuator_trnid[k, 0] != joint:
             continue
         places |= _of_actuator(model, k, name, notes)
         gear = float(model.actuator_gear[k, 0])
-        armature += float(getattr(model, "actuator_armature", [0.0] * model.nu)[k]) * gear**2
+        armature += float(model.actuator_armature[k]) * gear**2
     limit = source.limits.get(name)
     if limit is not None:
         if limit.effort > 0:
@@ -74,11 +76,8 @@ def _of_actuator(model: Any, k: int, joint: str, notes: Notes) -> dict[str, floa
         found[f"forcerange of actuator {name!r}"] = gear * _smaller(
             model.actuator_forcerange[k], joint, "forcerange", notes
         )
-    plain = (
-        model.actuator_gaintype[k] == mujoco.mjtGain.mjGAIN_FIXED
-        and model.actuator_biastype[k] == mujoco.mjtBias.mjBIAS_NONE
-        and model.actuator_dyntype[k] == mujoco.mjtDyn.mjDYN_NONE
-    )
+    form = (model.actuator_gaintype[k], model.actuator_biastype[k], model.actuator_dyntype[k])
+    plain = tuple(map(int, form)) == _PLAIN
     if plain and model.actuator_ctrllimited[k]:
         gain = abs(float(model.actuator_gainprm[k, 0]))
         torque = gear * gain * _smaller(model.actuator_ctrlrange[k], joint, "ctrlrange", notes)

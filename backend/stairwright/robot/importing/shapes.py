@@ -49,7 +49,7 @@ def solids(source: Source, frame: Frame, bodies: Sequence[int], *, shown: bool =
         first = int(model.body_geomadr[body])
         for geom in range(first, first + int(model.body_geomnum[body])):
             touches = model.geom_contype[geom] or model.geom_conaffinity[geom]
-            if (touches or shown) and model.geom_type[geom] != _GEOM.mjGEOM_PLANE:
+            if (touches or shown) and int(model.geom_type[geom]) != int(_GEOM.mjGEOM_PLANE):
                 found.append(_solid(source, frame, geom, source.body(body)))
     return found
 
