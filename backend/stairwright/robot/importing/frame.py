@@ -48,43 +48,52 @@ class Frame:
 
 
 def find_frame(source: Source, tree: Tree, notes: Notes) -> Frame:
-    """Left is along the wheels' axes, up along the trunk's z, forward its x where that fits.
+    """Forward is along the abduction axes, or across the wheels' where there are none.
+
+    Up is along the trunk's z where that lies across; a robot looks along a positive axis.
 
     Raises:
-        InputError: If the wheels' axes lie along no axis of the trunk.
+        InputError: If these axes lie along none of the trunk's.
     """
     data = source.data
-    body = min(tree.trunk) if tree.trunk else int(source.model.jnt_bodyid[tree.legs[0].joints[0]])
+    body = min(tree.trunk)
     trunk = data.xmat[body].reshape(3, 3).T  # rows: the trunk's axes in the world
-    own = [trunk @ data.xaxis[leg.wheel] for leg in tree.legs]
-    aligned = [axis * math.copysign(1.0, axis @ own[0]) for axis in own]
-    lateral = np.mean(aligned, axis=0)
-    lateral /= max(float(np.linalg.norm(lateral)), 1e-12)
-    left = int(np.abs(lateral).argmax())
-    if abs(lateral[left]) < _STRAIGHT:
-        raise InputError(
-            f"the wheels of {source.body(body)!r} turn about {np.round(lateral, 3).tolist()}, "
-            "along none of its axes",
-            ("file",),
-        )
-    up = 2 if left != 2 else 1
+    given = [leg.abduction for leg in tree.legs]
+    tilting = all(joint is not None for joint in given)
+    joints = given if tilting else [leg.wheel for leg in tree.legs]
+    taken = _along(source, trunk, [j for j in joints if j is not None], source.body(body))
+    # Up: against gravity where that is clear, else z; but not along the axis that is taken.
     gravity = trunk @ np.array([0.0, 0.0, 1.0])
     steepest = int(np.abs(gravity).argmax())
-    if left != steepest and abs(gravity[steepest]) > _STRAIGHT:
-        up = steepest
-    rise = math.copysign(1.0, gravity[up]) if abs(gravity[up]) > 0.5 else 1.0
-    z = rise * np.eye(3)[up]
-    y = np.eye(3)[left]
-    x = np.cross(y, z)
-    if x.sum() < 0:  # forward along a positive axis of the trunk
-        x, y = -x, -y
-    if x[0] != 1.0:
+    clear = abs(gravity[steepest]) > _STRAIGHT and steepest != taken
+    up = steepest if clear else (2 if taken != 2 else 1)
+    rise = math.copysign(1.0, gravity[up]) if clear else 1.0
+    z, other = rise * np.eye(3)[up], np.eye(3)[taken]
+    x = other if tilting else np.cross(other, z)
+    x = x * math.copysign(1.0, x.sum())
+    y = np.cross(z, x)
+    if x[0] != 1.0 or z[2] != 1.0:
         letters = "xyz"
         notes.assume(
             f"{source.body(body)!r} looks along its own {letters[int(np.abs(x).argmax())]} axis, "
             f"up is {'-' if rise < 0 else ''}{letters[up]}"
         )
     return Frame(np.array([x, y, z]) @ trunk, data.xpos[body].copy())
+
+
+def _along(source: Source, trunk: Floats, joints: list[int], name: str) -> int:
+    """Which of the trunk's axes the axes of `joints` lie along."""
+    own = [trunk @ source.data.xaxis[joint] for joint in joints]
+    mean = np.mean([axis * math.copysign(1.0, axis @ own[0]) for axis in own], axis=0)
+    mean /= max(float(np.linalg.norm(mean)), 1e-12)
+    index = int(np.abs(mean).argmax())
+    if abs(mean[index]) < _STRAIGHT:
+        raise InputError(
+            f"{source.joint(joints[0])!r} and its kin turn about {np.round(mean, 3).tolist()}, "
+            f"along none of the axes of {name!r}",
+            ("file",),
+        )
+    return index
 
 
 def upright(source: Source, tree: Tree, frame: Frame, tilt: float, notes: Notes) -> dict[int, float]:
