@@ -42,6 +42,7 @@ class Reading:
         frame: Our axes.
         centre: (3,) the trunk point in our frame [m].
         legs: By our names.
+        planes: Where each wheel's middle lies along its thigh's axis [m].
         held: Joints that are not ours, and where they are held.
     """
 
@@ -50,6 +51,7 @@ class Reading:
     frame: Frame
     centre: np.ndarray
     legs: dict[str, SideLeg]
+    planes: dict[str, float]
     held: dict[int, float]
 
     @property
@@ -109,7 +111,8 @@ def assemble(
         robot = parse(Robot, document)
     except InputError as error:
         raise InputError(f"does not make a robot: {error}", ("file",)) from None
-    return Reading(robot, source, frame, centre, legs, held)
+    planes = {name: leg.wheel.lateral for name, leg in measured.items()}
+    return Reading(robot, source, frame, centre, legs, planes, held)
 
 
 def _placed(legs: list[Measured]) -> dict[str, Measured]:

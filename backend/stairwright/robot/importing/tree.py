@@ -84,8 +84,6 @@ def find_legs(source: Source) -> Tree:
         while joint is not None and joint not in in_legs:
             joint = above[joint]
         groups.setdefault(joint, []).append(body)
-    if None not in groups:
-        raise InputError(f"{source.joint(common[-1])!r} moves no trunk", ("file",))
     root = model.body_rootid[top]
     free = [j for j in free if model.body_rootid[model.jnt_bodyid[j]] == root]
     return Tree(legs, groups.get(None, []), {j: groups.get(j, []) for j in in_legs}, free, common)

@@ -17,7 +17,6 @@ Floats = NDArray[np.float64]
 
 _POSTURES = 100
 _MOST = 0.02  # of the leg's length; more is another robot
-_PARTS = ("thigh", "calf", "wheel")
 
 
 @dataclass(frozen=True)
@@ -43,7 +42,9 @@ def compare(reading: Reading, postures: int, seed: int = 0) -> Errors:
         source.set(reading.held | positions(reading, q))
         frames = kinematics.forward(robot, zero, zero, zero, q)
         for name, leg in reading.legs.items():
-            there = (frame.place(data.xanchor[leg.chain.wheel]) - reading.centre)[[0, 2]]
+            anchor = leg.axes @ frame.place(data.xanchor[leg.chain.wheel])
+            anchor[1] = reading.planes[name]
+            there = (leg.axes.T @ anchor - reading.centre)[[0, 2]]
             off = there - frames.wheels[0 if name[0] == "F" else 1]
             wheels = max(wheels, float(np.hypot(*off)))
         there = (masses @ frame.place(data.xipos[bodies]) / masses.sum() - reading.centre)[[0, 2]]
