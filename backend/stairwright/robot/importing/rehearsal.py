@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import io
+import zipfile
+
 from .meshes import read_mesh
 from .read import read
-from .upload import Upload
+from .upload import unpack
 
 _LEG = """
 <body name="{n}a" pos="{x} {y} 0"><joint name="{n}a" axis="1 0 0"/><geom size=".03"/>
@@ -34,6 +37,10 @@ _MESHES = {
 
 def rehearse() -> None:
     """Read them."""
-    read(Upload("a.xml", _MJCF.encode(), {"m.obj": _TETRA.encode()}), {})
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, text in (("a.xml", _MJCF), ("m.obj", _TETRA), ("ä.obj", _TETRA)):
+            archive.writestr(name, text)
+    read(unpack(packed.getvalue(), "a.zip"), {})
     for kind, text in _MESHES.items():
         read_mesh(text.encode(), kind)
