@@ -9,6 +9,7 @@ from .mujoco_library import load_mujoco_library
 
 if TYPE_CHECKING:
     from .client import Client, ServiceError
+    from .importing import import_robot
     from .library import load_robot, load_terrain, robots, terrains
     from .planning.certificate import certify
     from .planning.plan import Plan
@@ -30,6 +31,7 @@ __all__ = [
     "Terrain",
     "Trials",
     "certify",
+    "import_robot",
     "load_robot",
     "load_terrain",
     "plan",
@@ -51,6 +53,7 @@ _HOMES = {
     "Terrain": "terrain.profile",
     "Trials": "simulation.trials",
     "certify": "planning.certificate",
+    "import_robot": "importing",
     "load_robot": "library",
     "load_terrain": "library",
     "plan": "planning.planner",

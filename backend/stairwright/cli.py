@@ -80,7 +80,25 @@ def parser() -> argparse.ArgumentParser:
 
     commands.add_parser("terrains", help="list the terrain presets")
     commands.add_parser("robots", help="list the robots")
+    _add_robot(commands.add_parser("robot", help="read robots from other files, or convert them"))
     return top
+
+
+def _add_robot(command: argparse.ArgumentParser) -> None:
+    actions = command.add_subparsers(dest="action", required=True, metavar="ACTION")
+    reading = actions.add_parser("import", help="read a URDF or MJCF file")
+    reading.add_argument("file", metavar="FILE", help=".urdf, .xml, or a .zip with the meshes")
+    reading.add_argument(
+        "--abduction", type=float, default=0.0, metavar="RAD", help="lock the legs outward by so much"
+    )
+    reading.add_argument(
+        "--wheel-radius", type=float, metavar="M", help="where the file does not show it"
+    )
+    reading.add_argument("--json", action="store_true", help="print robot, assumed and warnings")
+    convert = actions.add_parser("convert", help="write a robot in the newest schema")
+    convert.add_argument("file", metavar="FILE", help="a robot (yaml, json, its name)")
+    for action in (reading, convert):
+        action.add_argument("-o", "--output", metavar="FILE", help=f"{names('robot')}; else printed")
 
 
 def _add_planning(command: argparse.ArgumentParser) -> None:

@@ -23,6 +23,7 @@ from stairwright.answers import JobState, ServiceError, ask
 from stairwright.documents import Model, parse
 from stairwright.planning.plan import Method, Plan
 from stairwright.robot.description import Robot
+from stairwright.robot.importing.report import Imported
 from stairwright.terrain.profile import Terrain
 
 if TYPE_CHECKING:
@@ -70,8 +71,27 @@ class Client:
     # ------------------------------------------------------------------ terrains and robots
 
     def robots(self) -> list[Robot]:
-        """All robots."""
-        return [parse(Robot, each) for each in self._json("GET", "/robots")]
+        """All robots, presets first."""
+        return [_saved(Robot, each) for each in self._json("GET", "/robots")]
+
+    def robot(self, name: str) -> Robot:
+        """One robot."""
+        return _saved(Robot, self._json("GET", f"/robots/{_quoted(name)}"))
+
+    def save_robot(self, robot: Robot) -> Robot:
+        """Save a robot under its name."""
+        body = robot.model_dump(mode="json")
+        return _saved(Robot, self._json("PUT", f"/robots/{_quoted(robot.name)}", json=body))
+
+    def delete_robot(self, name: str) -> None:
+        """Remove a saved robot."""
+        self._send("DELETE", f"/robots/{_quoted(name)}")
+
+    def import_robot(self, path: str | Path, **fields: Any) -> Imported:
+        """The robot in a URDF or MJCF file, or in a zip of one with its meshes."""
+        file = Path(path)
+        files = {"file": (file.name, file.read_bytes())}
+        return parse(Imported, self._json("POST", "/robots/import", files=files, data=fields))
 
     def export_robot(self, name: str, file_format: str) -> bytes:
         """A robot as a file: urdf or mjcf."""
@@ -79,16 +99,16 @@ class Client:
 
     def terrains(self) -> list[Terrain]:
         """All terrains, presets first."""
-        return [_terrain(each) for each in self._json("GET", "/terrains")]
+        return [_saved(Terrain, each) for each in self._json("GET", "/terrains")]
 
     def terrain(self, name: str) -> Terrain:
         """One terrain."""
-        return _terrain(self._json("GET", f"/terrains/{_quoted(name)}"))
+        return _saved(Terrain, self._json("GET", f"/terrains/{_quoted(name)}"))
 
     def save_terrain(self, terrain: Terrain) -> Terrain:
         """Save a terrain under its name."""
         body = terrain.model_dump(mode="json")
-        return _terrain(self._json("PUT", f"/terrains/{_quoted(terrain.name)}", json=body))
+        return _saved(Terrain, self._json("PUT", f"/terrains/{_quoted(terrain.name)}", json=body))
 
     def delete_terrain(self, name: str) -> None:
         """Remove a saved terrain."""
@@ -96,13 +116,13 @@ class Client:
 
     def generate_terrain(self, kind: Literal["stair", "ramp", "flat"], **measures: Any) -> Terrain:
         """A terrain from a few measures."""
-        return _terrain(self._json("POST", "/terrains/generate", json={"kind": kind, **measures}))
+        return _saved(Terrain, self._json("POST", "/terrains/generate", json={"kind": kind, **measures}))
 
     def import_terrain(self, path: str | Path, **fields: Any) -> Terrain:
         """The profile in a file: STL, OBJ, PLY, OFF, CSV, JSON or YAML."""
         file = Path(path)
         files = {"file": (file.name, file.read_bytes())}
-        return _terrain(self._json("POST", "/terrains/import", files=files, data=fields))
+        return _saved(Terrain, self._json("POST", "/terrains/import", files=files, data=fields))
 
     def settings(self) -> dict[str, Any]:
         """JSON Schemas of weights and controller settings."""
@@ -270,8 +290,9 @@ def _plain(source: str | Model | Mapping[str, Any]) -> Any:
     return source if isinstance(source, str) else dict(source)
 
 
-def _terrain(data: Mapping[str, Any]) -> Terrain:
-    return parse(Terrain, {key: value for key, value in data.items() if key != "readonly"})
+def _saved(model: type[M], data: Mapping[str, Any]) -> M:
+    """A document without what GET adds to it."""
+    return parse(model, {k: value for k, value in data.items() if k not in ("readonly", "version")})
 
 
 def _quoted(name: str) -> str:

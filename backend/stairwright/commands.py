@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from . import summary
 from .errors import InputError
 from .library import load_robot, load_terrain, robots, terrains
+from .robot_commands import robot_command
 
 if TYPE_CHECKING:
     from .planning.plan import Method, Plan
@@ -154,6 +155,7 @@ COMMANDS: Mapping[str, Command] = {
     "bench": bench_command,
     "terrains": terrains_command,
     "robots": robots_command,
+    "robot": robot_command,
 }
 
 

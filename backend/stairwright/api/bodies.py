@@ -32,14 +32,15 @@ def _setting_form(value: Any) -> str:
 
 
 def _without_readonly(value: Any) -> Any:
-    """GET adds `readonly` to a terrain; what was got can be sent back as it is."""
+    """GET adds `readonly` to a document; what was got can be sent back as it is."""
     if isinstance(value, dict) and isinstance(value.get("readonly"), bool):
-        return {key: each for key, each in value.items() if key != "readonly"}
+        return {key: each for key, each in value.items() if key not in ("readonly", "version")}
     return value
 
 
 Name = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[\w .+-]+$")]
 SentTerrain = Annotated[Terrain, BeforeValidator(_without_readonly)]
+SentRobot = Annotated[Robot, BeforeValidator(_without_readonly)]
 _NameOrDocument = Discriminator(
     _form,
     custom_error_type="name_or_document",
@@ -49,7 +50,7 @@ TerrainSource = Annotated[
     Annotated[Name, Tag("~name")] | Annotated[SentTerrain, Tag("~document")], _NameOrDocument
 ]
 RobotSource = Annotated[
-    Annotated[Name, Tag("~name")] | Annotated[Robot, Tag("~document")], _NameOrDocument
+    Annotated[Name, Tag("~name")] | Annotated[SentRobot, Tag("~document")], _NameOrDocument
 ]
 Friction = Annotated[
     float, Field(strict=True, gt=0.0, le=MOST_FRICTION, description="Coulomb, wheel on terrain")
@@ -127,6 +128,13 @@ class TerrainDocument(Terrain):
     """A terrain, and whether it is one of the read-only presets."""
 
     readonly: bool = Field(description="a preset; it cannot be changed or deleted")
+
+
+class RobotDocument(Robot):
+    """A robot, whether it is one of the read-only presets, and which version of it this is."""
+
+    readonly: bool = Field(description="a preset; it cannot be changed or deleted")
+    version: str = Field(description="hash of its content, as in plans' `robot_hash`")
 
 
 Length = Annotated[float, Field(strict=True, gt=0.0, le=100.0)]

@@ -128,17 +128,20 @@ def resolve_terrain(services: Services, source: str | Terrain) -> Terrain:
     return saved
 
 
-def resolve_robot(source: str | Robot) -> Robot:
-    """A robot by name; a document as it is. Never a file.
+def resolve_robot(services: Services, source: str | Robot) -> Robot:
+    """A preset or saved robot by name; a document as it is. Never a file.
 
     Raises:
         Problem: 422 if there is none of that name.
     """
     if isinstance(source, Robot):
         return source
-    if source not in robots():
-        raise _unknown("robot", source, robots())
-    return load_robot(source)
+    if source in robots():
+        return load_robot(source)
+    saved = services.store.robots.get(source)
+    if saved is None:
+        raise _unknown("robot", source, [*robots(), *services.store.robots.names()])
+    return saved
 
 
 def _unknown(kind: str, name: str, known: list[str]) -> Problem:

@@ -20,6 +20,7 @@ _OPERATIONS = {
     "post_rollout": "create_rollout",
     "post_session": "create_session",
     "put_playback": "set_playback",
+    "put_robot": "save_robot",
     "put_scene": "set_scene",
     "put_terrain": "save_terrain",
     "settings": "get_settings",
@@ -28,7 +29,7 @@ _OPERATIONS = {
 TAGS = {
     "service": "Whether the service is ready.",
     "settings": "Weights of the planners and settings of the controller.",
-    "robots": "The robots it knows.",
+    "robots": "Presets and saved robots; import of URDF and MJCF.",
     "terrains": "Presets and saved terrains; import and generation.",
     "plans": "How a robot gets over a terrain.",
     "rollouts": "Plans carried out in simulation.",
@@ -73,6 +74,8 @@ _MADE = {  # by operation and status
     ("create_plan", "200"): ("ETag", "Content-Location"),
     ("create_rollout", "202"): ("Location", "Retry-After"),
     ("create_session", "201"): (),
+    ("save_robot", "200"): ("ETag",),
+    ("save_robot", "201"): ("ETag", "Location"),
     ("save_terrain", "200"): ("ETag",),
     ("save_terrain", "201"): ("ETag", "Location"),
 }

@@ -23,7 +23,7 @@ request_id: ContextVar[str] = ContextVar("request_id", default="")
 _REQUEST_ID = re.compile(r"[\w.-]{1,64}", re.ASCII)
 PREFIX = "/api/v1"
 PLANS_PATH = f"{PREFIX}/plans"
-IMPORT_PATH = f"{PREFIX}/terrains/import"
+IMPORT_PATHS = (f"{PREFIX}/terrains/import", f"{PREFIX}/robots/import")
 
 
 class Observe:
@@ -88,7 +88,7 @@ class LimitBody:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        limit = self.upload_limit if scope["path"] == IMPORT_PATH else self.limit
+        limit = self.upload_limit if scope["path"] in IMPORT_PATHS else self.limit
         announced = Headers(scope=scope).get("content-length", "0")
         if not announced.isascii() or not announced.isdigit() or int(announced[:20]) > limit:
             await _too_large(limit).response()(scope, receive, send)

@@ -7,7 +7,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from .middleware import PREFIX
 from .problems import Problem
 
-_STORED = tuple(f"{PREFIX}/{kind}/" for kind in ("terrains", "plans", "rollouts", "jobs"))
+_STORED = tuple(f"{PREFIX}/{kind}/" for kind in ("terrains", "robots", "plans", "rollouts", "jobs"))
 _ROLLOUTS = f"{PREFIX}/rollouts"
 
 

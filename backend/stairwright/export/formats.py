@@ -116,7 +116,7 @@ def _document(source: str | Path) -> Plan | Rollout | Robot:
     if str(source) in robots():
         return load_robot(str(source))
     data = _load(Path(source))
-    if data.get("schema") == "stairwright/robot/1":
+    if str(data.get("schema")).startswith("stairwright/robot/"):
         return parse(Robot, data)
     return _either(data, source)
 

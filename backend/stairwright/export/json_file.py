@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import orjson
 
-from stairwright.planning.plan import Plan
-from stairwright.simulation.result import Rollout
+from stairwright.documents import Model
 
 
-def document_json(document: Plan | Rollout) -> bytes:
+def document_json(document: Model) -> bytes:
     """The whole document; arrays as nested lists."""
     return orjson.dumps(document.model_dump(mode="json")) + b"\n"

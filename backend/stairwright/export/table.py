@@ -69,6 +69,7 @@ class Format(Generic[D]):
             raise InputError(f"must lie between {LEAST_RATE:g} and {MOST_RATE:g} Hz", ("rate",))
 
 
+_YAML = "application/yaml"
 _JSON, _CSV, _XML = "application/json", "text/csv; charset=utf-8", "application/xml"
 _NPZ, _MCAP, _HTML = "application/x-npz", "application/x-mcap", "text/html; charset=utf-8"
 
@@ -88,6 +89,8 @@ ROLLOUT_FORMATS: dict[str, Format[Rollout]] = {
     "mcap": Format("mcap_file.rollout_mcap", ".mcap", _MCAP, "for Foxglove and ROS 2"),
 }
 ROBOT_FORMATS: dict[str, Format[Robot]] = {
+    "yaml": Format("yaml_file.robot_yaml", ".yaml", _YAML, "stairwright/robot"),
+    "json": Format("json_file.document_json", ".json", _JSON, "stairwright/robot"),
     "urdf": Format("urdf_file.robot_urdf", ".urdf", _XML, "for ROS 2"),
     "mjcf": Format("mjcf_file.robot_mjcf", ".xml", _XML, "for MuJoCo"),
 }

@@ -105,9 +105,10 @@ def _go_first() -> None:
 def _seal() -> None:
     import trimesh  # noqa: F401 - no file can be opened later, not even a module's
 
-    from . import uploads
+    from . import robot_uploads, uploads
 
     uploads.rehearse()
+    robot_uploads.rehearse()
     _limit(resource.RLIMIT_FSIZE, 0)
     _limit(resource.RLIMIT_NPROC, 0)
     _limit(resource.RLIMIT_NOFILE, _first_free_descriptor())

@@ -10,12 +10,14 @@ from pathlib import Path
 
 from sqlalchemy import Engine
 
+from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
-from .tables import Base, SavedTerrain
+from .tables import Base, SavedRobot, SavedTerrain
 
 SET_ASIDE = ".damaged-"
 _SUFFIXES = ("", "-wal", "-shm")
+_MODELS = {SavedTerrain.__tablename__: Terrain, SavedRobot.__tablename__: Robot}
 _JSON = frozenset({"document", "summary", "error"})  # columns
 
 
@@ -53,13 +55,13 @@ def salvage(damaged: Path, into: Engine) -> dict[str, int]:
 
 
 def _is_whole(table: str, row: Mapping[str, object]) -> bool:
-    """Whether what should be JSON is JSON, and a terrain a terrain."""
+    """Whether what should be JSON is JSON, a terrain a terrain, and a robot a robot."""
     try:
         for name in _JSON & row.keys():
             if row[name] is not None:
                 json.loads(str(row[name]))
-        if table == SavedTerrain.__tablename__:
-            Terrain.model_validate_json(str(row["document"]))
+        if table in _MODELS:
+            _MODELS[table].model_validate_json(str(row["document"]))
     except ValueError:
         return False
     return True

@@ -17,7 +17,7 @@ from .idempotency import IdempotencyKeys
 from .jobs import JobLog
 from .opening import open_soundly
 from .salvage import was_set_aside
-from .terrains import SavedTerrains
+from .saved import saved_robots, saved_terrains
 
 DATABASE = "stairwright.sqlite"
 
@@ -36,7 +36,8 @@ class Store:
         self.engine, self.read_only = open_soundly(folder / DATABASE)  # why nothing can be saved
         self._sessions = sessions = sessionmaker(self.engine, expire_on_commit=False)
         self.artefacts = Artefacts(folder / "artefacts")
-        self.terrains = SavedTerrains(sessions)
+        self.terrains = saved_terrains(sessions)
+        self.robots = saved_robots(sessions)
         self.documents = Documents(self.engine, self.artefacts, fixed=self.read_only is not None)
         self._unsettled = set(self.artefacts.unsettled())  # a process that died may leave some
         self.jobs = JobLog(sessions)

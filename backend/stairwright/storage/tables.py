@@ -20,6 +20,16 @@ class SavedTerrain(Base):
     updated: Mapped[float]
 
 
+class SavedRobot(Base):
+    """A robot of the user's."""
+
+    __tablename__ = "robots"
+
+    name: Mapped[str] = mapped_column(primary_key=True)
+    document: Mapped[str]  # JSON
+    updated: Mapped[float]
+
+
 class StoredDocument(Base):
     """A plan or a rollout; its content lies among the artefacts.
 

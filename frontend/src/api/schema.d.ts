@@ -55,11 +55,31 @@ export interface paths {
         };
         /**
          * List Robots
-         * @description All robots.
+         * @description All robots: presets first, then saved ones by name.
          */
         get: operations["list_robots"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/robots/import": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Import Robot
+         * @description The robot in a file, what was assumed and what to know about it. It is not saved.
+         */
+        post: operations["import_robot"];
         delete?: never;
         options?: never;
         head?: never;
@@ -78,9 +98,17 @@ export interface paths {
          * @description One robot.
          */
         get: operations["get_robot"];
-        put?: never;
+        /**
+         * Put Robot
+         * @description Save a robot under a name; 201 if the name is new.
+         */
+        put: operations["save_robot"];
         post?: never;
-        delete?: never;
+        /**
+         * Delete Robot
+         * @description Remove a saved robot.
+         */
+        delete: operations["delete_robot"];
         options?: never;
         head?: never;
         patch?: never;
@@ -503,14 +531,41 @@ export interface components {
              * @description viscous friction [Nm s/rad]
              */
             damping: number;
+            /**
+             * Continuous
+             * @description torque that it holds without end [Nm]
+             */
+            continuous?: number | null;
         };
         /**
          * Actuators
-         * @description Motors of the leg joints (thigh, calf) and of the wheels.
+         * @description Motors of the leg joints (`leg`, or `thigh` and `calf` where they differ) and the wheels.
          */
         Actuators: {
-            leg: components["schemas"]["Actuator"];
+            leg?: components["schemas"]["Actuator"] | null;
+            thigh?: components["schemas"]["Actuator"] | null;
+            calf?: components["schemas"]["Actuator"] | null;
             wheel: components["schemas"]["Actuator"];
+        };
+        /** Body_import_robot */
+        Body_import_robot: {
+            /**
+             * File
+             * Format: binary
+             * @description URDF, MJCF, or a zip with the meshes
+             */
+            file: string;
+            /**
+             * Abduction
+             * @description lock the legs outward from upright by [rad]
+             * @default 0
+             */
+            abduction: number;
+            /**
+             * Wheel Radius
+             * @description where the file does not show it [m]
+             */
+            wheel_radius?: number | null;
         };
         /** Body_import_terrain */
         Body_import_terrain: {
@@ -858,6 +913,33 @@ export interface components {
             half_track: number;
         };
         /**
+         * Imported
+         * @description A robot that was read from a file.
+         *
+         *     `assumed` lists numbers that the file does not give, `warnings` what its reader should know.
+         */
+        Imported: {
+            robot: components["schemas"]["Robot"];
+            /** Assumed */
+            assumed: string[];
+            /** Warnings */
+            warnings: string[];
+            /**
+             * Joints
+             * @description of the 12 joints, by our names
+             */
+            joints: {
+                [key: string]: components["schemas"]["JointMap"];
+            };
+            /**
+             * Locked
+             * @description the file's other joints, and where they are held [rad or m]
+             */
+            locked: {
+                [key: string]: number;
+            };
+        };
+        /**
          * JobDocument
          * @description A job's state.
          */
@@ -904,6 +986,27 @@ export interface components {
             };
         };
         /**
+         * JointMap
+         * @description How a joint of ours follows from one of the file's: ours = sign * theirs + offset.
+         */
+        JointMap: {
+            /**
+             * Name
+             * @description in the file
+             */
+            name: string;
+            /**
+             * Sign
+             * @description +1 or -1: the file's axis against ours
+             */
+            sign: number;
+            /**
+             * Offset
+             * @description our angle where the file's joint is at 0 [rad]
+             */
+            offset: number;
+        };
+        /**
          * Joints
          * @description Joint ranges of the front and the rear legs.
          */
@@ -943,12 +1046,14 @@ export interface components {
         };
         /**
          * Link
-         * @description A thigh or a calf: a capsule from its upper joint to its lower one.
+         * @description A thigh or a calf: its frame sits in its upper joint; at angle 0 the lower one is below it.
+         *
+         *     A bent shank is one whose capsules leave that line.
          */
         Link: {
             /**
              * Length
-             * @description [m]
+             * @description from joint to joint [m]
              */
             length: number;
             /**
@@ -963,14 +1068,41 @@ export interface components {
             mass: number;
             /**
              * Com
-             * @description mass centre as a fraction of the length
+             * @description mass centre: a fraction of the length, or (x, z) in the link's frame [m]
              */
-            com: number;
+            com: number | number[];
             /**
              * Inertia
              * @description Ixx, Iyy, Izz about the mass centre [kg m^2]
              */
             inertia: number[];
+            /**
+             * Shape
+             * @description capsules; one from joint to joint if empty
+             * @default []
+             */
+            shape: components["schemas"]["LinkShape"][];
+        };
+        /**
+         * LinkShape
+         * @description A capsule of a link that is not one straight capsule from joint to joint.
+         */
+        LinkShape: {
+            /**
+             * Start
+             * @description (x, z) in the link's frame [m]
+             */
+            start: number[];
+            /**
+             * End
+             * @description (x, z) in the link's frame [m]
+             */
+            end: number[];
+            /**
+             * Radius
+             * @description [m]
+             */
+            radius: number;
         };
         /**
          * Margins
@@ -1073,6 +1205,42 @@ export interface components {
              * @description simulated time per wall-clock time
              */
             real_time_factor: number;
+        };
+        /**
+         * Outline
+         * @description A convex piece of the trunk, seen from the side and extruded along y.
+         */
+        Outline: {
+            /**
+             * Points
+             * @description convex, (x, z) in the trunk frame [m]
+             */
+            points: number[][];
+            /**
+             * Width
+             * @description along y [m]
+             */
+            width: number;
+        };
+        /**
+         * Payload
+         * @description A load that is fixed to the trunk.
+         */
+        Payload: {
+            /**
+             * Mass
+             * @description [kg]
+             */
+            mass: number;
+            /**
+             * Place
+             * @description (x, z) in the trunk frame [m]
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            place: number[];
         };
         /**
          * Plan
@@ -1367,16 +1535,26 @@ export interface components {
             slope: number;
         };
         /**
+         * RearLegs
+         * @description What the rear legs have unlike the front ones.
+         */
+        RearLegs: {
+            thigh?: components["schemas"]["Link"] | null;
+            calf?: components["schemas"]["Link"] | null;
+            wheel?: components["schemas"]["Wheel"] | null;
+            actuators?: components["schemas"]["Actuators"] | null;
+        };
+        /**
          * Robot
-         * @description A wheel-legged robot (``stairwright/robot/1``).
+         * @description A wheel-legged robot (``stairwright/robot/2``; ``/1`` has fewer fields, see `_NEW_IN_2`).
          */
         Robot: {
             /**
              * Schema
-             * @default stairwright/robot/1
-             * @constant
+             * @default stairwright/robot/2
+             * @enum {string}
              */
-            schema: "stairwright/robot/1";
+            schema: "stairwright/robot/1" | "stairwright/robot/2";
             /** Name */
             name: string;
             /**
@@ -1385,19 +1563,42 @@ export interface components {
              */
             description: string;
             /**
+             * Source
+             * @description where the numbers are from
+             * @default
+             */
+            source: string;
+            /**
+             * Assumed
+             * @description numbers that nobody publishes, and what was taken
+             * @default []
+             */
+            assumed: string[];
+            /**
              * Nominal Height
              * @description trunk centre above the ground, standing [m]
              */
             nominal_height: number;
             trunk: components["schemas"]["Trunk"];
+            payload?: components["schemas"]["Payload"] | null;
             hips: components["schemas"]["Hips"];
             thigh: components["schemas"]["Link"];
             calf: components["schemas"]["Link"];
             wheel: components["schemas"]["Wheel"];
+            /** @description where the rear legs differ */
+            rear?: components["schemas"]["RearLegs"] | null;
             joints: components["schemas"]["Joints"];
+            /**
+             * Abduction
+             * @description angle at which the abduction joints are locked [rad]
+             * @default 0
+             */
+            abduction: number;
             actuators: components["schemas"]["Actuators"];
-            gains: components["schemas"]["Gains"];
-            collision_points: components["schemas"]["CollisionPoints"];
+            /** @description from masses and motors if empty */
+            gains?: components["schemas"]["Gains"] | null;
+            /** @description 25 and more if empty */
+            collision_points?: components["schemas"]["CollisionPoints"] | null;
             /**
              * Joint Names
              * @description what the robot's own software calls its joints, by our names (FL_thigh ... RR_wheel); used in ROS messages and URDF
@@ -1406,6 +1607,80 @@ export interface components {
             joint_names: {
                 [key: string]: string;
             };
+        };
+        /**
+         * RobotDocument
+         * @description A robot, whether it is one of the read-only presets, and which version of it this is.
+         */
+        RobotDocument: {
+            /**
+             * Schema
+             * @default stairwright/robot/2
+             * @enum {string}
+             */
+            schema: "stairwright/robot/1" | "stairwright/robot/2";
+            /** Name */
+            name: string;
+            /**
+             * Description
+             * @default
+             */
+            description: string;
+            /**
+             * Source
+             * @description where the numbers are from
+             * @default
+             */
+            source: string;
+            /**
+             * Assumed
+             * @description numbers that nobody publishes, and what was taken
+             * @default []
+             */
+            assumed: string[];
+            /**
+             * Nominal Height
+             * @description trunk centre above the ground, standing [m]
+             */
+            nominal_height: number;
+            trunk: components["schemas"]["Trunk"];
+            payload?: components["schemas"]["Payload"] | null;
+            hips: components["schemas"]["Hips"];
+            thigh: components["schemas"]["Link"];
+            calf: components["schemas"]["Link"];
+            wheel: components["schemas"]["Wheel"];
+            /** @description where the rear legs differ */
+            rear?: components["schemas"]["RearLegs"] | null;
+            joints: components["schemas"]["Joints"];
+            /**
+             * Abduction
+             * @description angle at which the abduction joints are locked [rad]
+             * @default 0
+             */
+            abduction: number;
+            actuators: components["schemas"]["Actuators"];
+            /** @description from masses and motors if empty */
+            gains?: components["schemas"]["Gains"] | null;
+            /** @description 25 and more if empty */
+            collision_points?: components["schemas"]["CollisionPoints"] | null;
+            /**
+             * Joint Names
+             * @description what the robot's own software calls its joints, by our names (FL_thigh ... RR_wheel); used in ROS messages and URDF
+             * @default {}
+             */
+            joint_names: {
+                [key: string]: string;
+            };
+            /**
+             * Readonly
+             * @description a preset; it cannot be changed or deleted
+             */
+            readonly: boolean;
+            /**
+             * Version
+             * @description hash of its content, as in plans' `robot_hash`
+             */
+            version: string;
         };
         /**
          * Rollout
@@ -1856,9 +2131,25 @@ export interface components {
             mass: number;
             /**
              * Inertia
-             * @description Ixx, Iyy, Izz about the centre [kg m^2]
+             * @description Ixx, Iyy, Izz about the mass centre [kg m^2]
              */
             inertia: number[];
+            /**
+             * Com
+             * @description mass centre from the trunk point [m]
+             * @default [
+             *       0,
+             *       0,
+             *       0
+             *     ]
+             */
+            com: number[];
+            /**
+             * Outline
+             * @description what may touch the terrain; the box if empty
+             * @default []
+             */
+            outline: components["schemas"]["Outline"][];
         };
         /**
          * Wheel
@@ -1885,6 +2176,17 @@ export interface components {
              * @description Ixx, Iyy, Izz about the centre [kg m^2]
              */
             inertia: number[];
+            /**
+             * Friction
+             * @description most that the tyre gives on any terrain
+             */
+            friction?: number | null;
+            /**
+             * Rolling Resistance
+             * @description share of the load that opposes rolling
+             * @default 0
+             */
+            rolling_resistance: number;
         };
         /**
          * FieldError
@@ -2125,7 +2427,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Robot"][];
+                    "application/json": components["schemas"]["RobotDocument"][];
                 };
             };
             /** @description Bad Request: `bad-json`, `host` */
@@ -2176,6 +2478,86 @@ export interface operations {
             };
         };
     };
+    import_robot: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "multipart/form-data": components["schemas"]["Body_import_robot"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Imported"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            503: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
     get_robot: {
         parameters: {
             query?: never;
@@ -2194,8 +2576,185 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Robot"];
+                    "application/json": components["schemas"]["RobotDocument"];
                 };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    save_robot: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Robot"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    ETag: components["headers"]["ETag"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RobotDocument"];
+                };
+            };
+            /** @description Created */
+            201: {
+                headers: {
+                    ETag: components["headers"]["ETag"];
+                    Location: components["headers"]["Location"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RobotDocument"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unsupported Media Type: `media-type` */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    delete_robot: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description Bad Request: `bad-json`, `host` */
             400: {
@@ -2257,7 +2816,7 @@ export interface operations {
     export_robot: {
         parameters: {
             query?: {
-                format?: "urdf" | "mjcf";
+                format?: "yaml" | "json" | "urdf" | "mjcf";
             };
             header?: never;
             path: {
@@ -2276,6 +2835,8 @@ export interface operations {
                 };
                 content: {
                     "application/octet-stream": string;
+                    "application/yaml": string;
+                    "application/json": unknown;
                     "application/xml": string;
                 };
             };

@@ -16,7 +16,7 @@ export type TerrainDocument = Omit<Schemas["Terrain"], "points" | "schema"> & {
 };
 
 /** Only what the page draws is looked at; the rest of the robot file passes through untouched. */
-export type RobotDocument = Schemas["Robot"];
+export type RobotDocument = Schemas["RobotDocument"];
 export type Method = Schemas["PlanRequest"]["method"];
 export type Margins = Schemas["Margins"];
 

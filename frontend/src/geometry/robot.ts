@@ -31,7 +31,21 @@ export interface Skeleton {
 
 const pair = (v: readonly number[]): Vec2 => [v[0]!, v[1]!];
 
+/** Of a robot whose file names none, as in the service. */
+const STANDARD_POINTS: RobotShape["collisionPoints"] = {
+  trunk: [
+    ...[-0.5, -0.25, 0, 0.25, 0.5].map((x): Vec2 => [x, -0.5]),
+    [-0.5, 0.5],
+    [0.5, 0.5],
+    [-0.5, 0],
+    [0.5, 0],
+  ],
+  thigh: [0.25, 0.5, 0.75, 1],
+  calf: [0.2, 0.4, 0.6, 0.8],
+};
+
 export function robotShape(file: RobotDocument): RobotShape {
+  const points = file.collision_points;
   return {
     name: file.name,
     trunk: { length: file.trunk.size[0]!, height: file.trunk.size[2]! },
@@ -39,13 +53,17 @@ export function robotShape(file: RobotDocument): RobotShape {
     thigh: file.thigh.length,
     calf: file.calf.length,
     wheel: file.wheel.radius,
-    limit: { leg: file.actuators.leg.torque, wheel: file.actuators.wheel.torque },
-    collisionPoints: {
-      trunk: file.collision_points.trunk.map(pair),
-      thigh: file.collision_points.thigh,
-      calf: file.collision_points.calf,
-    },
+    limit: { leg: legTorque(file), wheel: file.actuators.wheel.torque },
+    collisionPoints: points
+      ? { trunk: points.trunk.map(pair), thigh: points.thigh, calf: points.calf }
+      : STANDARD_POINTS,
   };
+}
+
+/** The weaker of thigh's and calf's peak torque [Nm]. */
+function legTorque(file: RobotDocument): number {
+  const { leg, thigh, calf } = file.actuators;
+  return Math.min((thigh ?? leg)?.torque ?? Infinity, (calf ?? leg)?.torque ?? Infinity);
 }
 
 /** A vector of the trunk frame in the world; pitch turns about +y, so nose-up is negative. */

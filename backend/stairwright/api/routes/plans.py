@@ -50,7 +50,7 @@ AT_ONCE = 200  # points of a terrain that is ready sooner than a thread would be
 def plan_question(services: Services, body: PlanRequest) -> PlanQuestion:
     """The question behind a request, names resolved and defaults filled in."""
     terrain = resolve_terrain(services, body.terrain)
-    robot = resolve_robot(body.robot)
+    robot = resolve_robot(services, body.robot)
     return PlanQuestion.of(terrain, robot, body.friction, body.method, body.weights)
 
 

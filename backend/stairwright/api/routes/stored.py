@@ -7,6 +7,7 @@ import gzip
 import hashlib
 from collections.abc import Mapping
 from typing import Any
+from urllib.parse import quote
 
 from fastapi import Request, Response
 
@@ -97,6 +98,13 @@ async def export_document(
     return await _download(request, services, kind, (name, digest), packed, form, None)
 
 
+def _attachment(name: str) -> str:
+    """RFC 6266: headers hold ASCII, names of robots any script."""
+    plain = name.encode("ascii", "replace").decode().replace("?", "_")
+    full = "" if plain == name else f"; filename*=UTF-8''{quote(name, safe='')}"
+    return f'attachment; filename="{plain}"{full}'
+
+
 async def _download(
     request: Request,
     services: Services,
@@ -112,7 +120,7 @@ async def _download(
     headers = {
         "etag": etag,
         "cache-control": "no-cache",
-        "content-disposition": f'attachment; filename="{name}{chosen.suffix}"',
+        "content-disposition": _attachment(f"{name}{chosen.suffix}"),
         "x-content-type-options": "nosniff",
     }
     if not_modified(request, etag):

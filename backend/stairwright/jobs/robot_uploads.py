@@ -1,0 +1,35 @@
+"""Robot files from outside, read in a worker that can open nothing and may use little memory."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from stairwright.documents import parse
+from stairwright.robot.description import Robot
+from stairwright.robot.importing import rehearsal
+from stairwright.robot.importing.read import read
+from stairwright.robot.importing.upload import unpack
+
+
+def import_robot(
+    data: bytes, file_name: str, options: Mapping[str, Any], known: Sequence[Mapping[str, Any]]
+) -> dict[str, Any]:
+    """The robot in a file, as a `report.Imported` document.
+
+    Args:
+        data: The file: URDF, MJCF, or a zip that holds one with its meshes.
+        file_name: Its name.
+        options: ``abduction`` [rad], ``wheel_radius`` [m].
+        known: Documents of the presets, to compare with.
+
+    Raises:
+        InputError: If it is no robot of four legs with wheels; names the link or joint.
+    """
+    robots = [parse(Robot, dict(document)) for document in known]
+    return read(unpack(data, file_name), options, robots).model_dump(mode="json")
+
+
+def rehearse() -> None:
+    """Read small ones, so that every module that this takes is loaded."""
+    rehearsal.rehearse()

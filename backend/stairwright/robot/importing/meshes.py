@@ -1,0 +1,79 @@
+"""Meshes of a robot file: those that were sent are handed to MuJoCo, the others are left out."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import PurePosixPath
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .upload import Upload
+
+Floats = NDArray[np.float64]
+
+_NATIVE = (".stl", ".obj", ".msh")  # read by MuJoCo
+_CONVERTED = (".ply", ".off")
+_MOST_VERTICES = 500_000
+
+
+def provide(spec: Any, upload: Upload) -> dict[str, str]:
+    """Give `spec` every mesh from memory; the names and files of those that it cannot have.
+
+    Afterwards no mesh names a file that MuJoCo would look for on the disk.
+    """
+    missing: dict[str, str] = {}
+    assets = {}
+    for k, mesh in enumerate(list(spec.meshes)):
+        if not mesh.file:
+            continue  # its vertices stand in the file
+        reference = mesh.file
+        path = upload.find(reference)
+        suffix = PurePosixPath(reference).suffix.lower()
+        content = None if path is None else upload.files[path]
+        if content is not None and suffix in _NATIVE and not _is_text_stl(content, suffix):
+            mesh.file = f"mesh_{k}{suffix}"
+            assets[mesh.file] = content
+        elif content is None or not _convert(mesh, content, suffix):
+            missing[mesh.name] = PurePosixPath(reference).name
+    spec.assets = assets
+    spec.meshdir = spec.compiler.meshdir = ""
+    return missing
+
+
+def _is_text_stl(content: bytes, suffix: str) -> bool:
+    if suffix != ".stl" or not content[:5].lower() == b"solid":
+        return False
+    count = int.from_bytes(content[80:84], "little")
+    return len(content) != 84 + 50 * count
+
+
+def _convert(mesh: Any, content: bytes, suffix: str) -> bool:
+    """Read what MuJoCo cannot; False if nothing comes of it."""
+    if suffix not in (".stl", *_CONVERTED):
+        return False
+    read = read_mesh(content, suffix.removeprefix("."))
+    if read is None:
+        return False
+    vertices, faces = read
+    if not (4 <= len(vertices) <= _MOST_VERTICES and len(faces) and np.isfinite(vertices).all()):
+        return False
+    mesh.file = ""
+    mesh.uservert, mesh.userface = vertices.ravel(), faces.ravel()
+    return True
+
+
+def read_mesh(content: bytes, kind: str) -> tuple[Floats, NDArray[np.int64]] | None:
+    """Vertices (n, 3) and triangles (m, 3) of a mesh; None if it cannot be read."""
+    import trimesh
+
+    load: Callable[..., Any] = trimesh.load
+    try:
+        read = load(io.BytesIO(content), file_type=kind, force="mesh", process=False)
+        return np.asarray(read.vertices, float), np.asarray(read.faces, np.int64)
+    except MemoryError:
+        raise
+    except Exception:  # noqa: BLE001 - trimesh raises whatever its readers do
+        return None

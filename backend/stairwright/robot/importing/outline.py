@@ -1,0 +1,98 @@
+"""Convex polygons in the side view: hulls, and hulls of few corners that lie outside them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+MOST_CORNERS = 16
+_NEAR = 1e-9  # m
+_LEAST = 1e-3  # m; what is flat in the side view gets this thickness
+
+
+def hull(points: Floats) -> Floats:
+    """(n, 2) convex hull of points, counter-clockwise, without corners that lie on an edge."""
+    order = sorted({(round(float(x), 10), round(float(z), 10)) for x, z in points})
+    if len(order) < 3:
+        return np.array(order)
+
+    def half(sequence: list[tuple[float, float]]) -> list[tuple[float, float]]:
+        chain: list[tuple[float, float]] = []
+        for point in sequence:
+            while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= _NEAR * 1e-3:
+                chain.pop()
+            chain.append(point)
+        return chain
+
+    lower, upper = half(order), half(order[::-1])
+    return np.array(lower[:-1] + upper[:-1])
+
+
+def outer(points: Floats, corners: int = MOST_CORNERS) -> Floats:
+    """(n, 2) a convex polygon of at most `corners` round the hull of `points`.
+
+    Edges go one by one: the one whose neighbours, made longer, meet with the least area added.
+    """
+    polygon = _thick(hull(points))
+    while len(polygon) > corners:
+        best: tuple[float, int, Floats] | None = None
+        for k in range(len(polygon)):
+            a, b, c, d = (polygon[(k + m) % len(polygon)] for m in range(4))
+            meeting = _meeting(a, b, c, d)
+            if meeting is None:
+                continue
+            added = abs(_turn(b, meeting, c)) / 2
+            if best is None or added < best[0]:
+                best = added, k, meeting
+        if best is None:
+            low, high = polygon.min(axis=0), polygon.max(axis=0)
+            return np.array([low, (high[0], low[1]), high, (low[0], high[1])])
+        _, k, meeting = best
+        n = len(polygon)
+        polygon = np.array([meeting if m == (k + 1) % n else polygon[m] for m in range(n) if m != (k + 2) % n])
+    return hull(polygon) if len(polygon) > 3 else polygon
+
+
+def area(polygon: Floats) -> float:
+    """Of a polygon, counter-clockwise positive [m^2]."""
+    x, z = polygon[:, 0], polygon[:, 1]
+    return float(x @ np.roll(z, -1) - z @ np.roll(x, -1)) / 2
+
+
+def covers(polygon: Floats, points: Floats, slack: float = 1e-6) -> bool:
+    """Whether all of `points` lie in a counter-clockwise convex polygon, give or take `slack`."""
+    edge = np.roll(polygon, -1, axis=0) - polygon
+    normal = np.column_stack([edge[:, 1], -edge[:, 0]]) / np.linalg.norm(edge, axis=1)[:, None]
+    beyond = points @ normal.T - (polygon * normal).sum(axis=1)
+    return bool(beyond.max() <= slack)
+
+
+def _thick(polygon: Floats) -> Floats:
+    """A polygon with an area, where the shape had none."""
+    if len(polygon) >= 3 and area(polygon) > 1e-8:
+        return polygon
+    h = _LEAST / 2
+    corners = np.array([(-h, -h), (h, -h), (h, h), (-h, h)])
+    return hull((polygon[:, None, :] + corners[None, :, :]).reshape(-1, 2))
+
+
+def _meeting(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats | None:
+    """Where edge a-b, made longer beyond b, meets d-c made longer beyond c."""
+    u, v = b - a, c - d
+    across = u[0] * v[1] - u[1] * v[0]
+    if abs(across) < 1e-15:
+        return None
+    w = c - b
+    t = (w[0] * v[1] - w[1] * v[0]) / across
+    s = (w[0] * u[1] - w[1] * u[0]) / across
+    if t <= 0 or s <= 0:
+        return None
+    point: Floats = b + t * u
+    return point
+
+
+def _turn(a: object, b: object, c: object) -> float:
+    (ax, az), (bx, bz), (cx, cz) = a, b, c  # type: ignore[misc,attr-defined]
+    return float((bx - ax) * (cz - bz) - (bz - az) * (cx - bx))

@@ -1,0 +1,67 @@
+"""Read a robot file in this process; see `bounded` for one with limits."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from pathlib import PurePosixPath
+from typing import Any
+
+from stairwright.robot.description import Robot
+
+from .assemble import Reading, assemble
+from .report import Imported, Notes
+from .source import compile_source
+from .traps import note_traps
+from .upload import Upload, unpack
+from .verify import verify
+
+
+def read(upload: Upload, options: Mapping[str, Any], known: Sequence[Robot] = ()) -> Imported:
+    """The robot in an upload.
+
+    Args:
+        upload: The file and its meshes.
+        options: ``abduction`` [rad] and ``wheel_radius`` [m], both optional.
+        known: Robots whose numbers fill gaps where the legs are the same.
+
+    Raises:
+        InputError: If it is none, or not one of four legs with a thigh, a calf and a wheel each.
+    """
+    reading, notes = read_closely(upload, options, known)
+    robot, source = reading.robot, reading.source
+    return Imported(
+        robot=robot,
+        assumed=list(robot.assumed),
+        warnings=notes.warnings,
+        joints=reading.joints,
+        locked={source.joint(joint): at for joint, at in reading.held.items()},
+    )
+
+
+def read_closely(
+    upload: Upload, options: Mapping[str, Any], known: Sequence[Robot] = ()
+) -> tuple[Reading, Notes]:
+    """The robot together with MuJoCo's model of its file, and the remarks."""
+    notes = Notes()
+    source = compile_source(upload, notes)
+    digest = hashlib.sha256(upload.content).hexdigest()[:16]
+    origin = f"{PurePosixPath(upload.name).name} ({source.kind.upper()}, sha256 {digest})"
+    reading = assemble(
+        source,
+        notes,
+        abduction=float(options.get("abduction") or 0.0),
+        wheel_radius=options.get("wheel_radius"),
+        known=known,
+        origin=origin,
+    )
+    verify(reading, notes)
+    note_traps(reading.robot, known, notes)
+    return reading, notes
+
+
+def read_bytes(
+    data: bytes, file_name: str, options: Mapping[str, Any], known: Sequence[Robot] = ()
+) -> dict[str, Any]:
+    """`read` from and to plain data, for another process."""
+    return read(unpack(data, file_name), options, known).model_dump(mode="json")
