@@ -17,8 +17,8 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.planning.path.course import find_stands
 from stairwright.planning.plan import Plan
+from stairwright.planning.standing import find_standing_poses
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.robot.symbolic import Shape, between, dimensions, forward, to_world
@@ -48,7 +48,7 @@ class DensePath:
         self, terrain: Terrain, robot: Robot, friction: float, knots: int, statics: bool = True
     ) -> None:
         self.path = wheel_path(terrain, robot.wheel.radius)
-        begin, end = find_stands(terrain, robot, self.path)
+        begin, end = find_standing_poses(terrain, robot, self.path)
         self.robot, self.friction, self.n, self.statics = robot, friction, knots, statics
         shares = np.linspace(0.0, 1.0, knots)
         ends = np.array([begin.wheels, end.wheels])

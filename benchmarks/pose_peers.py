@@ -14,7 +14,7 @@ from pose_tasks import Nlp, Numbers, Task
 from scipy.optimize import minimize
 
 from stairwright import _core
-from stairwright.planning.pose_search import CLEARANCE, LEGS_DISTANCE
+from stairwright.planning.poses.pose_search import CLEARANCE, LEGS_DISTANCE
 
 Floats = NDArray[np.float64]
 Solver = Callable[[Task], tuple[Floats, Floats]]

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 import stairwright as sw
 from stairwright import _core
-from stairwright.planning.casadi_search import CasadiSearch
-from stairwright.planning.nlp import HIP, SELF, WHEEL, Layout, build
-from stairwright.planning.pose_search import CLEARANCE, LEGS_DISTANCE, PoseSearch
+from stairwright.planning.poses.casadi_search import CasadiSearch
+from stairwright.planning.poses.nlp import HIP, SELF, WHEEL, Layout, build
+from stairwright.planning.poses.pose_search import CLEARANCE, LEGS_DISTANCE, PoseSearch
 from stairwright.planning.weights import CriticalWeights
 from stairwright.robot.description import Robot
 from stairwright.robot.symbolic import dimensions

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from .client import Client, ServiceError
     from .importing import import_robot
     from .library import load_robot, load_terrain, robots, terrains
-    from .planning.certificate import certify
+    from .planning.certificate.certify import certify
     from .planning.plan import Plan
     from .planning.planner import plan
     from .robot.description import Robot
@@ -52,7 +52,7 @@ _HOMES = {
     "ServiceError": "client",
     "Terrain": "terrain.profile",
     "Trials": "simulation.trials",
-    "certify": "planning.certificate",
+    "certify": "planning.certificate.certify",
     "import_robot": "importing",
     "load_robot": "library",
     "load_terrain": "library",

@@ -105,7 +105,7 @@ def export_command(given: Arguments) -> str | None:
 def certify_command(given: Arguments) -> str | None:
     """`stairwright certify`."""
     from .export.formats import load_plan
-    from .planning.certificate import certify
+    from .planning.certificate.certify import certify
 
     plan = load_plan(given.plan)
     certificate = certify(plan)

@@ -16,8 +16,8 @@ SERVED = (
     "stairwright.api.app",
     "stairwright.scene.session",
     "stairwright.export.formats",
-    "stairwright.planning.critical_poses",
-    "stairwright.planning.path.planner",
+    "stairwright.planning.poses.critical_poses",
+    "stairwright.planning.path",
     "stairwright.simulation.rollout",
 )
 

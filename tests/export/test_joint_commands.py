@@ -19,8 +19,8 @@ from stairwright.export.joint_commands import (
 )
 from stairwright.export.mjcf_file import holding_torques
 from stairwright.export.table import PLAN_FORMATS
-from stairwright.planning.interpolation import reference
 from stairwright.planning.plan import Plan
+from stairwright.planning.poses.interpolation import reference
 from stairwright.robot.description import JOINTS
 from tests.export.mcap_reading import messages, metadata
 from tests.export.ros2_control import accepted, field, integrated, sampled, times

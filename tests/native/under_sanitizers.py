@@ -104,7 +104,7 @@ def calls() -> Iterator[str]:
     from stairwright import _core
     from stairwright.control.native import native_controller
     from stairwright.control.settings import ControllerSettings
-    from stairwright.planning.pose_search import pose_problem
+    from stairwright.planning.poses.pose_search import pose_problem
     from stairwright.terrain.wheel_path import wheel_path
     from tests.native import hostile
 

@@ -3,7 +3,7 @@ import pytest
 
 import stairwright as sw
 from stairwright import _core
-from stairwright.planning.terrain_window import cell_vector, cells, curve_window
+from stairwright.planning.poses.terrain_window import cell_vector, cells, curve_window
 from stairwright.robot.kinematics import limits
 from stairwright.terrain.profile import height_at
 from stairwright.terrain.wheel_path import wheel_path

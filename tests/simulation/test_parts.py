@@ -15,7 +15,7 @@ from stairwright import _core
 from stairwright.control.setpoint import PROGRESS, RATES, SURGES, WIDTH
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
-from stairwright.planning.interpolation import reference
+from stairwright.planning.poses.interpolation import reference
 from stairwright.robot.mujoco_model import build_spec
 from stairwright.simulation.disturbance import (
     Disturbance,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stairwright as sw
-from stairwright.planning.path.node_margins import FIRM_GRIP, THIN_COM
+from stairwright.planning.smoothing.node_margins import FIRM_GRIP, THIN_COM
 from stairwright.terrain.stairs import stair
 
 # Height, tread, number, friction: down short treads, knees back, where the CoM has little room.

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.planning.interpolation import reference
 from stairwright.planning.plan import Plan
+from stairwright.planning.poses.interpolation import reference
 from stairwright.robot import spatial
 from stairwright.robot.description import Robot
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from stairwright.documents import Model
+from stairwright.planning.binding import binding_of
+from stairwright.planning.certificate.certify import certify
+from stairwright.planning.plan import Method, Plan, Pose, Problem, Timing, plan_id
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
-
-from .binding import binding_of
-from .certificate import certify
-from .plan import Method, Plan, Pose, Problem, Timing, plan_id
 
 
 def assemble(

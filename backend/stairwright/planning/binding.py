@@ -7,10 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.planning.plan import Binding, Pose, Quantity
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
-
-from .plan import Binding, Pose, Quantity
 
 Floats = NDArray[np.float64]
 

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from stairwright.planning.plan import Bend, Knees
 from stairwright.robot.description import Robot
-
-from .plan import Bend, Knees
 
 _WAYS: dict[float, Bend] = {-1.0: "back", 1.0: "forward"}
 # In this order: knees towards each other, as such robots' makers stand them; both back; the rest.

@@ -12,16 +12,15 @@ from stairwright.arguments import as_friction
 from stairwright.documents import Model
 from stairwright.errors import InputError
 from stairwright.library import load_robot, load_terrain
+from stairwright.planning.knees import configurations, knees_of
+from stairwright.planning.plan import Method, Plan, plan_id
+from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
-from .knees import configurations, knees_of
-from .plan import Method, Plan, plan_id
-from .weights import parse_weights
-
 if TYPE_CHECKING:
-    from .critical_poses import PoseSearcher
-    from .extra_terms import ExtraConstraints, ExtraCost
+    from stairwright.planning.poses.critical_poses import PoseSearcher
+    from stairwright.planning.poses.extra_terms import ExtraConstraints, ExtraCost
 
 Source = str | os.PathLike[str] | Mapping[str, Any]
 PoseSolver = Literal["native", "ipopt"]
@@ -82,17 +81,17 @@ def plan(
             raise InputError("belongs to the method critical", (field,))
     configured = list(configurations(machine))
     if method == "path":
-        from .path.planner import plan_path
+        from stairwright.planning.path import plan_path
 
         found = plan_path(ground, configured, mu, chosen)
     elif method == "critical":
-        from .critical_poses import plan_critical
+        from stairwright.planning.poses.critical_poses import plan_critical
 
         search = _pose_search(solver, extra_cost, extra_constraints)
         plans = (plan_critical(ground, one, mu, chosen, search, certified) for one in configured)
         found = _first_feasible(plans)
     else:
-        from .nominal import plan_nominal
+        from stairwright.planning.poses.nominal import plan_nominal
 
         found = _first_feasible(plan_nominal(ground, one, mu, chosen) for one in configured)
     if len(configured) == 1 and configured[0] is machine:
@@ -125,11 +124,11 @@ def _pose_search(
     if solver == "native" and extra:
         raise InputError("terms of yours are in CasADi, which ipopt solves", ("solver",))
     if solver == "ipopt" or extra:
-        from .casadi_search import CasadiSearch
-        from .extra_terms import ExtraTerms
+        from stairwright.planning.poses.casadi_search import CasadiSearch
+        from stairwright.planning.poses.extra_terms import ExtraTerms
 
         return partial(CasadiSearch, extra=ExtraTerms(cost, constraints), first="ipopt")
-    from .pose_search import PoseSearch
+    from stairwright.planning.poses.pose_search import PoseSearch
 
     return PoseSearch
 

@@ -9,8 +9,7 @@ from pydantic import Field
 
 from stairwright.arguments import as_model
 from stairwright.documents import Model
-
-from .plan import Method
+from stairwright.planning.plan import Method
 
 
 def _weight(default: float, low: float, high: float, unit: str, title: str, text: str) -> Any:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.documents import parse
-from stairwright.planning.interpolation import reference
 from stairwright.planning.plan import Plan
+from stairwright.planning.poses.interpolation import reference
 from stairwright.robot.description import Robot
 from stairwright.robot.spatial import lift
 

@@ -35,7 +35,7 @@ from stairwright.control.setpoint import (
 )
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
-from stairwright.planning.reference import Reference
+from stairwright.planning.poses.pose_reference import Reference
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 

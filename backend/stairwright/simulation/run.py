@@ -16,9 +16,9 @@ from stairwright.control.native import native_controller
 from stairwright.control.setpoint import PROGRESS, RATES, Setpoint
 from stairwright.control.settings import ControllerSettings
 from stairwright.documents import content_hash
-from stairwright.planning.interpolation import reference
-from stairwright.planning.path.timing import retimed
 from stairwright.planning.plan import Plan
+from stairwright.planning.poses.interpolation import reference
+from stairwright.planning.smoothing.path_timing import retimed
 from stairwright.robot.description import LEGS
 from stairwright.robot.mujoco_model import build_spec
 from stairwright.terrain.wheel_path import wheel_path

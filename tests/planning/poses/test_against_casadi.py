@@ -5,11 +5,11 @@ import pytest
 
 import stairwright as sw
 from stairwright import _core
-from stairwright.planning.casadi_search import CasadiSearch
-from stairwright.planning.nlp import Layout
-from stairwright.planning.pose_locations import find_obstacles
-from stairwright.planning.pose_search import ContactPair, PoseSearch
-from stairwright.planning.solver import Bounds, pose_solver
+from stairwright.planning.poses.casadi_search import CasadiSearch
+from stairwright.planning.poses.ipopt import Bounds, pose_solver
+from stairwright.planning.poses.nlp import Layout
+from stairwright.planning.poses.pose_locations import find_obstacles
+from stairwright.planning.poses.pose_search import ContactPair, PoseSearch
 from stairwright.planning.weights import CriticalWeights
 from stairwright.robot.symbolic import dimensions
 from stairwright.terrain.wheel_path import wheel_path

@@ -7,7 +7,7 @@ import pytest
 
 import stairwright as sw
 from stairwright import _core
-from stairwright.planning.pose_search import PoseSearch
+from stairwright.planning.poses.pose_search import PoseSearch
 from stairwright.planning.weights import CriticalWeights
 from stairwright.robot import kinematics
 from stairwright.terrain.wheel_path import wheel_path

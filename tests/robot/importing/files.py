@@ -110,7 +110,15 @@ def parts(design: Design, leg: str) -> list[dict]:
     bodies = []
     for k, part in enumerate(("hip", "thigh", "calf", "wheel")):
         axis = (quirk.sign[k], 0, 0) if k == 0 else (0, quirk.sign[k], 0)
-        bodies.append({"part": part, "place": place[k], "turn": turns[k], "axis": axis, "about": "x" if k == 0 else "y"})
+        bodies.append(
+            {
+                "part": part,
+                "place": place[k],
+                "turn": turns[k],
+                "axis": axis,
+                "about": "x" if k == 0 else "y",
+            }
+        )
     own = {
         "hip": (0.6, (-0.005 * fore, out * 0.02, 0.0), (0.0005, 0.0009, 0.0006), 0.0,
                 [("cylinder", (0.045, 0.02), (0, out * 0.05, 0), (math.pi / 2, 0))]),

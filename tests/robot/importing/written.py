@@ -41,7 +41,7 @@ def mjcf(design: Design, *, free: bool = True, extra: str = "", motors: str | No
 <default class="touch"><geom group="3" density="0"/></default></default>
 <asset><mesh name="body" file="body.obj"/><mesh name="tyre" file="tyre.stl"/></asset>
 <worldbody><light pos="0 0 3"/><geom name="floor" type="plane" size="5 5 .1"/>
-<body name="base" pos="0 0 0.6">{'<freejoint name="root"/>' if free else ''}
+<body name="base" pos="0 0 0.6">{'<freejoint name="root"/>' if free else ""}
 <inertial mass="{n(design.base_mass)}" pos="{n(*design.base_com)}" fullinertia="0.03 0.1 0.11 0.0002 0.001 -0.0003"/>
 <geom class="shown" mesh="body"/>
 <geom class="touch" type="box" size="{n(0.19, 0.05, 0.06)}" pos="{n(x, 0, z)}"/>{head}{legs}</body></worldbody>
@@ -121,8 +121,20 @@ def urdf(design: Design, *, extra: str = "") -> str:
         for body in parts(design, leg):
             part, name = body["part"], f"{leg}_{body['part']}"
             shapes = [] if part == "wheel" and design.wheel_mesh else body["shapes"]
-            mesh = "package://maker/meshes/tyre.dae" if part == "wheel" and design.wheel_mesh else None
-            text.append(_link(name, body["mass"], body["com"], body["frame"], body["moments"], shapes, hit=mesh))
+            mesh = (
+                "package://maker/meshes/tyre.dae" if part == "wheel" and design.wheel_mesh else None
+            )
+            text.append(
+                _link(
+                    name,
+                    body["mass"],
+                    body["com"],
+                    body["frame"],
+                    body["moments"],
+                    shapes,
+                    hit=mesh,
+                )
+            )
             kind, limits = "revolute", ""
             if part in ("thigh", "calf"):
                 low, high = design.range_of(leg, part)
@@ -131,7 +143,12 @@ def urdf(design: Design, *, extra: str = "") -> str:
                 limits = 'lower="-1.5" upper="1.5"'
             else:
                 kind = "continuous"
-            effort, speed = {"hip": (20, 25), "thigh": (24, 30), "calf": (35, 20), "wheel": (15, 40)}[part]
+            effort, speed = {
+                "hip": (20, 25),
+                "thigh": (24, 30),
+                "calf": (35, 20),
+                "wheel": (15, 40),
+            }[part]
             rpy = n(body["turn"], 0, 0) if body["about"] == "x" else n(0, body["turn"], 0)
             text.append(
                 f'<joint name={quoteattr(design.joint(leg, part))} type="{kind}">'

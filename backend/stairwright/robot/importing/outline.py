@@ -51,7 +51,9 @@ def outer(points: Floats, corners: int = MOST_CORNERS) -> Floats:
             return np.array([low, (high[0], low[1]), high, (low[0], high[1])])
         _, k, meeting = best
         n = len(polygon)
-        polygon = np.array([meeting if m == (k + 1) % n else polygon[m] for m in range(n) if m != (k + 2) % n])
+        polygon = np.array(
+            [meeting if m == (k + 1) % n else polygon[m] for m in range(n) if m != (k + 2) % n]
+        )
     return hull(polygon) if len(polygon) > 3 else polygon
 
 

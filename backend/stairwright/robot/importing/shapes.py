@@ -41,7 +41,9 @@ class Solid:
     label: str
 
 
-def solids(source: Source, frame: Frame, bodies: Sequence[int], *, shown: bool = False) -> list[Solid]:
+def solids(
+    source: Source, frame: Frame, bodies: Sequence[int], *, shown: bool = False
+) -> list[Solid]:
     """What may touch something on `bodies`; with `shown` also what is only seen."""
     model = source.model
     found = []
@@ -89,7 +91,9 @@ def _cloud(model: object, geom: int, kind: _GEOM, size: Floats) -> tuple[Floats,
 def _ring(radius: float) -> Floats:
     """(n, 2) corners of a polygon round a circle."""
     angle = (np.arange(_ROUND) + 0.5) * 2 * math.pi / _ROUND
-    ring: Floats = radius / math.cos(math.pi / _ROUND) * np.column_stack([np.cos(angle), np.sin(angle)])
+    ring: Floats = (
+        radius / math.cos(math.pi / _ROUND) * np.column_stack([np.cos(angle), np.sin(angle)])
+    )
     return ring
 
 

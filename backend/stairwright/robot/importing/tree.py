@@ -215,7 +215,11 @@ def _refuse_loops(source: Source) -> None:
         name = model.equality(k).name or kind.name.removeprefix("mjEQ_").lower()
         first = int(model.eq_obj1id[k])
         if kind in (mujoco.mjtEq.mjEQ_CONNECT, mujoco.mjtEq.mjEQ_WELD):
-            where = source.body(first) if int(model.eq_objtype[k]) == int(mujoco.mjtObj.mjOBJ_BODY) else name
+            where = (
+                source.body(first)
+                if int(model.eq_objtype[k]) == int(mujoco.mjtObj.mjOBJ_BODY)
+                else name
+            )
         elif kind == mujoco.mjtEq.mjEQ_JOINT:
             where = source.joint(first)
         else:

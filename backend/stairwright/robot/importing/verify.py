@@ -93,11 +93,7 @@ def _root(reading: Reading) -> int:
 
 
 def _draw(reading: Reading, random: np.random.Generator) -> Floats:
-    ends = [
-        end for leg in reading.robot.legs for end in (leg.limits.thigh, leg.limits.calf)
-    ]
+    ends = [end for leg in reading.robot.legs for end in (leg.limits.thigh, leg.limits.calf)]
     low, high = np.array(ends).T
     drawn: Floats = random.uniform(low, high)
     return drawn
-
-

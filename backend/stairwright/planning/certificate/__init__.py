@@ -1,0 +1,1 @@
+"""The independent check of plans: own geometry and statics, numpy and shapely, no native code."""

@@ -1,0 +1,167 @@
+"""The certificate: an independent, exact check of a plan (shapely), poses and the motion between.
+
+It shares no geometry or statics with the planner. Clearances count less half of what the robot
+moves between two samples of the motion: what is certified holds in between too. Where that is too
+little to tell, samples lie closer still.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.arguments import as_model
+from stairwright.errors import InputError
+from stairwright.planning.certificate.distances import Distances
+from stairwright.planning.certificate.equilibrium import balanced, touching
+from stairwright.planning.certificate.motion import Motion, Samples, sampled
+from stairwright.planning.plan import Certificate, Check, Plan
+from stairwright.robot import kinematics as kin
+
+Floats = NDArray[np.float64]
+
+WHEEL_GAP = 0.002  # m; a wheel this near to the ground touches it
+WHEEL_SINK = 0.001  # m
+TOUCH = 1.01e-4  # m; a second face no farther from a wheel is touched truly, not just nearly
+LEGS_GAP = 0.005  # m between front and rear leg
+_JOINT_STEP = 0.35  # rad between two poses
+
+Scope = Literal["motion", "poses"]
+
+
+def certify(plan: Plan | Mapping[str, Any], scope: Scope | None = None) -> Certificate:
+    """Check `plan` against terrain, robot and friction that it names.
+
+    Args:
+        plan: Any plan with poses, or its document.
+        scope: ``motion`` checks the motion between poses too, ``poses`` only the poses; by default
+            the motion for dense paths and the poses for the others.
+
+    Raises:
+        InputError: If an argument is bad.
+    """
+    plan = as_model(Plan, plan, "plan")
+    if scope not in (None, *get_args(Scope)):
+        raise InputError(f"must be one of: {', '.join(get_args(Scope))}", ("scope",))
+    chosen: Scope = scope or ("motion" if plan.method == "path" else "poses")
+    if not plan.poses:
+        missing = Check(name="poses", value=0.0, bound=1.0, unit="1", passed=False)
+        return Certificate(passed=False, scope=chosen, checks=[missing])
+    return judge(Motion.of(plan), chosen)
+
+
+def judge(motion: Motion, scope: Scope = "motion") -> Certificate:
+    """Check poses, and the motion between them unless `scope` is ``poses``."""
+    if scope == "poses" or len(motion.body) < 2:
+        checks = _Checker(Samples(motion)).checks()
+    else:
+        checker = _Checker(sampled(motion))
+        checks = checker.checks()
+        if checker.unsettled.any():
+            checks = _Checker(sampled(motion, checker.unsettled)).checks()
+        checks += _order(motion)
+    return Certificate(passed=all(c.passed for c in checks), scope=scope, checks=checks)
+
+
+class _Checker:
+    """The checks on samples (n) of a motion.
+
+    Attributes:
+        unsettled: (poses - 1,) after `checks`: whether clearances between two poses are positive,
+            and yet not more than what the robot moves between samples.
+    """
+
+    def __init__(self, samples: Samples) -> None:
+        self.samples, self.progress = samples, samples.motion.progress
+        self.unsettled = np.zeros(int(samples.interval.max(initial=-1)) + 1, np.bool_)
+
+    def checks(self) -> list[Check]:
+        """All checks in the order of a reader's interest."""
+        distances = Distances(self.samples)
+        rims = distances.wheels()
+        return [
+            self._most("gap between wheels and ground", np.max(rims, axis=0), WHEEL_GAP),
+            self._most("wheels sunk into the ground", -np.min(rims, axis=0), WHEEL_SINK),
+            self._clear("clearance of the trunk", distances.trunk()),
+            self._clear("clearance of the links", distances.links()),
+            self._least("gap between front and rear leg", distances.legs(), LEGS_GAP, "m"),
+            self._least("slack of the joint limits", self._limits(), 0.0, "rad"),
+            self._balance(),
+        ]
+
+    def _least(self, name: str, values: Floats, bound: float, unit: str) -> Check:
+        k = int(np.argmin(values))
+        value = float(values[k])
+        return Check(
+            name=name, value=value, bound=bound, unit=unit, passed=bool(value >= bound - 1e-9),
+            progress=float(self.progress[k]),
+        )  # fmt: skip
+
+    def _most(self, name: str, values: Floats, bound: float) -> Check:
+        check = self._least(name, -values, -bound, "m")
+        return check.model_copy(update={"value": -check.value, "bound": bound})
+
+    def _clear(self, name: str, clearances: Floats) -> Check:
+        slack, interval = self.samples.slack, self.samples.interval
+        unsettled = (clearances < slack) & (clearances > 0.0)
+        self.unsettled[interval[unsettled[:-1] | unsettled[1:]]] = True
+        return self._least(name, clearances - slack, 0.0, "m")
+
+    def _limits(self) -> Floats:
+        """Least distance of the joints from their limits (n,) [rad]."""
+        low, high = kin.limits(self.samples.motion.robot).T
+        joints = self.samples.motion.joints
+        slack: Floats = np.minimum(joints - low, high - joints).min(axis=1)
+        return slack
+
+    def _second_faces(self) -> Floats:
+        """How near a second face must be to a wheel's centre (n, 2) for balance to lean on it [m].
+
+        Only what is truly touched counts: a wheel nearly in a corner is balanced on the one face
+        that it is on. Where it stays in a corner from one pose to the next, interpolated joints
+        take it up to a millimetre out of it in between; it touches both faces all the same.
+        """
+        samples, motion = self.samples, self.samples.motion
+        r = motion.robot.wheel.radius
+        wheels, ends = samples.frames.wheels, samples.at_pose
+        touch = np.full(wheels[ends].shape[0] * 2, r + TOUCH)
+        centres = wheels[ends].reshape(-1, 2)
+        wedged = touching(motion.vertices, centres, r + TOUCH, touch)[2][:, 1].reshape(-1, 2)
+        moved = np.linalg.norm(np.diff(wheels[ends], axis=0), axis=2)
+        stays = wedged[:-1] & wedged[1:] & (moved <= 2 * TOUCH)
+        out = np.full(wheels.shape[:2], r + TOUCH)
+        out[~ends] = np.where(stays[samples.interval[~ends[:-1]]], r + WHEEL_GAP, r + TOUCH)
+        return out
+
+    def _balance(self) -> Check:
+        """Whether forces inside the friction cones of all touching faces balance the weight."""
+        motion = self.samples.motion
+        failed = ~balanced(
+            motion.vertices, self.samples.frames.wheels, self.samples.com[:, 0],
+            motion.robot.wheel.radius + WHEEL_GAP, motion.friction, self._second_faces(),
+        )  # fmt: skip
+        k = int(np.argmax(failed))
+        return Check(
+            name="samples out of balance", value=float(failed.sum()), bound=0.0, unit="1",
+            passed=not failed.any(), progress=float(self.progress[k]) if failed.any() else None,
+        )  # fmt: skip
+
+
+def _order(motion: Motion) -> list[Check]:
+    """Progress rises; joints do not jump between poses."""
+    steps = np.diff(motion.progress)
+    jumps = np.abs(np.diff(motion.joints, axis=0)).max(axis=1)
+    widest = int(np.argmax(jumps))
+    return [
+        Check(
+            name="least step of progress", value=float(steps.min()), bound=0.0, unit="m",
+            passed=bool(steps.min() > 0.0),
+        ),
+        Check(
+            name="largest joint step", value=float(jumps[widest]), bound=_JOINT_STEP, unit="rad",
+            passed=bool(jumps[widest] <= _JOINT_STEP), progress=float(motion.progress[widest]),
+        ),
+    ]  # fmt: skip

@@ -1,0 +1,116 @@
+"""What the certificate judges: poses on a profile, and samples of the motion between them.
+
+Between poses trunk and joints move linearly. Samples lie so close together that no point of the
+robot moves more than `_STRIDE` from one to the next.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.planning.plan import Plan
+from stairwright.robot import kinematics as kin
+from stairwright.robot.description import Robot
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_STRIDE = 0.006  # m
+_CLOSER = 8  # times more samples where those do not settle it
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Poses along a profile; SI units, world frame.
+
+    Attributes:
+        vertices: (m, 2) profile.
+        robot: Who moves.
+        friction: Between wheels and profile.
+        body: (n, 3) trunk: x, z, pitch.
+        joints: (n, 4) front thigh, front calf, rear thigh, rear calf.
+        progress: (n,) along the way.
+    """
+
+    vertices: Floats
+    robot: Robot
+    friction: float
+    body: Floats
+    joints: Floats
+    progress: Floats
+
+    @classmethod
+    def of(cls, plan: Plan) -> Motion:
+        """The motion of a plan that has poses."""
+        return cls(
+            plan.terrain.vertices, plan.robot_description, plan.friction,
+            np.array([(p.x_c, p.z_c, p.pitch) for p in plan.poses]),
+            np.array([p.q for p in plan.poses]),
+            np.array([p.progress for p in plan.poses]),
+        )  # fmt: skip
+
+    @property
+    def frames(self) -> kin.Frames:
+        """Hips, knees and wheels of the poses."""
+        x, z, pitch = self.body.T
+        return kin.forward(self.robot, x, z, pitch, self.joints)
+
+
+class Samples:
+    """Samples (n) of a motion: its poses alone, unless more is said.
+
+    Attributes:
+        motion: With a pose for each sample.
+        slack: (n,) the most that a point of the robot moves halfway to the next samples [m].
+        interval: (n - 1,) between which poses the motion after a sample lies.
+        at_pose: (n,) which of them are poses.
+        frames: Hips, knees and wheels.
+        com: (n, 2) centre of mass [m].
+    """
+
+    def __init__(
+        self, motion: Motion, slack: Floats | None = None, interval: Ints | None = None
+    ) -> None:
+        n = len(motion.body)
+        self.motion = motion
+        self.slack = np.zeros(n) if slack is None else slack
+        self.interval = np.arange(n - 1) if interval is None else interval
+        self.at_pose = np.append(np.diff(self.interval, prepend=-1) > 0, True)
+        self.frames = motion.frames
+        x, z, pitch = motion.body.T
+        self.com = kin.com(motion.robot, x, z, pitch, self.frames)
+
+
+def sampled(motion: Motion, closer: NDArray[np.bool_] | None = None) -> Samples:
+    """Samples of a motion of two poses or more; more of them where `closer` (poses - 1,)."""
+    frames = motion.frames
+    x, z, pitch = motion.body.T
+    span = motion.robot.body.span
+    moved = [np.hypot(np.diff(x), np.diff(z)) + span * np.abs(np.diff(pitch))]
+    for points in (frames.hips, frames.knees, frames.wheels):
+        moved += [np.hypot(*np.diff(points[:, leg], axis=0).T) for leg in range(2)]
+    stride = np.max(moved, axis=0)
+    parts = np.maximum(1, np.ceil(stride / _STRIDE)).astype(int)
+    if closer is not None:
+        parts *= np.where(closer, _CLOSER, 1)
+    apart = np.repeat(stride / parts, parts)
+    slack = 0.5 * np.maximum(np.append(apart, 0.0), np.append(0.0, apart))
+    interval = np.repeat(np.arange(len(parts)), parts)
+    knots = np.arange(len(x), dtype=float)
+    first = np.cumsum(parts) - parts
+    share = (np.arange(parts.sum()) - np.repeat(first, parts)) / np.repeat(parts, parts)
+    at = np.append(np.repeat(knots[:-1], parts) + share, knots[-1])
+
+    def between(values: Floats) -> Floats:
+        return np.stack([np.interp(at, knots, column) for column in values.T], axis=1)
+
+    dense = replace(
+        motion,
+        body=between(motion.body),
+        joints=between(motion.joints),
+        progress=np.interp(at, knots, motion.progress),
+    )
+    return Samples(dense, slack, interval)

@@ -1,0 +1,1 @@
+"""What stops the robot: the single change that would open the way."""

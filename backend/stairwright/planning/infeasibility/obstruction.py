@@ -1,0 +1,285 @@
+"""What stops the robot: the single change that would open the way, where, and how large.
+
+Each candidate quantity is raised alone, on the coarse lattice and with bounds that forgive what
+rounding takes: that gives the least value that may do. A candidate is only asked whether it opens
+the way at a smaller relative change than the best one so far. The smallest names the problem, after
+planning again with it: the answer is physically true, not a guess from the search's front.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from functools import cache, partial
+
+import numpy as np
+
+from stairwright.planning.infeasibility.relaxation import (
+    AMPLE,
+    CLOSE,
+    LONGEST,
+    Candidate,
+    bold_candidates,
+    candidates_of,
+    leads_past,
+    motor_torque,
+)
+from stairwright.planning.lattice.body_lattice import EXACT
+from stairwright.planning.lattice.pieces import pieces
+from stairwright.planning.lattice.search import Place
+from stairwright.planning.path_planner import Blocked, Path, PathPlanner, Solved
+from stairwright.planning.plan import Limit, Problem
+from stairwright.planning.threads import race, search_threads
+
+Cause = tuple[Candidate, float]  # what opens the way, and by which factor
+Ranked = list[Cause]
+
+_ROUGH = 1.3  # relative precision of a factor before other quantities were asked
+_MORE = (1.005, 1.05, 1.15, 1.3, 1.7, 2.5, 4.0)  # on the least factor: planning is tried there
+_BETWEEN = 1.05  # of them is left out where not even a search that forgives nothing finds a way
+_RIVALS = 2  # candidates for which planning is tried
+_ASKED = 2  # times that candidates are ranked anew, without those that led nowhere
+
+
+def explain(planner: PathPlanner, blocked: Blocked) -> tuple[Problem, Path]:
+    """Name what stops `course`, and tell how far it goes.
+
+    Args:
+        course: The question without an answer.
+        blocked: What its solution attempt returned.
+    """
+    if blocked.weak:
+        planner = planner.within_torques
+    pool = search_threads()
+    # As far as it goes: found beside the first plan that is tried, where a thread is at leisure.
+    partial_way = cache(lambda: pool.submit(planner.partial))
+    cause = _cause(planner, blocked, pool, partial_way)
+    way, ended = partial_way().result()
+    reached = blocked.reached if blocked.opened or not ended else ended
+    return _problem(planner, reached, cause), way
+
+
+def _cause(
+    planner: PathPlanner, blocked: Blocked, pool: Executor, meanwhile: Callable[[], object]
+) -> Cause | None:
+    """The single change that opens the way, if one does."""
+    if blocked.weak and blocked.opened:
+        # A search came through: a little more torque is what its path most likely lacks.
+        motors = [(motor_torque(planner.robot, blocked.weak), 1.0)]
+        answer = _confirmed(planner, motors, [], pool)
+        if answer is not None and not isinstance(answer, Beyond):
+            return answer
+    candidates = candidates_of(planner)
+    places = list(blocked.stops)
+    if not _whole(planner, places) and leads_past(planner, places):
+        places.clear()  # some poses there lead on, but no way leads to them
+    for _ in range(_ASKED):
+        ranked, answer = _answered(planner, candidates, places, pool, meanwhile)
+        if answer is not None:
+            return answer
+        tried = [candidate for candidate, _ in ranked]
+        candidates = [one for one in candidates if one not in tried]
+        if not tried or not candidates:
+            break
+    for bold in bold_candidates(planner):  # where no single change of grip or robot is enough
+        _, answer = _answered(planner, [bold], places, pool, meanwhile)
+        if answer is not None:
+            return answer
+    return None
+
+
+def _answered(
+    planner: PathPlanner,
+    candidates: list[Candidate],
+    places: list[Place],
+    pool: Executor,
+    meanwhile: Callable[[], object],
+) -> tuple[Ranked, Cause | None]:
+    """Candidates in their order, and the one that opens the way with its least factor.
+
+    Candidates are asked whether they lead past `places`; where one does that stops elsewhere, that
+    place is added and all are asked again. Without places all of the course is asked.
+    """
+    while True:
+        ranked = _ranked(planner, candidates, places, pool)
+        meanwhile()
+        answer = _confirmed(planner, ranked, places, pool)
+        if not isinstance(answer, Beyond):
+            return ranked, answer
+        if any(piece.has(planner, answer.place) for piece in pieces(planner, places)):
+            places.clear()  # what happens there depends on more than was asked
+        else:
+            places.append(answer.place)
+
+
+def _ranked(
+    planner: PathPlanner, candidates: list[Candidate], places: list[Place], pool: Executor
+) -> Ranked:
+    """Candidates that open the way past `places`, least factor first.
+
+    The least factor is told precisely; the others are factors that do.
+    """
+    first, *others = candidates
+    least = _least(planner, first, places, math.inf, _ROUGH, pool)
+    low, ratio = least or (1.0, math.inf)
+    ranked = [(first, ratio)] if least else []
+    asked = [(one, one.highest(ratio)) for one in others if one.highest(ratio) > 1.0]
+    opened = list(pool.map(lambda one: one[0].opens(planner, places, one[1]), asked))
+    able = [one for one, opens in zip(asked, opened, strict=True) if opens]
+    for candidate, high in sorted(able, key=lambda one: one[1]):
+        found = _least(planner, candidate, places, ratio, 1.0 + CLOSE, pool, high)
+        if found is not None:
+            ratio = found[1]
+            ranked.insert(0, (candidate, ratio))
+        else:
+            ranked.append((candidate, candidate.highest(ratio)))
+    # What was told roughly is told precisely where it may be the least.
+    if least is not None:
+        leads = ranked[0][0] is first
+        high = ratio if leads else first.highest(ratio)
+        if high > low and (leads or first.opens(planner, places, high)):
+            opens = partial(first.opens, planner, places)
+            ratio = _narrow(opens, low, high, 1.0 + CLOSE, pool)[1]
+            ranked = [(first, ratio), *(one for one in ranked if one[0] is not first)]
+    return ranked
+
+
+def _least(
+    planner: PathPlanner,
+    candidate: Candidate,
+    places: list[Place],
+    below: float,
+    close: float,
+    pool: Executor,
+    known: float = math.inf,
+) -> tuple[float, float] | None:
+    """Factors of which the larger opens the way, if less than `below`, and the smaller does not.
+
+    Args:
+        course, candidate, places, pool: Who asks about what.
+        below: The factor is of interest if it is less.
+        close: Largest quotient of the factors.
+        known: A factor that opens the way.
+    """
+    high = candidate.highest(below)
+    if high <= 1.0:
+        return None
+    opens = partial(candidate.opens, planner, places)
+    if known <= high:
+        return _narrow(opens, 1.0, known, close, pool)
+    middle = math.sqrt(high)
+    with race(pool, opens, (middle, high)) as answers:
+        ends = (1.0, middle) if next(answers) else (middle, high) if next(answers) else None
+    return ends and _narrow(opens, *ends, close, pool)
+
+
+def _narrow(
+    enough: Callable[[float], bool], low: float, high: float, close: float, pool: Executor
+) -> tuple[float, float]:
+    """Bring together a factor that is not enough and one that is; two are asked at once.
+
+    Args:
+        enough: Asked about factors.
+        low, high: The factors.
+        close: Largest quotient of those that are returned.
+        pool: Who asks.
+    """
+    while high / low > close:
+        a, b = (low ** (1 - k / 3) * high ** (k / 3) for k in (1, 2))
+        with race(pool, enough, (a, b)) as answers:
+            if next(answers):
+                high = a
+            elif next(answers):
+                low, high = a, b
+            else:
+                low = b
+    return low, high
+
+
+def _whole(planner: PathPlanner, places: list[Place]) -> bool:
+    """Whether questions about `places` are asked of all of the course."""
+    return pieces(planner, places)[0].whole
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """Where a way ends that was thought open."""
+
+    place: Place
+
+
+def _confirmed(
+    planner: PathPlanner, ranked: Ranked, places: list[Place], pool: Executor
+) -> Cause | Beyond | None:
+    """The least factor with which a certified plan exists, and on which of the `ranked`.
+
+    Factors from those told on are tried, the least first, two at once. `_BETWEEN` may be left out:
+    those before and after it are within 15 % of each other.
+
+    Args:
+        course: The question.
+        ranked: Candidates and factors.
+        places: What the factors are known to lead past.
+        pool: Who tries.
+    """
+    tries = sorted(
+        {(min(ratio * more, one.most), k)
+         for k, (one, ratio) in enumerate(ranked[:_RIVALS]) for more in _MORE}
+    )  # fmt: skip
+    whole = _whole(planner, places)
+    low: dict[int, float] = {}
+
+    def lead(one: tuple[float, int]) -> Solved | Blocked | None:
+        ratio, k = one
+        candidate, least = ranked[k]
+        if ratio == least * _BETWEEN and not candidate.opens(planner, places, ratio, EXACT):
+            return None
+        return candidate.attempt(planner, ratio)
+
+    with race(pool, lead, tries) as ends:
+        for (ratio, k), end in zip(tries, ends, strict=True):
+            if isinstance(end, Solved):
+                break
+            if end is None:
+                continue
+            if not (whole or low or end.opened):
+                return Beyond(end.reached or planner.ends[0].wheels)
+            low[k] = ratio
+        else:
+            return None
+    candidate = ranked[k][0]
+    if k in low:
+        ratio = _narrow(partial(candidate.solves, planner), low[k], ratio, candidate.sure, pool)[1]
+    return candidate, ratio
+
+
+def _problem(planner: PathPlanner, reached: Place | None, cause: Cause | None) -> Problem:
+    """In words: what stops the wheels where they end, and what would be enough."""
+    begin, end = planner.ends
+    front, rear = reached or begin.wheels
+    stopped, wheel = (rear, "rear") if front >= end.wheels[0] - 1e-6 else (front, "front")
+    x, z = planner.path.contacts(np.array([stopped]))[0].tolist()
+    progress = max(0.0, 0.5 * (front + rear - sum(begin.wheels)))
+    stop = f"the {wheel} wheels stop at x = {x:.2f} m, z = {z:.2f} m"
+    if cause is None:
+        message = (
+            f"{stop}, and neither legs of {LONGEST:g} times the length with friction {AMPLE:g} nor "
+            "a profile of a fiftieth of the height would change that"
+        )
+        return Problem(kind="reach", at=(x, z), progress=progress, message=message)
+    candidate, ratio = cause
+    value = candidate.at(ratio)
+    unit = "" if candidate.unit == "1" else f" {candidate.unit}"
+    message = (
+        f"needs {candidate.quantity} {value:.3g}{unit}{candidate.given}, "
+        f"has {candidate.available:.3g}{unit}: {stop}"
+    )
+    return Problem(
+        kind=candidate.kind, at=(x, z), progress=progress, message=message,
+        limit=Limit(
+            needed=value, available=candidate.available,
+            quantity=candidate.quantity + candidate.given, unit=candidate.unit,
+        ),
+    )  # fmt: skip

@@ -1,0 +1,225 @@
+"""Quantities of which more, or less, would open a way: of the terrain and of the robot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from stairwright.planning.lattice.body_lattice import LOOSE, Bounds
+from stairwright.planning.lattice.pieces import pieces
+from stairwright.planning.lattice.search import Place
+from stairwright.planning.path_planner import Blocked, PathPlanner, Solved, path_planner
+from stairwright.planning.smoothing.node_margins import JOINTS, Motor
+from stairwright.planning.standing import NoStandingPose
+from stairwright.planning.strategy import quick
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
+
+Kind = Literal["reach", "clearance", "statics", "torque", "joint_limit"]
+
+LONGEST = 3.0  # times the legs' length; no engineer would build more
+STRONGEST = 1000.0  # Nm; the most that a motor is described with
+AMPLE = 1.5  # friction that leaves nothing to wish for
+CLOSE = 0.02  # relative precision of the value that searches tell
+_FLAT = 0.02  # of a profile's height
+_FINE = 1.7  # lattice of the questions, coarser than that of plans
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One quantity that may be raised, or reduced where `limit` is less than `available`."""
+
+    kind: Kind
+    quantity: str
+    unit: str
+    available: float
+    limit: float
+    change: Callable[[PathPlanner, float], PathPlanner]
+    given: str = ""  # what else the change needs
+    sure: float = 1.15  # relative precision of a value that only whole plans can tell
+
+    def at(self, ratio: float) -> float:
+        """The value that differs from what there is by the factor `ratio` > 1."""
+        return self.available * ratio if self.limit > self.available else self.available / ratio
+
+    @property
+    def most(self) -> float:
+        """The factor at the limit."""
+        return max(self.limit / self.available, self.available / self.limit)
+
+    def highest(self, below: float) -> float:
+        """The largest factor worth asking about where one of `below` is known to do."""
+        return min(self.most, below / (1.0 + CLOSE))
+
+    def opens(
+        self, planner: PathPlanner, places: Sequence[Place], ratio: float, bounds: Bounds = LOOSE
+    ) -> bool:
+        """Whether a quick search within `bounds` comes past `places` with the quantity changed so.
+
+        Of another profile all is asked.
+        """
+        try:
+            changed = self.change(planner, self.at(ratio))
+        except NoStandingPose:
+            return False
+        return leads_past(changed, places if changed.terrain is planner.terrain else (), bounds)
+
+    def attempt(self, planner: PathPlanner, ratio: float) -> Solved | Blocked:
+        """What comes of a quick attempt at a plan with the quantity changed so."""
+        try:
+            changed = self.change(planner, self.at(ratio))
+        except NoStandingPose:
+            return Blocked(None, False)
+        return quick(changed)
+
+    def solves(self, planner: PathPlanner, ratio: float) -> bool:
+        """Whether that leads to a certified plan."""
+        return isinstance(self.attempt(planner, ratio), Solved)
+
+
+def leads_past(planner: PathPlanner, places: Sequence[Place], bounds: Bounds = LOOSE) -> bool:
+    """Whether a quick search within `bounds` leads through the pieces round `places`."""
+    return all(planner.passes(piece, _FINE, bounds) for piece in pieces(planner, places))
+
+
+def candidates_of(planner: PathPlanner) -> list[Candidate]:
+    """Quantities in the order in which they are asked: cheap and likely first."""
+    robot = planner.robot
+    legs = robot.legs[0].reach
+    joints = (robot.joints.front, robot.joints.rear)
+    ranges = {
+        part: min(getattr(leg, part)[1] - getattr(leg, part)[0] for leg in joints)
+        for part in ("thigh", "calf")
+    }
+    return [
+        Candidate("statics", "friction", "1", planner.friction, max(2.0, 2.5 * planner.friction),
+                  lambda c, v: replace(c, friction=v)),
+        Candidate("reach", "leg length", "m", legs, LONGEST * legs,
+                  lambda c, v: _with_robot(c, _longer(robot, v / legs))),
+        Candidate("clearance", "trunk height", "m", robot.trunk.size[2], 0.1 * robot.trunk.size[2],
+                  lambda c, v: _with_robot(c, _flatter(robot, v))),
+        Candidate("joint_limit", "calf range", "rad", ranges["calf"], ranges["calf"] + 0.8,
+                  lambda c, v: _with_robot(c, _wider(robot, "calf", v - ranges["calf"]))),
+        Candidate("joint_limit", "thigh range", "rad", ranges["thigh"], ranges["thigh"] + 1.0,
+                  lambda c, v: _with_robot(c, _wider(robot, "thigh", v - ranges["thigh"]))),
+        *(motor_torque(robot, motor) for motor in JOINTS if planner.torques),
+    ]  # fmt: skip
+
+
+def motor_torque(robot: Robot, motor: Motor) -> Candidate:
+    """The torque of the legs' or wheels' motors; where they differ the weaker keep their share."""
+    most = float(robot.torque_limits[:, JOINTS[motor]].max())
+    return Candidate(
+        "torque", f"{motor} torque", "Nm", most, STRONGEST,
+        lambda c, v: _with_robot(c, _stronger(robot, motor, v / most)),
+        sure=1.02,
+    )  # fmt: skip
+
+
+def _legs_with_grip(planner: PathPlanner) -> Candidate:
+    """Longer legs, with ample friction."""
+    robot = planner.robot
+    legs = robot.legs[0].reach
+    grip = max(AMPLE, planner.friction)
+    return Candidate(
+        "reach", "leg length", "m", legs, LONGEST * legs,
+        lambda c, v: replace(_with_robot(c, _longer(robot, v / legs)), friction=grip),
+        f" with friction {grip:.2g}",
+    )  # fmt: skip
+
+
+def bold_candidates(planner: PathPlanner) -> list[Candidate]:
+    """What is asked where nothing else is enough: legs with ample friction, a lower profile."""
+    points = np.array(planner.terrain.points)
+    base, height = float(points[0, 1]), float(np.ptp(points[:, 1]))
+    bold = [_legs_with_grip(planner)]
+
+    def lowered(c: PathPlanner, v: float) -> PathPlanner:
+        document = c.terrain.model_dump()
+        low = base + (points[:, 1] - base) * (v / height)
+        document["points"] = np.stack([points[:, 0], low], axis=1).tolist()
+        changed = path_planner(Terrain.model_validate(document), c.robot, c.friction, c.weights)
+        return replace(changed, torques=c.torques)
+
+    if height > 0.0:  # in the end it is flat, which opens every way
+        lower = Candidate("reach", "profile height", "m", height, _FLAT * height, lowered)
+        bold.append(lower)
+    return bold
+
+
+def _with_robot(planner: PathPlanner, robot: Robot) -> PathPlanner:
+    """The same question for another robot, which stands as it would."""
+    changed = path_planner(planner.terrain, robot, planner.friction, planner.weights)
+    return replace(changed, torques=planner.torques)
+
+
+def _changed(robot: Robot, change: Callable[[dict[str, Any]], None]) -> Robot:
+    """A new robot (nothing cached) whose document `change` has changed."""
+    data = robot.model_dump()
+    change(data)
+    return Robot.model_validate(data)
+
+
+def _parts(data: dict[str, Any], *names: str) -> Iterator[dict[str, Any]]:
+    """The parts of these names of all legs, where the document has them."""
+    for legs in (data, data.get("rear") or {}):
+        yield from (legs[name] for name in names if legs.get(name))
+
+
+def _longer(robot: Robot, factor: float) -> Robot:
+    """The robot with thighs and calves longer by `factor`."""
+
+    def change(data: dict[str, Any]) -> None:
+        for link in _parts(data, "thigh", "calf"):
+            link["length"] *= factor
+            if isinstance(link["com"], (tuple, list)):
+                link["com"] = [link["com"][0], link["com"][1] * factor]
+            for piece in link.get("shape", []):
+                for end in ("start", "end"):
+                    piece[end] = [piece[end][0], piece[end][1] * factor]
+
+    return _changed(robot, change)
+
+
+def _flatter(robot: Robot, height: float) -> Robot:
+    """The robot whose trunk is `height` high, all its pieces lower by the same factor."""
+    factor = height / robot.trunk.size[2]
+
+    def change(data: dict[str, Any]) -> None:
+        trunk = data["trunk"]
+        trunk["size"] = [*trunk["size"][:2], height]
+        for piece in trunk.get("outline", []):
+            piece["points"] = [(x, z * factor) for x, z in piece["points"]]
+
+    return _changed(robot, change)
+
+
+def _wider(robot: Robot, part: str, extra: float) -> Robot:
+    """The robot with the range of `part` (thigh, calf) `extra` rad wider, half at each end."""
+    legs: dict[str, Any] = {}
+    for name in ("front", "rear"):
+        leg = getattr(robot.joints, name).model_dump()
+        low, high = leg[part]
+        wide = [low - extra / 2, high + extra / 2]
+        if part == "calf":  # the knee keeps its side and does not fold onto itself
+            wide = [
+                max(wide[0], 0.05 if low > 0 else -3.1),
+                min(wide[1], 3.1 if low > 0 else -0.05),
+            ]
+        legs[name] = leg | {part: tuple(wide)}
+    return _changed(robot, lambda data: data.update(joints=legs))
+
+
+def _stronger(robot: Robot, motor: Motor, factor: float) -> Robot:
+    """The robot whose leg or wheel motors are stronger by `factor`."""
+
+    def change(data: dict[str, Any]) -> None:
+        for motors in _parts(data, "actuators"):
+            for name in ("wheel",) if motor == "wheel" else ("leg", "thigh", "calf"):
+                if motors.get(name):
+                    motors[name]["torque"] = min(motors[name]["torque"] * factor, STRONGEST)
+
+    return _changed(robot, change)

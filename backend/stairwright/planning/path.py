@@ -1,0 +1,81 @@
+"""`method: path`: a dense, smooth, certified path over any profile."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Sequence
+
+import numpy as np
+
+from stairwright.errors import InputError
+from stairwright.planning.infeasibility.diagnosis import no_standing_pose
+from stairwright.planning.path_planner import Blocked, PathPlanner, Solved, path_planner
+from stairwright.planning.plan import Plan, Problem
+from stairwright.planning.smoothing.path_document import make_plan
+from stairwright.planning.standing import NoStandingPose
+from stairwright.planning.strategy import THIN, solve
+from stairwright.planning.threads import search_threads
+from stairwright.planning.weights import PathWeights
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
+
+
+def plan_path(
+    terrain: Terrain, robots: Sequence[Robot], friction: float, weights: PathWeights
+) -> Plan:
+    """Plan a dense path of poses from the first flat stretch to the last.
+
+    Wheels keep rolling contact; trunk, links and legs stay clear; joints, torques and speeds keep
+    their limits; and the robot is in static balance inside the friction cones at every instant. The
+    plan is called feasible only if the independent certificate passes.
+
+    Args:
+        terrain: The profile.
+        robots: The robot, in every configuration of its knees. The first is taken that has a path
+            with some CoM margin, else the one with the most, else the one that comes farthest.
+        friction: Coulomb friction between wheels and terrain.
+        weights: What to trade off.
+
+    Returns:
+        The plan; on impossible terrain one with a `problem`, and the poses up to there.
+    """
+    begun = clock.perf_counter()
+    robot = robots[0]
+    try:
+        planners = [path_planner(terrain, one, friction, weights) for one in robots]
+    except NoStandingPose as error:
+        problem = no_standing_pose(terrain, robot, error)
+        return make_plan(terrain, robot, friction, weights, begun, problem=problem)
+    except InputError as error:
+        at = terrain.points[0]
+        problem = Problem(kind="start", at=at, progress=0.0, message=str(error))
+        return make_plan(terrain, robot, friction, weights, begun, problem=problem)
+    planner, found = _best(planners)
+    robot = planner.robot
+    if isinstance(found, Solved):
+        plan = make_plan(terrain, robot, friction, weights, begun, *planner.document(found.nodes))
+        return plan.model_copy(update={"certificate": found.certificate})
+    from stairwright.planning.infeasibility.obstruction import (
+        explain,  # it plans again, so it imports us
+    )
+
+    problem, way = explain(planner, found)
+    return make_plan(terrain, robot, friction, weights, begun, *way, problem)
+
+
+def _best(planners: Sequence[PathPlanner]) -> tuple[PathPlanner, Solved | Blocked]:
+    """The first course that has a path with some margin; else the path with most, else the way."""
+    tried: list[tuple[PathPlanner, Solved | Blocked]] = []
+    for planner in planners:
+        found = solve(planner, search_threads())
+        tried.append((planner, found))
+        if isinstance(found, Solved) and found.margin > THIN:
+            break
+
+    def worth(one: tuple[PathPlanner, Solved | Blocked]) -> tuple[float, float]:
+        found = one[1]
+        if isinstance(found, Solved):
+            return np.inf, found.margin
+        return sum(found.reached or (0.0, 0.0)), 0.0
+
+    return max(tried[::-1], key=worth) if len(tried) > 1 else tried[0]

@@ -1,1 +1,0 @@
-"""The dense certified path: lattice search, polish, timing (`method: path`)."""

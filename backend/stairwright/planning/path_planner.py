@@ -1,0 +1,229 @@
+"""One planning problem and the tools that solve it: search, smoothing, repair, certificate.
+
+In which order they are tried is the strategy's (`strategy.py`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright import _core
+from stairwright.planning.certificate.certify import judge
+from stairwright.planning.certificate.motion import Motion
+from stairwright.planning.lattice.body_lattice import (
+    LOOSE,
+    Bounds,
+    LatticePath,
+)
+from stairwright.planning.lattice.pieces import Piece, passes
+from stairwright.planning.lattice.search import Place
+from stairwright.planning.lattice.windows import Searches, find_path
+from stairwright.planning.path_problem import PathProblem
+from stairwright.planning.plan import Certificate, Pose
+from stairwright.planning.smoothing.node_margins import BEYOND_REPAIR, Motor
+from stairwright.planning.smoothing.path_document import make_poses
+from stairwright.planning.smoothing.path_timing import path_parameter
+from stairwright.planning.smoothing.refine import Refined, refine
+from stairwright.planning.smoothing.repair import STAGES, repair
+from stairwright.planning.standing import StandingPose, find_standing_poses
+from stairwright.planning.threads import still_wanted
+from stairwright.planning.weights import PathWeights
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
+from stairwright.terrain.wheel_path import wheel_path
+
+Ints = NDArray[np.int64]
+Path = tuple[list[Pose], list[int], float]  # poses, key poses, duration [s]
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """One attempt at a path.
+
+    Attributes:
+        fine: Lattice refinement; above 1 coarser. At 2 a search costs a tenth of one at 1, and the
+            smoothing makes as good a path from it.
+        bounds: What lattice poses keep.
+        roll_back: Whether wheels may roll back.
+        probe: Only ask whether a search comes through.
+    """
+
+    fine: float
+    bounds: Bounds
+    roll_back: bool = False
+    probe: bool = False
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A path and its certificate, which has passed unless the path is still to be repaired."""
+
+    nodes: Refined
+    certificate: Certificate
+
+    @property
+    def margin(self) -> float:
+        """Thinnest margin of the CoM [m]."""
+        return float(self.nodes.margins.firm_com_margin.min())
+
+    @property
+    def bad(self) -> Ints:
+        """Nodes at which a check of the certificate is violated most."""
+        progress = path_parameter(self.nodes.s, self.nodes.body)
+        places = {
+            int(np.abs(progress - check.progress).argmin())
+            for check in self.certificate.checks
+            if not check.passed and check.progress is not None
+        }
+        return np.array(sorted(places), np.int64)
+
+
+@dataclass(frozen=True)
+class Blocked:
+    """No certified path.
+
+    Attributes:
+        reached: Arc lengths where the path ends, or where a found path breaks a bound worst.
+        stops: Where loose searches end: the place from the start, and others farther on.
+        opened: Whether a search came through at all.
+        weak: Motors whose torque a found path exceeded.
+    """
+
+    reached: Place | None
+    opened: bool
+    weak: Motor | None = None
+    stops: tuple[Place, ...] = ()
+
+
+def path_planner(
+    terrain: Terrain, robot: Robot, friction: float, weights: PathWeights
+) -> PathPlanner:
+    """The planner for `terrain` and `robot`.
+
+    Raises:
+        InputError: If the profile is too short for a wheel.
+        NoStandingPose: If the robot cannot stand at its start or goal.
+    """
+    path = wheel_path(terrain, robot.wheel.radius)
+    ends = find_standing_poses(terrain, robot, path)
+    return PathPlanner(terrain, robot, path, _core.Terrain(path.vertices), ends, friction, weights)
+
+
+@dataclass
+class PathPlanner(PathProblem):
+    """A problem and the ways to its answer."""
+
+    searches: Searches = field(default_factory=dict)
+
+    def find(
+        self,
+        fine: float,
+        bounds: Bounds,
+        cheap: bool = True,
+        roll_back: bool = False,
+        partial: bool = False,
+    ) -> LatticePath:
+        """Search once; see `Search.find`."""
+        return find_path(self, bounds, fine, cheap, roll_back, partial, self.searches)
+
+    def passes(self, piece: Piece, fine: float, bounds: Bounds, roll_back: bool = False) -> bool:
+        """Whether a search leads through a piece of the terrain; see `pieces.passes`."""
+        return passes(self, piece, bounds, fine, roll_back, self.searches)
+
+    def attempt(self, how: Attempt) -> Solved | Blocked:
+        """What comes of one attempt.
+
+        With weights of the user's the lattice is searched for them and for the default ones, and
+        the path that costs less is taken: heavy weights lead the lattice, whose costs are rougher
+        than those of the smoothing, to places that the smoothing cannot make as good.
+        """
+        still_wanted()
+        finding = self.find(how.fine, how.bounds, not how.probe, how.roll_back)
+        if how.probe:
+            return Blocked(None, finding.quality > 0)
+        if finding.s is None:
+            return Blocked(finding.reached, False)
+        answers = [self.finish(finding)]
+        if self.unweighted is not None:
+            usual = self.unweighted.find(how.fine, how.bounds, roll_back=how.roll_back)
+            if usual.s is not None:
+                answers += [self.finish(usual), self.unweighted.finish(usual)]
+        return min(answers, key=self.cost)
+
+    def cost(self, answer: Solved | Blocked) -> float:
+        """What the weights make of a path; infinite where there is none."""
+        if isinstance(answer, Blocked):
+            return np.inf
+        return self._path_cost(answer.nodes)[0]
+
+    def cost_terms(self, nodes: Refined) -> dict[str, float]:
+        """The quantity that each weight makes small, by the weight's name; see `PathWeights`."""
+        return self._path_cost(nodes)[1]
+
+    def _path_cost(self, nodes: Refined) -> tuple[float, dict[str, float]]:
+        return self.refine_problem.cost(np.hstack([nodes.s, nodes.body]))
+
+    @cached_property
+    def within_torques(self) -> PathPlanner:
+        """The same problem, searched so that every pose of the search is held by the motors."""
+        return replace(self, torques=True)
+
+    @cached_property
+    def unweighted(self) -> PathPlanner | None:
+        """The same problem with default weights, if these are others."""
+        usual = PathWeights(speed=self.weights.speed)
+        return None if usual == self.weights else replace(self, weights=usual, searches={})
+
+    def partial(self) -> tuple[Path, Place | None]:
+        """The path as far as it goes, and where wheels end; nothing where they cannot start."""
+        finding = self.find(1.7, LOOSE, partial=True)
+        if finding.s is None or finding.body is None or len(finding.s) < 2:
+            return ([], [], 0.0), finding.reached
+        last = StandingPose((float(finding.s[-1, 0]), float(finding.s[-1, 1])), finding.body[-1])
+        found = refine(self, (self.ends[0], last), finding.s, finding.body)
+        found = repair(self, found, found.margins.bad, STAGES[0])
+        bad = np.flatnonzero(found.margins.least_slack < 0.0)
+        if len(bad):
+            found = found.part(0, int(bad[0]))
+        if len(found.s) < 2:
+            return ([], [], 0.0), finding.reached
+        return self.document(found), finding.reached
+
+    def finish(self, finding: LatticePath) -> Solved | Blocked:
+        """Smooth, repair and certify; where that fails, the arc lengths at the worst place."""
+        assert finding.s is not None
+        assert finding.body is not None
+        still_wanted()
+        found = refine(self, self.ends, finding.s, finding.body)
+        judged: Refined | None = None
+        # No local repair makes motors hold much more: another path does.
+        stages = () if found.margins.torque_excess > BEYOND_REPAIR else STAGES
+        for stage in (*stages, None):
+            still_wanted()
+            if found is not judged:
+                judged, bad = found, found.margins.bad
+                if found.margins.worst >= 0.0:
+                    solved = self._certified(found)
+                    if solved.certificate.passed:
+                        return solved
+                    bad = solved.bad
+            if stage is not None:
+                found = repair(self, found, bad, stage)
+        worst = found.s[int(found.margins.least_slack.argmin())]
+        return Blocked((float(worst[0]), float(worst[1])), True, found.margins.overloaded)
+
+    def _certified(self, nodes: Refined) -> Solved:
+        """The path with its certificate, passed or not."""
+        motion = Motion(
+            self.terrain.vertices, self.robot, self.friction, nodes.body,
+            nodes.margins.q, path_parameter(nodes.s, nodes.body),
+        )  # fmt: skip
+        return Solved(nodes, judge(motion))
+
+    def document(self, nodes: Refined) -> Path:
+        """What the plan's document says of a path."""
+        return make_poses(self.path, self.robot, nodes, self.weights)

@@ -1,0 +1,90 @@
+"""From lattice poses to the nodes of a path: smoothed, dense, and what they are worth.
+
+The work is done by the native core (native/include/stairwright/smoothing/refine.hpp).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright import _core
+from stairwright.planning.path_problem import PathProblem
+from stairwright.planning.smoothing.node_margins import NodeMargins, joined
+from stairwright.planning.standing import StandingPose
+from stairwright.planning.threads import still_wanted
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Refined:
+    """Nodes: arc lengths (n, 2), trunk poses (n, 3), and what they are worth."""
+
+    s: Floats
+    body: Floats
+    margins: NodeMargins
+
+    def part(self, begin: int, end: int) -> Refined:
+        """The nodes [begin, end)."""
+        return Refined(self.s[begin:end], self.body[begin:end], self.margins.part(begin, end))
+
+    def standing_pose(self, k: int) -> StandingPose:
+        """Node `k` as the end of a piece."""
+        return StandingPose((float(self.s[k, 0]), float(self.s[k, 1])), self.body[k])
+
+
+def concatenated(parts: list[Refined]) -> Refined:
+    """One path after the other."""
+    s, body = np.concatenate([one.s for one in parts]), np.concatenate([one.body for one in parts])
+    return Refined(s, body, joined([one.margins for one in parts]))
+
+
+class NodeSpacing(NamedTuple):
+    """How nodes are laid for the smoothing.
+
+    Attributes:
+        softness: How much they are smoothed before, and bent as little as possible by it.
+        spacing: Of nodes, for legs of 0.4 m [m].
+        swing: How much a motion of the trunk counts against the same travel of the wheels.
+    """
+
+    softness: float
+    spacing: float
+    swing: float
+
+
+COARSE = NodeSpacing(1.0, 0.009, 0.3)
+
+
+def refine(
+    q: PathProblem,
+    ends: tuple[StandingPose, StandingPose],
+    s: Floats,
+    body: Floats,
+    spacing: NodeSpacing = COARSE,
+    held: int = 1,
+) -> Refined:
+    """Turn a way into dense, smooth nodes.
+
+    Args:
+        q: The question.
+        ends: Where the way begins and ends.
+        s: (n, 2) arc lengths of front and rear wheel [m].
+        body: (n, 3) trunk poses.
+        spacing: How nodes are laid.
+        held: Nodes at either end that stay where they are.
+    """
+    still_wanted()
+    both = np.array([[*end.wheels, *end.body] for end in ends])
+    laid = _core.NodeSpacing(*spacing)
+    nodes, margins = q.refine_problem.refine(both, np.hstack([s, body]), laid, held)
+    still_wanted()
+    return Refined(
+        np.ascontiguousarray(nodes[:, :2]),
+        np.ascontiguousarray(nodes[:, 2:]),
+        NodeMargins(q.friction, q.robot.torque_limits, **margins),
+    )

@@ -1,0 +1,340 @@
+"""The course of one plan: where it starts and ends, and the wheel samples between."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright import _core
+from stairwright.arguments import MOST_FRICTION
+from stairwright.planning.plan import Limit
+from stairwright.robot import kinematics
+from stairwright.robot.description import Robot
+from stairwright.terrain.profile import Terrain
+from stairwright.terrain.wheel_path import WheelPath
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+End = Literal["start", "goal"]
+
+CORNER = 0.15  # rad; concave corners with a smaller kink need no samples of their own
+_EASY = 0.003  # m; more than the legs' least distance, where the robot stands
+_APART = 5e-5  # m; samples are no closer
+_MOST_CORNERS = 60  # of one lattice; memory grows with the square of its samples
+_LEVEL = 0.01  # m; a stretch whose wheel centre stays within this height is level
+_SLOPE = 0.2  # rad; and nowhere steeper than this
+_FACE = math.atan(MOST_FRICTION)  # rad; no friction holds a wheel on what is steeper
+_NEAR = 0.02  # m; least distance of a standing wheel from an obstacle
+_TRY, _TRIES = 0.01, 200  # m; where else the trunk is tried, and how often either way
+_SHIFTS = 30  # rounds in which wheels are moved until the trunk is where it was asked to be
+_EXACT = 1e-9  # m; then it is there
+_AHEAD = 1e-5  # m; least way of each wheel, for plans need two poses that can be told apart
+
+
+class NoStandingPose(Exception):
+    """There is no place to stand: `kind` is start or goal, `needed` and `available` lengths [m].
+
+    Where no value of the quantity would do, `needed` is None.
+    """
+
+    def __init__(
+        self, kind: End, s: float, needed: float | None, available: float, message: str,
+        quantity: str = "length",
+    ) -> None:  # fmt: skip
+        super().__init__(message)
+        self.limit = (
+            None if needed is None
+            else Limit(needed=needed, available=available, quantity=quantity, unit="m")
+        )  # fmt: skip
+        self.kind, self.s = kind, s
+
+
+@dataclass(frozen=True)
+class StandingPose:
+    """A resting pose: wheel arc lengths (front, rear) and trunk (x, z, pitch)."""
+
+    wheels: tuple[float, float]
+    body: Floats
+
+
+def scale(robot: Robot) -> float:
+    """Size of the robot's legs against those the lengths here were chosen with (0.4 m)."""
+    return min(leg.reach for leg in robot.legs) / 0.4
+
+
+def stretches(path: WheelPath) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Begin and end of the first and of the last level stretch, as arc lengths [m].
+
+    A face at an end of the profile is no ground to stand on: the first stretch begins behind it,
+    the last one ends before it.
+    """
+    low, high = _between_faces(path)
+    begins = path.pieces[:, 1]
+    s = np.unique([low, *begins[(begins > low) & (begins < high)], high])
+    inner = np.concatenate([s[:-1] + 1e-7, s[1:] - 1e-7])
+    inner.sort()
+    z, steep = path.centres(inner)[:, 1], _steepness(path, inner)
+
+    def run(order: Ints) -> float:
+        level = (np.abs(z[order] - z[order[0]]) <= _LEVEL) & (steep[order] <= _SLOPE)
+        stop = len(order) if level.all() else int(np.argmin(level))
+        if stop < 2:  # a slope from the first point on: its own straight piece
+            stop = 2
+        return float(inner[order[stop - 1]])
+
+    count = np.arange(len(inner))
+    return (low, run(count)), (run(count[::-1]), high)
+
+
+def _between_faces(path: WheelPath) -> tuple[float, float]:
+    """Arc lengths between which the curve lies without faces, and edges round them, at its ends."""
+    begins, lengths = path.pieces[:, 1], path.pieces[:, 2]
+    first = np.flatnonzero(_steepness(path, begins + 1e-7) < _FACE)
+    last = np.flatnonzero(_steepness(path, begins + lengths - 1e-7) < _FACE)
+    if len(first) == 0 or len(last) == 0 or last[-1] < first[0]:
+        return 0.0, path.length  # faces alone
+    return float(begins[first[0]]), float(begins[last[-1]] + lengths[last[-1]])
+
+
+def _steepness(path: WheelPath, s: Floats) -> Floats:
+    """Slope (n,) of the ground below the wheel at arc lengths `s` (n,), either way [rad]."""
+    n = path.normals(s)
+    steep: Floats = np.abs(np.arctan2(n[:, 0], n[:, 1]))
+    return steep
+
+
+def rolled(s: Floats) -> Floats:
+    """Mean way (n - 1,) that the wheels roll from one node (n, 2) to the next, either way [m]."""
+    way: Floats = 0.5 * np.abs(np.diff(s, axis=0)).sum(axis=1)
+    return way
+
+
+def standing_height(robot: Robot) -> float:
+    """Height of the trunk's centre above the wheel centres in the nominal pose [m].
+
+    Where the legs cannot give the robot's nominal height it is the nearest that they can.
+    """
+    hips = (robot.hips.front[1], robot.hips.rear[1])
+    ranges = list(zip(_core.RobotModel(robot.native).reach, hips, strict=True))
+    low = max(least + 0.1 * (most - least) - hip for (least, most), hip in ranges)
+    high = min(most - 0.02 * (most - least) - hip for (least, most), hip in ranges)
+    return min(max(robot.nominal_height - robot.wheel.radius, low), max(high, low))
+
+
+def stance(robot: Robot) -> float:
+    """Distance of the wheels that stand on the level [m]: that of the hips, or more where front and
+    rear legs, knees towards each other, would touch so.
+    """
+    hips = robot.hips.front[0] - robot.hips.rear[0]
+    height = standing_height(robot)
+    level = np.zeros(())
+    for more in np.linspace(0.0, 1.2 * min(leg.reach for leg in robot.legs), 49):
+        x = 0.5 * (hips + float(more))
+        q = kinematics.inverse(robot, level, level, level, np.array([[x, -height], [-x, -height]]))
+        if np.isnan(q).any():
+            break
+        if _core.legs_distance(robot.native, np.zeros(3), q) >= _core.LEGS_GAP + _EASY:
+            return hips + float(more)
+    return hips
+
+
+def standing_pose(path: WheelPath, robot: Robot, front: float, rear: float) -> StandingPose:
+    """The nominal pose over wheels at arc lengths `front`, `rear`: trunk along their line."""
+    a, b = path.centres(np.array([front, rear]))
+    slope = math.atan2(a[1] - b[1], a[0] - b[0])
+    # Wheels may stand on unequal heights; the trunk follows half of a slope, all of a small one.
+    pitch = -slope if abs(slope) < 0.35 else -0.8 * slope
+    up = np.array([math.sin(-pitch) * -1.0, math.cos(pitch)])
+    middle = (a + b) / 2 + standing_height(robot) * up
+    return StandingPose((front, rear), np.array([middle[0], middle[1], pitch]))
+
+
+def find_standing_poses(
+    terrain: Terrain, robot: Robot, path: WheelPath
+) -> tuple[StandingPose, StandingPose]:
+    """Start and goal of `terrain`.
+
+    Raises:
+        NoStand: If a stretch is too short for the robot, or the goal is not ahead of the start.
+    """
+    (low, first), (last, high) = stretches(path)
+    gap = stance(robot)
+    behind, ahead = _edge(path, robot, low), _edge(path, robot, high)
+    flat = first >= high - 1e-6
+
+    if flat and terrain.start is None and terrain.goal is None:
+        missing = behind + gap + ahead + 2 * _AHEAD - (high - low)
+        if missing > 0.0:
+            message = "the flat ground is too short for a start and a goal"
+            raise _too_short("goal", path, (low, high), missing, message)
+    if terrain.start is not None:
+        begin = _at(path, robot, terrain.start, "start")
+    elif flat:
+        begin = standing_pose(path, robot, low + behind + gap, low + behind)
+    else:
+        near, far = _settle(path, robot, "start", (low, first), behind)
+        begin = standing_pose(path, robot, first - near, first - far)
+    if terrain.goal is not None:
+        end = _at(path, robot, terrain.goal, "goal")
+    elif flat:
+        end = standing_pose(path, robot, high - ahead, high - ahead - gap)
+    else:
+        near, far = _settle(path, robot, "goal", (last, high), ahead)
+        end = standing_pose(path, robot, last + far, last + near)
+    way = min(b - a for a, b in zip(begin.wheels, end.wheels, strict=True))
+    if way < _AHEAD:
+        message = "the goal is not ahead of the start"
+        raise NoStandingPose("goal", end.wheels[0], _AHEAD, way, message, "way from start to goal")
+    return begin, end
+
+
+def _edge(path: WheelPath, robot: Robot, s: float) -> float:
+    """Distance of a wheel from where the ground ends at arc length `s`, with room for it [m]."""
+    wall = bool((np.abs(path.corners - s) < 1e-6).any())  # knees need room in front of it
+    return 0.15 * scale(robot) if wall else min(robot.wheel.radius, 0.05)
+
+
+def _settle(
+    path: WheelPath, robot: Robot, kind: End, stretch: tuple[float, float], edge: float
+) -> tuple[float, float]:
+    """Distances of both wheels, the nearer first, from where a level stretch meets what follows.
+
+    Args:
+        path: The curve of wheel centres.
+        robot: Its hips are as far apart as the wheels would be.
+        kind: Which end of the course it is.
+        stretch: Arc lengths where it begins and ends [m].
+        edge: Distance of the farther wheel from its outer end where there is room for it [m].
+
+    Raises:
+        NoStand: If the stretch is too short, or the wheels are too large.
+    """
+    s, which = (stretch[1], "first") if kind == "start" else (stretch[0], "last")
+    room = stretch[1] - stretch[0]
+    lead = (0.25 if kind == "start" else 0.15) * scale(robot)
+    gap = stance(robot)
+    least = max(2 * robot.wheel.radius + 0.01, 0.6 * gap)
+    if gap < least:
+        message = "the wheels would touch each other below hips that are so close"
+        raise NoStandingPose(kind, s, least, gap, message, "distance of the hips")
+    near = min(lead, max(_NEAR, room - edge - gap))
+    far = min(near + gap, max(room - edge, room - 0.5 * (room - least)))
+    if far - near < least:
+        close = min(lead, _NEAR)
+        missing = least + close + min(edge, close) - room
+        message = f"the {which} flat stretch is too short"
+        raise _too_short(kind, path, stretch, missing, message)
+    return near, far
+
+
+def _too_short(
+    kind: End, path: WheelPath, stretch: tuple[float, float], missing: float, message: str
+) -> NoStandingPose:
+    """What is said where `missing` m more of a stretch would do: the ground's length, not the way
+    of the wheels, which do not reach into its corners.
+    """
+    x = path.contacts(np.array([stretch[0] + 1e-6, stretch[1] - 1e-6]))[:, 0]
+    corners = path.vertices
+    begin = max(0, int(np.searchsorted(corners[:, 0], x[0], side="right")) - 1)
+    end = min(len(corners) - 1, int(np.searchsorted(corners[:, 0], x[1], side="left")))
+    length = math.dist(corners[begin], corners[end])
+    s = stretch[1] if kind == "start" else stretch[0]
+    return NoStandingPose(kind, s, length + missing + _AHEAD, length, message)
+
+
+def _at(path: WheelPath, robot: Robot, x: float, kind: End) -> StandingPose:
+    """The stand whose trunk is at `x`."""
+    apart = 0.5 * stance(robot)
+    ahead, behind = x + apart, x - apart
+    x0, x1 = path.centres(np.array([0.0, path.length]))[:, 0]
+    if behind < x0 - 1e-9 or ahead > x1 + 1e-9:
+        side = x0 - behind if behind < x0 else ahead - x1
+        gap = ahead - behind
+        raise NoStandingPose(
+            kind, path.at_x(min(max(x, x0), x1)), gap, gap - side, "a wheel leaves the profile"
+        )
+    found = _resting(path, robot, x)
+    if found is None:
+        tries = (x + side * k * _TRY for k in range(1, _TRIES) for side in (-1.0, 1.0))
+        on = (one for one in tries if x0 + apart < one < x1 - apart)
+        near = next((one for one in on if _resting(path, robot, one) is not None), None)
+        message = "the robot cannot stand with its trunk there: the ground is too steep or uneven"
+        raise NoStandingPose(kind, path.at_x(x), near, x, message, "x of the trunk")
+    return found
+
+
+def _resting(path: WheelPath, robot: Robot, x: float) -> StandingPose | None:
+    """The stand whose trunk is at `x`, wheels on the profile, if it is found."""
+    x0, x1 = path.centres(np.array([0.0, path.length]))[:, 0]
+    # On a slope the trunk leans off the wheels' middle: move the wheels until it is where asked.
+    shift, apart = 0.0, 0.5 * stance(robot)
+    for _ in range(_SHIFTS):
+        ahead, behind = x + apart + shift, x - apart + shift
+        s = np.clip([ahead, behind], x0, x1)
+        found = standing_pose(path, robot, path.at_x(s[0]), path.at_x(s[1]))
+        missing = x - float(found.body[0])
+        if abs(missing) < _EXACT:
+            return found
+        shift += missing
+    return None
+
+
+def sample_wheel_places(
+    path: WheelPath, begin: StandingPose, end: StandingPose, step: float, size: float
+) -> Floats:
+    """Arc lengths (n,) of the lattice's wheel positions, rising.
+
+    They are at most `step` apart. In a concave corner a wheel touches two faces, a tenth of a
+    millimetre beside it one: samples at all three make a pose that stands on one face alone come
+    before and after any that leans on both. A saw has more corners than a lattice can hold: there
+    only the sharpest of those that lie close together are sampled, and what lies between is left to
+    the smoothing and the certificate.
+    """
+    s0, s1 = begin.wheels[1], end.wheels[0]
+    marks = [begin.wheels[0], begin.wheels[1], end.wheels[0], end.wheels[1]]
+    apart = 0.0
+    corners = _sharp_corners(path, s0, s1, apart)
+    while len(corners) > _MOST_CORNERS:
+        apart = max(2 * apart, 0.008 * size)
+        corners = _sharp_corners(path, s0, s1, apart)
+    for corner in corners:
+        marks += [corner - _core.BESIDE, corner, corner + _core.BESIDE]
+    fixed = set(marks[:4])
+    kept: list[float] = []
+    for mark in sorted(m for m in marks if s0 <= m <= s1):
+        if kept and mark - kept[-1] < _APART:
+            if mark in fixed and kept[-1] not in fixed:
+                kept[-1] = mark
+            elif mark not in fixed or mark - kept[-1] < 1e-12:
+                continue
+            else:
+                kept.append(mark)
+        else:
+            kept.append(mark)
+    out: list[float] = []
+    for a, b in pairwise(kept):
+        n = max(1, math.ceil((b - a) / step - 1e-6))
+        out.extend(a + (b - a) * k / n for k in range(n))
+    return np.array([*out, kept[-1]])
+
+
+def _sharp_corners(path: WheelPath, s0: float, s1: float, apart: float) -> list[float]:
+    """Concave corners between `s0` and `s1`, none within `apart` of a sharper one [m]."""
+    corners = path.corners[(path.corners > s0) & (path.corners < s1)]
+    kinks = np.array([kink(path, float(corner)) for corner in corners])
+    kept: list[float] = []
+    for i in np.argsort(-kinks, kind="stable"):
+        if kinks[i] > CORNER and all(abs(corners[i] - one) >= apart for one in kept):
+            kept.append(float(corners[i]))
+    return kept
+
+
+def kink(path: WheelPath, corner: float) -> float:
+    """Angle between the two normals at a concave corner [rad]."""
+    a, b = path.normals(np.array([corner - 1e-7, corner + 1e-7]))
+    return math.atan2(a[0] * b[1] - a[1] * b[0], float(a @ b))

@@ -1,0 +1,163 @@
+"""In which order a path is looked for: from one coarse search to finer and more forgiving ones.
+
+1. STRICT: one coarse search with bounds that the finished path keeps. Nine of ten end here.
+2. LOOSE: bounds broken by as much as rounding to the lattice takes; beside it a probe whether even
+   the loosest bounds let a search through. If not, the terrain is impossible.
+3. FINE: the loosest bounds, a finer lattice, and wheels that may roll back; the first path counts.
+
+A path of the first two steps with little CoM margin is compared with what the next step finds.
+Where motors are too weak for the path found, all of it is done again with torques looked at in the
+search; where the user's weights find none, again with the default weights.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import replace
+
+from .lattice.body_lattice import LOOSE, LOOSER, LOOSEST, STRICT
+from .lattice.pieces import Piece, pieces, stops
+from .lattice.search import Place
+from .path_planner import Attempt, Blocked, PathPlanner, Solved
+from .threads import race
+
+THIN = 0.01  # m; CoM margin of a path that is compared with others
+COARSE = 1.7  # lattice refinement of all but the first and the finest attempt
+
+AT_ONCE = Attempt(2.0, STRICT)
+FORGIVING = Attempt(COARSE, LOOSE)
+POSSIBLE = Attempt(COARSE, LOOSEST, roll_back=True, probe=True)
+MOST_FORGIVING = Attempt(COARSE, LOOSEST)
+FINER = Attempt(1.4, LOOSER)
+ROLLING_BACK = Attempt(COARSE, LOOSE, roll_back=True)
+
+Tried = dict[Attempt, Solved | Blocked]
+
+
+def solve(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
+    """The first path that passes the certificate and is not needlessly thin, or what blocks it.
+
+    Args:
+        planner: The problem.
+        pool: Who makes the attempts of one step.
+    """
+    found = _search(planner, pool)
+    if isinstance(found, Solved):
+        return found
+    if found.weak and not planner.torques:
+        held = solve(planner.within_torques, pool)
+        return held if isinstance(held, Solved) else replace(held, weak=held.weak or found.weak)
+    return solve(planner.unweighted, pool) if planner.unweighted else found
+
+
+def quick(planner: PathPlanner) -> Solved | Blocked:
+    """What two attempts lead to: enough to confirm that a changed problem has a plan.
+
+    Where a search comes through and no path follows, a more forgiving one seldom does better.
+    """
+    forgiving = planner.attempt(FORGIVING)
+    if isinstance(forgiving, Solved):
+        return forgiving
+    if forgiving.weak and not planner.torques:
+        return quick(planner.within_torques)
+    if forgiving.opened:
+        return forgiving
+    most = planner.attempt(MOST_FORGIVING)
+    return most if isinstance(most, Solved) or most.opened else forgiving
+
+
+def _search(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
+    """The three steps."""
+    tried: Tried = {}
+    _make(planner, pool, [AT_ONCE], tried)
+    best = _best(tried)
+    if best is not None and best.margin > THIN:
+        return best
+    if best is None:
+        at_once = tried[AT_ONCE]
+        assert isinstance(at_once, Blocked)
+        if at_once.weak and not planner.torques:
+            return at_once
+        obstructions, closed = _obstructions_ahead(planner, at_once, pool)
+        if closed:
+            return Blocked(obstructions[0], False, stops=obstructions)
+    else:
+        obstructions = ()
+
+    _make(planner, pool, [FORGIVING] if best else [FORGIVING, POSSIBLE], tried)
+    best = _best(tried)
+    if best is not None:
+        return best
+    forgiving = tried[FORGIVING]
+    assert isinstance(forgiving, Blocked)
+    if forgiving.weak and not planner.torques:
+        return forgiving
+    if _opened(tried):
+        # Where forgiving bounds let a search through, rolling back would be the same path again.
+        last = [MOST_FORGIVING, FINER] + ([] if forgiving.opened else [ROLLING_BACK])
+        _make(planner, pool, last, tried, first=True)
+        best = _best(tried)
+        if best is not None:
+            return best
+    return _blocked(tried, obstructions or ((forgiving.reached,) if forgiving.reached else ()))
+
+
+def _make(
+    planner: PathPlanner, pool: Executor, attempts: Sequence[Attempt], tried: Tried,
+    first: bool = False,
+) -> None:  # fmt: skip
+    """Make some attempts together; with `first` only until one has a path."""
+    with race(pool, planner.attempt, attempts) as answers:
+        for attempt, answer in zip(attempts, answers, strict=False):
+            tried[attempt] = answer
+            if first and isinstance(answer, Solved):
+                break
+
+
+def _best(tried: Tried) -> Solved | None:
+    """The path with the most CoM margin; of paths alike the one found first."""
+    paths = [answer for answer in tried.values() if isinstance(answer, Solved)]
+    return max(paths, key=lambda path: path.margin, default=None)
+
+
+def _opened(tried: Tried) -> bool:
+    return any(isinstance(answer, Blocked) and answer.opened for answer in tried.values())
+
+
+def _blocked(tried: Tried, obstructions: tuple[Place, ...]) -> Blocked:
+    """What the attempts without a path say together."""
+    blocked = [answer for answer in tried.values() if isinstance(answer, Blocked)]
+    reached = [one for one in blocked if one.reached]
+    found = [one for one in reached if one.opened] or reached  # rather where a bound is broken
+    return Blocked(
+        max((one.reached for one in found if one.reached), key=sum, default=None),
+        _opened(tried),
+        next((one.weak for one in blocked if one.weak), None),
+        obstructions,
+    )
+
+
+def _obstructions_ahead(
+    planner: PathPlanner, blocked: Blocked, pool: Executor
+) -> tuple[tuple[Place, ...], bool]:
+    """What stops loose searches from where a strict one ended; and whether no path leads past it.
+
+    On long terrain that is sooner told than by searches from start to goal.
+    """
+    if blocked.opened or blocked.reached is None:
+        return (), False
+    here = pieces(planner, [blocked.reached])[0]
+    if here.whole:
+        return (), False
+
+    def may_pass(piece: Piece) -> bool:
+        return planner.passes(piece, COARSE, LOOSEST, roll_back=True)
+
+    loose = pool.submit(stops, planner, blocked.reached, LOOSE, COARSE, planner.searches)
+    passable = may_pass(here)
+    found = loose.result()
+    if len(found) < 2 or not passable:
+        return found, bool(found) and not passable
+    with race(pool, may_pass, pieces(planner, found[1:])) as answers:
+        return found, not all(answers)
