@@ -21,7 +21,7 @@ from typing import Any
 from .memory import give_memory_back
 
 LENGTH = struct.Struct("!Q")  # before each message: its length without this
-RESTLESS = 2.0  # s without a task until a worker gives back memory that it does not use
+RESTLESS = 5.0  # s without a task until a worker gives back memory that it does not use
 _PR_SET_PDEATHSIG = 1
 _OOM_SCORE = "500"  # of -1000 (never ended for want of memory) to 1000 (first of all)
 
