@@ -178,17 +178,16 @@ def _on_curve(path: WheelPath, s: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]
 
 def _com(robot: Robot, pose: Any) -> tuple[Any, Any]:
     """The CoM; both legs of a pair move together."""
-    p = robot.planar
-    x, z = p.trunk_mass * pose.trunk[0], p.trunk_mass * pose.trunk[1]
-    for k in range(2):
+    x, z = (robot.body.mass * part for part in pose.trunk)
+    for k, leg in enumerate(robot.legs):
         parts = (
-            (p.thigh_mass, between(pose.hips[k], pose.knees[k], p.thigh_com)),
-            (p.calf_mass, between(pose.knees[k], pose.wheels[k], p.calf_com)),
-            (p.wheel_mass, pose.wheels[k]),
+            (leg.thigh.mass, between(pose.hips[k], pose.knees[k], leg.thigh.com_along[0])),
+            (leg.calf.mass, between(pose.knees[k], pose.wheels[k], leg.calf.com_along[0])),
+            (leg.wheel.mass, pose.wheels[k]),
         )
         for mass, (px, pz) in parts:
-            x, z = x + mass * px, z + mass * pz
-    return x / p.mass, z / p.mass
+            x, z = x + 2 * mass * px, z + 2 * mass * pz
+    return x / robot.mass, z / robot.mass
 
 
 def _points(robot: Robot, shape: Shape, pose: Any) -> list[tuple[Any, Any]]:

@@ -40,6 +40,13 @@ class Model(BaseModel):
         protected_namespaces=(),
     )
 
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """A copy with some fields replaced, unchecked; nothing that was cached comes along."""
+        copied = super().model_copy(update=update, deep=deep)
+        for name in copied.__dict__.keys() - type(self).model_fields.keys():
+            del copied.__dict__[name]
+        return copied
+
     @classmethod
     def trusted(cls, **values: Any) -> Self:
         """A record of values that are our own, unchecked: all its fields, by name, in their order.

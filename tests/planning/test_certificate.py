@@ -10,6 +10,7 @@ import pytest
 import shapely
 from scipy.optimize import linprog
 
+from stairwright.planning.certificate import TOUCH
 from stairwright.planning.equilibrium import STRONGEST, balanced, in_cone, touching
 
 
@@ -69,7 +70,7 @@ def test_touching_faces_are_those_that_shapely_finds():
     vertices = vertices[np.append(True, np.any(np.diff(vertices, axis=0) != 0.0, axis=1))]
     line = shapely.linestrings(vertices)
     centres = rng.uniform([x[0] - 0.1, -0.5], [x[-1] + 0.1, 0.5], (400, 2))
-    points, normals, found = touching(vertices, centres, 0.1)
+    points, normals, found = touching(vertices, centres, 0.1, np.full(400, 0.1))
     distance = shapely.distance(line, shapely.points(centres))
     assert np.array_equal(found[:, 0], distance <= 0.1)
     k = found[:, 0]
@@ -79,15 +80,24 @@ def test_touching_faces_are_those_that_shapely_finds():
 
 def test_a_wheel_in_a_corner_touches_both_faces():
     vertices = np.array([[-1.0, 0.0], [0.0, 0.0], [0.0, 0.3], [1.0, 0.3]])
-    _, normals, found = touching(vertices, np.array([[-0.05, 0.05], [-0.3, 0.05]]), 0.052)
+    centres = np.array([[-0.05, 0.05], [-0.3, 0.05]])
+    _, normals, found = touching(vertices, centres, 0.052, np.full(2, 0.052))
     assert found.tolist() == [[True, True, False], [True, False, False]]
     assert sorted(map(tuple, np.round(normals[0, :2], 9))) == [(-1.0, 0.0), (0.0, 1.0)]
+
+
+def test_a_wheel_a_millimetre_from_a_wall_does_not_lean_on_it():
+    vertices = np.array([[-1.0, 0.0], [0.0, 0.0], [0.0, 0.3], [1.0, 0.3]])
+    centres = np.array([[-0.0501, 0.0501], [-0.051, 0.05]])
+    found = touching(vertices, centres, 0.052, np.full(2, 0.05 + TOUCH))[2]
+    assert found.tolist() == [[True, True, False], [True, False, False]]
 
 
 def test_balance_on_level_ground_ends_at_the_wheels():
     vertices = np.array([[-1.0, 0.0], [1.0, 0.0]])
     wheels = np.tile([[0.2, 0.05], [-0.2, 0.05]], (4, 1, 1))
-    com = np.array([-0.21, -0.19, 0.19, 0.21])
-    assert balanced(vertices, wheels, com, 0.052, 0.5).tolist() == [False, True, True, False]
+    com, second = np.array([-0.21, -0.19, 0.19, 0.21]), np.full((4, 2), 0.05)
+    held = balanced(vertices, wheels, com, 0.052, 0.5, second)
+    assert held.tolist() == [False, True, True, False]
     wheels[:, :, 1] += 0.01  # in the air
-    assert not balanced(vertices, wheels, com, 0.052, 0.5).any()
+    assert not balanced(vertices, wheels, com, 0.052, 0.5, second).any()

@@ -82,7 +82,7 @@ def test_com_is_the_mass_weighted_mean():
     q = np.zeros(4)
     frames = kin.forward(robot, 0.0, 0.0, 0.0, q)
     z = -4 * (0.70 * 0.05 + 0.65 * 0.35 + 0.15 * 0.4) / 11.84
-    assert kin.com(robot, 0.0, 0.0, frames) == pytest.approx([0.0, z])
+    assert kin.com(robot, 0.0, 0.0, 0.0, frames) == pytest.approx([0.0, z])
 
 
 def test_collision_points_lie_on_trunk_and_links():

@@ -60,7 +60,7 @@ def test_planar_states_agree_with_the_planar_kinematics(pitch, q):
     points = kinematics.collision_points(robot, *trunk[0], joints[0])
     for side in (slice(0, 25), slice(25, 50)):
         np.testing.assert_allclose(bodies.points[0, side][:, [0, 2]], points, atol=1e-12)
-    com = kinematics.com(robot, trunk[0, 0], trunk[0, 1], frames)
+    com = kinematics.com(robot, *trunk[0], frames)
     np.testing.assert_allclose(bodies.com[0, [0, 2]], com, atol=1e-12)
     assert bodies.com[0, 1] == pytest.approx(0.0, abs=1e-12)
 

@@ -23,5 +23,5 @@ def test_symbolic_points_equal_numpy(name):
 def test_dimensions_follow_the_description():
     robot = sw.load_robot("a1_wheeled")
     values = dict(zip(symbolic.DIMENSIONS, symbolic.dimensions(robot), strict=True))
-    assert values["thigh"] == robot.thigh.length
+    assert values["front_thigh"] == values["rear_thigh"] == robot.thigh.length
     assert values["half_length"] == robot.trunk.size[0] / 2

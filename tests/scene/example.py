@@ -36,7 +36,7 @@ def example_plan(count: int = 90, robot: str = "a1_wheeled_x", problem: bool = F
     q = kinematics.inverse(machine, middle[:, 0], middle[:, 1], pitch, wheels)
     assert np.isfinite(q).all()
     frames = kinematics.forward(machine, middle[:, 0], middle[:, 1], pitch, q)
-    com = kinematics.com(machine, middle[:, 0], middle[:, 1], frames)
+    com = kinematics.com(machine, middle[:, 0], middle[:, 1], pitch, frames)
     points = kinematics.collision_points(machine, middle[:, 0], middle[:, 1], pitch, q)
     load = machine.mass * 9.81 * (com[:, 0] - contacts[:, 1, 0])
     load = load / (contacts[:, 0, 0] - contacts[:, 1, 0])

@@ -121,14 +121,16 @@ def force_torques(state: Measurement, points: Floats, forces: Floats) -> Floats:
 
 def leg_weight_torques(robot: Robot, state: Measurement) -> Floats:
     """(4, 2) thigh and calf torques that carry the legs' own weight."""
-    thigh = state.hips + robot.thigh.com * (state.knees - state.hips)
-    calf = state.knees + robot.calf.com * (state.wheels - state.knees)
-    parts = ((thigh, robot.thigh.mass), (calf, robot.calf.mass), (state.wheels, robot.wheel.mass))
     torques = np.zeros((4, 2))
-    for place, mass in parts:
-        torques[:, 0] -= mass * GRAVITY * (place - state.hips)[:, 0]
-    for place, mass in parts[1:]:
-        torques[:, 1] -= mass * GRAVITY * (place - state.knees)[:, 0]
+    for k in range(4):
+        leg, hip, knee = robot.legs[k // 2], state.hips[k], state.knees[k]
+        parts = (
+            (state.thighs[k], leg.thigh.mass),
+            (state.calves[k], leg.calf.mass),
+            (state.wheels[k], leg.wheel.mass),
+        )
+        torques[k, 0] = -sum(mass * GRAVITY * (place - hip)[0] for place, mass in parts)
+        torques[k, 1] = -sum(mass * GRAVITY * (place - knee)[0] for place, mass in parts[1:])
     return torques
 
 

@@ -48,8 +48,8 @@ def gains(robot: Robot, settings: ControllerSettings) -> Gains:
     damped at most so that it has its wished rate after one control step: with light rotors more
     would make it swing ever wider.
     """
-    own = robot.gains
-    spin_inertia = robot.wheel.inertia[1] + robot.actuators.wheel.armature
+    own = robot.feedback
+    spin_inertia = min(leg.wheel.inertia[1] + leg.wheel_motor.armature for leg in robot.legs)
 
     def pick(value: float | None, default: float) -> float:
         return default if value is None else value

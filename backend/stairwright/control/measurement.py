@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.robot.description import Robot
+from stairwright.robot.kinematics import lengths, link_com
+from stairwright.robot.legs import Leg
 
 Floats = NDArray[np.float64]
 
@@ -32,6 +34,7 @@ class Measurement:
         heading: of the lateral axis about z, so that it has no singularity at 90 degrees of pitch.
         yaw_rate: about the world's z axis [rad/s].
         hips, knees, wheels: (4, 2) x, z.
+        thighs, calves: (4, 2) x, z of their mass centres.
         com: (2,) centre of mass of the whole robot.
         com_velocity: (2,).
         inertia: of the whole robot about its centre of mass, about y [kg m^2].
@@ -52,6 +55,8 @@ class Measurement:
     hips: Floats
     knees: Floats
     wheels: Floats
+    thighs: Floats
+    calves: Floats
     com: Floats
     com_velocity: Floats
     inertia: float
@@ -61,6 +66,12 @@ class Measurement:
     rolling_rates: Floats
 
 
+def _legs(robot: Robot) -> tuple[Leg, Leg, Leg, Leg]:
+    """In the order FL, FR, RL, RR."""
+    front, rear = robot.legs
+    return front, front, rear, rear
+
+
 def measure(robot: Robot, qpos: Floats, qvel: Floats) -> Measurement:
     """The planar state of MuJoCo's `qpos` (19,) and `qvel` (18,), or of their measurements."""
     turn = rotation(qpos[3:7])
@@ -68,24 +79,32 @@ def measure(robot: Robot, qpos: Floats, qvel: Floats) -> Measurement:
     angles, rates = qpos[7:].reshape(4, 3), qvel[6:].reshape(4, 3)
     thigh, calf = angles[:, 0], angles[:, 0] + angles[:, 1]
     thigh_rate, calf_rate = rates[:, 0], rates[:, 0] + rates[:, 1]
-    hips = np.array([robot.hips.front, robot.hips.front, robot.hips.rear, robot.hips.rear])
+    hips = np.array([leg.hip for leg in _legs(robot)])
     side = robot.hips.half_track * np.array([1.0, -1.0, 1.0, -1.0])
 
     # Points and their velocities in the trunk frame, (4, 2) x, z.
     upper, lower = _link(thigh), _link(calf)
-    knees = hips + robot.thigh.length * upper
-    wheels = knees + robot.calf.length * lower
-    knee_v = robot.thigh.length * _link_rate(thigh, thigh_rate)
-    wheel_v = knee_v + robot.calf.length * _link_rate(calf, calf_rate)
-    a, b = robot.thigh.com, robot.calf.com
-    masses = np.array([robot.thigh.mass, robot.calf.mass, robot.wheel.mass])[:, None, None]
-    places = np.stack([hips + a * (knees - hips), knees + b * (wheels - knees), wheels])
-    speeds = np.stack([a * knee_v, knee_v + b * (wheel_v - knee_v), wheel_v])
-    com = (masses * places).sum(axis=(0, 1)) / robot.mass
-    com_v = (masses * speeds).sum(axis=(0, 1)) / robot.mass
-    inertia = (masses[..., 0] * ((places - com) ** 2).sum(axis=-1)).sum()
-    inertia += robot.trunk.mass * (com @ com) + robot.trunk.inertia[1]
-    inertia += 4 * (robot.thigh.inertia[1] + robot.calf.inertia[1] + robot.wheel.inertia[1])
+    first, second = (np.repeat(pair, 2)[:, None] for pair in lengths(robot))
+    knees = hips + first * upper
+    wheels = knees + second * lower
+    knee_v = first * _link_rate(thigh, thigh_rate)
+    wheel_v = knee_v + second * _link_rate(calf, calf_rate)
+    body = robot.body
+    own = np.array([body.com[0], body.com[2]])
+    legs = _legs(robot)
+    thighs = np.array([link_com(leg.thigh, hips[k], knees[k]) for k, leg in enumerate(legs)])
+    calves = np.array([link_com(leg.calf, knees[k], wheels[k]) for k, leg in enumerate(legs)])
+    masses, places, speeds, inertia = [body.mass], [own], [np.zeros(2)], body.inertia[1]
+    for k, leg in enumerate(legs):
+        masses += [leg.thigh.mass, leg.calf.mass, leg.wheel.mass]
+        places += [thighs[k], calves[k], wheels[k]]
+        speeds += [  # of a point of a link: as its place, a linear map of where the joints are
+            link_com(leg.thigh, np.zeros(2), knee_v[k]), link_com(leg.calf, knee_v[k], wheel_v[k]),
+            wheel_v[k],
+        ]  # fmt: skip
+        inertia += sum(part.inertia[1] for part in (leg.thigh, leg.calf, leg.wheel))
+    com, com_v = (np.average(rows, axis=0, weights=masses) for rows in (places, speeds))
+    inertia += float(np.array(masses) @ ((np.array(places) - com) ** 2).sum(axis=-1))
 
     def world(points: Floats) -> Floats:
         solid = np.column_stack([points[:, 0], side, points[:, 1]])
@@ -108,6 +127,8 @@ def measure(robot: Robot, qpos: Floats, qvel: Floats) -> Measurement:
         hips=world(hips),
         knees=world(knees),
         wheels=world(wheels),
+        thighs=world(thighs),
+        calves=world(calves),
         com=(qpos[:3] + turn @ com_solid)[[0, 2]],
         com_velocity=com_velocity[[0, 2]],
         inertia=float(inertia),

@@ -60,7 +60,7 @@ def plan_arrays(plan: Plan) -> dict[str, Floats]:
         InputError: If poses have other collision points than the robot.
     """
     n = len(plan.poses)
-    points = plan.robot_description.collision_points.count
+    points = plan.robot_description.points.count
     rows: dict[str, tuple[list[object], tuple[int, ...]]] = {
         "progress": ([p.progress for p in plan.poses], ()),
         "time": ([p.time for p in plan.poses], ()),

@@ -93,18 +93,23 @@ def _run(rollout: Rollout) -> dict[str, Any]:
 def _robot(robot: Robot) -> dict[str, Any]:
     return {
         "name": robot.name,
-        "trunk": robot.trunk.size,
+        "trunk": [{"points": piece.points, "width": piece.width} for piece in robot.body.outline],
         "hips": {"front": robot.hips.front, "rear": robot.hips.rear},
         "half_track": robot.hips.half_track,
-        "thigh": {"length": robot.thigh.length, "radius": robot.thigh.radius},
-        "calf": {"length": robot.calf.length, "radius": robot.calf.radius},
+        "legs": [
+            {
+                part: {"length": link.length, "capsules": link.capsules}
+                for part, link in (("thigh", leg.thigh), ("calf", leg.calf))
+            }
+            for leg in robot.legs
+        ],
         "wheel": {"radius": robot.wheel.radius, "width": robot.wheel.width},
     }
 
 
 def _metrics(rollout: Rollout) -> list[tuple[str, str]]:
     m = rollout.metrics
-    limit = rollout.robot_description.actuators.leg.torque
+    limit = float(rollout.robot_description.torque_limits[:, :2].max())
     return [
         ("Duration", f"{m.duration:.1f} s"),
         ("Pitch error max", f"{math.degrees(m.pitch_error_max):.1f}°"),

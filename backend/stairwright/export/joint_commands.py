@@ -82,8 +82,8 @@ def joint_commands(plan: Plan, rate: float) -> JointCommands:
 
 def _limits(robot: Robot) -> Limits:
     """Limits of the path's channels: leg joints, wheels and progress have some."""
-    leg = min(LEG_SPEED, SPEED_SHARE * robot.actuators.leg.speed)
-    wheel = SPEED_SHARE * robot.actuators.wheel.speed
+    leg = min(LEG_SPEED, SPEED_SHARE * robot.leg_speed)
+    wheel = SPEED_SHARE * robot.wheel_speed
     none = np.full(_LIMITED + 6, np.inf)
     speed, acceleration, jerk, tolerance = none.copy(), none.copy(), none.copy(), none.copy()
     speed[_LEGS], acceleration[_LEGS], jerk[_LEGS] = leg, LEG_ACCELERATION, LEG_JERK
@@ -106,5 +106,5 @@ def _mirrored(made: Retimed) -> Floats:
 
 
 def _bounded(robot: Robot, torques: Floats) -> Floats:
-    most = np.tile([robot.actuators.leg.torque] * 2 + [robot.actuators.wheel.torque], 4)
+    most = np.repeat(robot.torque_limits, 2, axis=0).ravel()
     return np.clip(torques, -most, most)

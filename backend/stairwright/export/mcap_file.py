@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from stairwright.planning.plan import Plan
 from stairwright.robot import spatial
 from stairwright.robot.description import JOINTS, LEGS, Robot
+from stairwright.robot.kinematics import lengths
 from stairwright.simulation.result import Rollout
 from stairwright.terrain.profile import Terrain
 
@@ -114,7 +115,8 @@ def _transforms(
     offsets = np.zeros((len(time), 13, 3))
     offsets[:, 0] = position
     offsets[:, 1::3] = spatial.hip_offsets(robot)
-    offsets[:, 2::3, 2], offsets[:, 3::3, 2] = -robot.thigh.length, -robot.calf.length
+    upper, lower = lengths(robot)
+    offsets[:, 2::3, 2], offsets[:, 3::3, 2] = -np.repeat(upper, 2), -np.repeat(lower, 2)
     turns = np.concatenate([quaternion[:, None], spatial.quaternion_y(np.asarray(q))], axis=1)
     parents = [p for leg in LEGS for p in (TRUNK, f"{leg}_thigh", f"{leg}_calf")]
     frames = [(WORLD, TRUNK), *zip(parents, JOINTS, strict=True)]

@@ -72,11 +72,11 @@ def robot_mjcf(robot: Robot) -> bytes:
 def _make_servos(spec: Any, robot: Robot) -> Floats:
     """Turn the motors into servos; returns their stiffnesses (12,) [Nm/rad]."""
     stiffness = []
-    for name in JOINTS:
+    gains = robot.feedback
+    for name, motor in zip(JOINTS, robot.motors, strict=True):
         wheel = name.endswith("wheel")
-        motor = robot.actuators.wheel if wheel else robot.actuators.leg
-        kp = WHEEL_STIFFNESS if wheel else STIFFER * robot.gains.joint_stiffness
-        kv = WHEEL_DAMPING if wheel else STIFFER**0.5 * robot.gains.joint_damping
+        kp = WHEEL_STIFFNESS if wheel else STIFFER * gains.joint_stiffness
+        kv = WHEEL_DAMPING if wheel else STIFFER**0.5 * gains.joint_damping
         actuator = spec.actuator(name)
         actuator.biastype = mujoco.mjtBias.mjBIAS_AFFINE
         actuator.gainprm[0] = kp

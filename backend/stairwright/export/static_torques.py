@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from stairwright.robot import spatial
 from stairwright.robot.description import Robot
+from stairwright.robot.kinematics import link_com
 
 Floats = NDArray[np.float64]
 GRAVITY = 9.81  # m/s^2
@@ -38,10 +39,11 @@ def static_torques(
         forward = np.stack([normal[:, 1], -normal[:, 0]], axis=1)
         along, across = (forces[:, leg // 2] / 2).T
         force = along[:, None] * forward + across[:, None] * normal
+        own = robot.legs[leg // 2]
         loads = [
-            (wheel, robot.wheel.mass),
-            (knee + robot.calf.com * (wheel - knee), robot.calf.mass),
-            (hip + robot.thigh.com * (knee - hip), robot.thigh.mass),
+            (wheel, own.wheel.mass),
+            (link_com(own.calf, knee, wheel), own.calf.mass),
+            (link_com(own.thigh, hip, knee), own.thigh.mass),
         ]
         for j, (joint, carried) in enumerate(((hip, 3), (knee, 2), (wheel, 1))):
             lever = contact - joint

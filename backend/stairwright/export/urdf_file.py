@@ -12,8 +12,12 @@ import math
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
+import numpy as np
+
 from stairwright.planning.plan import Plan
-from stairwright.robot.description import JOINTS, LEGS, Actuator, Link, Robot
+from stairwright.robot.description import JOINTS, LEGS, Robot
+from stairwright.robot.legs import LinkForm
+from stairwright.robot.parts import Actuator, Outline
 from stairwright.robot.spatial import hip_offsets
 
 from .columns import FRAMES, UNITS
@@ -27,6 +31,7 @@ _COLOURS = {
     "wheel": (0.10, 0.10, 0.12),
 }
 Vector = Sequence[float]
+Shape = tuple[Vector, float, ET.Element]  # place [m], turn about y [rad], geometry
 
 
 def plan_urdf(plan: Plan) -> bytes:
@@ -41,9 +46,9 @@ def robot_urdf(robot: Robot) -> bytes:
     for part, colour in _COLOURS.items():
         material = ET.SubElement(root, "material", name=part)
         ET.SubElement(material, "color", rgba=_numbers((*colour, 1.0)))
-    trunk, centre = robot.trunk, (0.0, 0.0, 0.0)
-    box = _geometry("box", size=_numbers(trunk.size))
-    _link(root, TRUNK, "trunk", trunk.mass, trunk.inertia, centre, [(centre, box)])
+    body = robot.body
+    shapes = [_box_round(piece) for piece in body.outline]
+    _link(root, TRUNK, "trunk", body.mass, body.inertia, body.com, shapes)
     for frame in FIXED_FRAMES:
         ET.SubElement(root, "link", name=frame)
         _joint(root, f"{frame}_fixed", "fixed", TRUNK, frame, (0, 0, 0))
@@ -54,29 +59,43 @@ def robot_urdf(robot: Robot) -> bytes:
 
 
 def _leg(root: ET.Element, robot: Robot, leg: str, hip: Vector) -> None:
-    limits = robot.joints.front if leg[0] == "F" else robot.joints.rear
+    own = robot.legs[0 if leg[0] == "F" else 1]
     named = dict(zip(JOINTS, robot.ros_joints, strict=True))
     parent, place = TRUNK, hip
     for part in ("thigh", "calf"):
-        link, name = getattr(robot, part), f"{leg}_{part}"
-        shapes = _capsule(link)
-        _link(root, name, part, link.mass, link.inertia, (0, 0, -link.com * link.length), shapes)
+        link: LinkForm = getattr(own, part)
+        name, (x, z) = f"{leg}_{part}", link.com
+        shapes = [shape for capsule in link.capsules for shape in _capsule(*capsule)]
+        _link(root, name, part, link.mass, link.inertia, (x, 0, z), shapes)
         joint = _joint(root, named[name], "revolute", parent, name, place)
-        _drive(joint, robot.actuators.leg, getattr(limits, part))
+        _drive(joint, getattr(own, f"{part}_motor"), getattr(own.limits, part))
         parent, place = name, (0.0, 0.0, -link.length)
-    wheel, name = robot.wheel, f"{leg}_wheel"
+    wheel, name = own.wheel, f"{leg}_wheel"
     disc = _geometry("cylinder", radius=_number(wheel.radius), length=_number(wheel.width))
-    _link(root, name, "wheel", wheel.mass, wheel.inertia, (0, 0, 0), [((0, 0, 0), disc)])
+    _link(root, name, "wheel", wheel.mass, wheel.inertia, (0, 0, 0), [((0, 0, 0), 0.0, disc)])
     joint = _joint(root, named[name], "continuous", parent, name, place)
-    _drive(joint, robot.actuators.wheel, None)
+    _drive(joint, own.wheel_motor, None)
 
 
-def _capsule(link: Link) -> list[tuple[Vector, ET.Element]]:
-    """A cylinder along the link and a ball at each end."""
-    radius = _number(link.radius)
-    tube = _geometry("cylinder", radius=radius, length=_number(link.length))
-    balls = [((0.0, 0.0, z), _geometry("sphere", radius=radius)) for z in (0.0, -link.length)]
-    return [((0.0, 0.0, -link.length / 2), tube), *balls]
+def _capsule(start: tuple[float, float], end: tuple[float, float], radius: float) -> list[Shape]:
+    """A cylinder along the capsule and a ball at each end."""
+    (ax, az), (bx, bz) = start, end
+    length = _number(math.hypot(bx - ax, bz - az))
+    tube = _geometry("cylinder", radius=_number(radius), length=length)
+    turn = math.atan2(ax - bx, az - bz)
+    balls: list[Shape] = [
+        ((x, 0.0, z), 0.0, _geometry("sphere", radius=_number(radius))) for x, z in (start, end)
+    ]
+    return [(((ax + bx) / 2, 0.0, (az + bz) / 2), turn, tube), *balls]
+
+
+def _box_round(piece: Outline) -> Shape:
+    """The box round a piece of the trunk: URDF has no polygons but in mesh files."""
+    points = np.array(piece.points)
+    low, high = points.min(axis=0), points.max(axis=0)
+    x, z = ((low + high) / 2).tolist()
+    length, height = (high - low).tolist()
+    return (x, 0.0, z), 0.0, _geometry("box", size=_numbers((length, piece.width, height)))
 
 
 def _link(
@@ -86,7 +105,7 @@ def _link(
     mass: float,
     inertia: Vector,
     centre: Vector,
-    shapes: Sequence[tuple[Vector, ET.Element]],
+    shapes: Sequence[Shape],
 ) -> None:
     link = ET.SubElement(root, "link", name=name)
     inertial = ET.SubElement(link, "inertial")
@@ -95,11 +114,11 @@ def _link(
     diagonal = dict(zip(("ixx", "iyy", "izz"), map(_number, inertia), strict=True))
     ET.SubElement(inertial, "inertia", diagonal, ixy="0", ixz="0", iyz="0")
     # Cylinders of URDF stand along z; a wheel's axis is y.
-    turn = _numbers((math.pi / 2, 0, 0)) if part == "wheel" else "0 0 0"
+    aside = math.pi / 2 if part == "wheel" else 0.0
     for kind in ("visual", "collision"):
-        for place, geometry in shapes:
+        for place, turn, geometry in shapes:
             shape = ET.SubElement(link, kind)
-            ET.SubElement(shape, "origin", xyz=_numbers(place), rpy=turn)
+            ET.SubElement(shape, "origin", xyz=_numbers(place), rpy=_numbers((aside, turn, 0)))
             shape.append(geometry)
             if kind == "visual":
                 ET.SubElement(shape, "material", name=part)
@@ -131,10 +150,10 @@ def _geometry(kind: str, **sizes: str) -> ET.Element:
 
 
 def _about(robot: Robot) -> str:
-    rotors = (
-        f"rotor inertia [kg m^2]: legs {robot.actuators.leg.armature!r}, "
-        f"wheels {robot.actuators.wheel.armature!r}"
-    )
+    inertias = [
+        f"{name} {motor.armature!r}" for name, motor in zip(JOINTS, robot.motors, strict=True)
+    ]
+    rotors = f"rotor inertia [kg m^2]: {', '.join(inertias)}"
     return f" robot_hash: {robot.hash}; units: {UNITS}; frames: {FRAMES}; {rotors} "
 
 

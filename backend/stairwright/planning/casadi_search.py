@@ -49,7 +49,7 @@ class CasadiSearch(PoseSearch):
     ) -> None:
         super().__init__(robot, path, friction, weights)
         self.repeats = not extra  # the user's terms may depend on the place
-        points = robot.collision_points
+        points = robot.points
         layout = Layout(tuple(points.trunk), tuple(points.thigh), tuple(points.calf))
         self._solvers = {
             n: pose_solver(layout, weights.exact_links, n, extra, first) for n in SIZES
@@ -159,7 +159,7 @@ class CasadiSearch(PoseSearch):
         x = solution.x
         x_c, z_c, pitch = (np.asarray(value) for value in x[:3])
         frames = kinematics.forward(self.robot, x_c, z_c, pitch, x[3:7])
-        com = float(kinematics.com(self.robot, x_c, z_c, frames)[0])
+        com = float(kinematics.com(self.robot, x_c, z_c, pitch, frames)[0])
         low, high = self._interval(x[7], x[8])
         # Just after the first pose the face alone carries the front wheel; on the way down it still
         # does just before the second one, and there the CoM has the least time to move on.

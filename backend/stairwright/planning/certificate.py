@@ -18,7 +18,7 @@ from stairwright.errors import InputError
 from stairwright.robot import kinematics as kin
 
 from .distances import Distances
-from .equilibrium import balanced
+from .equilibrium import balanced, touching
 from .motion import Motion, Samples, sampled
 from .plan import Certificate, Check, Plan
 
@@ -26,6 +26,7 @@ Floats = NDArray[np.float64]
 
 WHEEL_GAP = 0.002  # m; a wheel this near to the ground touches it
 WHEEL_SINK = 0.001  # m
+TOUCH = 1.01e-4  # m; a second face no farther from a wheel is touched truly, not just nearly
 LEGS_GAP = 0.005  # m between front and rear leg
 _JOINT_STEP = 0.35  # rad between two poses
 
@@ -117,12 +118,31 @@ class _Checker:
         slack: Floats = np.minimum(joints - low, high - joints).min(axis=1)
         return slack
 
+    def _second_faces(self) -> Floats:
+        """How near a second face must be to a wheel's centre (n, 2) for balance to lean on it [m].
+
+        Only what is truly touched counts: a wheel nearly in a corner is balanced on the one face
+        that it is on. Where it stays in a corner from one pose to the next, interpolated joints
+        take it up to a millimetre out of it in between; it touches both faces all the same.
+        """
+        samples, motion = self.samples, self.samples.motion
+        r = motion.robot.wheel.radius
+        wheels, ends = samples.frames.wheels, samples.at_pose
+        touch = np.full(wheels[ends].shape[0] * 2, r + TOUCH)
+        centres = wheels[ends].reshape(-1, 2)
+        wedged = touching(motion.vertices, centres, r + TOUCH, touch)[2][:, 1].reshape(-1, 2)
+        moved = np.linalg.norm(np.diff(wheels[ends], axis=0), axis=2)
+        stays = wedged[:-1] & wedged[1:] & (moved <= 2 * TOUCH)
+        out = np.full(wheels.shape[:2], r + TOUCH)
+        out[~ends] = np.where(stays[samples.interval[~ends[:-1]]], r + WHEEL_GAP, r + TOUCH)
+        return out
+
     def _balance(self) -> Check:
         """Whether forces inside the friction cones of all touching faces balance the weight."""
         motion = self.samples.motion
         failed = ~balanced(
             motion.vertices, self.samples.frames.wheels, self.samples.com[:, 0],
-            motion.robot.wheel.radius + WHEEL_GAP, motion.friction,
+            motion.robot.wheel.radius + WHEEL_GAP, motion.friction, self._second_faces(),
         )  # fmt: skip
         k = int(np.argmax(failed))
         return Check(

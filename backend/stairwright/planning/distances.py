@@ -51,30 +51,45 @@ class Distances:
 
     def trunk(self) -> Floats:
         """Of the trunk from the ground; see `_clearances`."""
-        size = np.array([self.robot.trunk.size[0], self.robot.trunk.size[2]]) / 2
-        corners = np.array([[1, 1], [1, -1], [-1, -1], [-1, 1], [1, 1]]) * size
-        box = self.body[:, None, :2] + kin.rotate(self.body[:, 2, None], corners)
-        return self._clearances([(box, 0.0, self.body[:, :2])], shapely.polygons)
+        parts = []
+        for piece in self.robot.body.outline:
+            corners = np.array([*piece.points, piece.points[0]])
+            placed = self.body[:, None, :2] + kin.rotate(self.body[:, 2, None], corners)
+            parts.append((placed, 0.0, placed[:, :-1].mean(axis=1)))
+        return self._clearances(parts, shapely.polygons)
 
     def links(self) -> Floats:
         """Of thighs and calves from the ground; see `_clearances`."""
-        f, robot = self.samples.frames, self.robot
         parts = [
-            (np.stack([a[:, leg], b[:, leg]], axis=1), link.radius, a[:, leg])
-            for a, b, link in ((f.knees, f.wheels, robot.calf), (f.hips, f.knees, robot.thigh))
+            (line, radius, line[:, 0])
             for leg in range(2)
+            for line, radius in reversed(self._capsules(leg))
         ]
         return self._clearances(parts, shapely.linestrings)
 
+    def _capsules(self, leg: int) -> list[tuple[Floats, float]]:
+        """Axes (n, 2, 2) and radii of the capsules of a leg's thigh and calf [m]."""
+        f, own = self.samples.frames, self.robot.legs[leg]
+        out = []
+        for link, upper, lower in ((own.thigh, f.hips, f.knees), (own.calf, f.knees, f.wheels)):
+            down = (lower[:, leg] - upper[:, leg]) / link.length
+            ahead = np.stack([-down[:, 1], down[:, 0]], axis=1)
+            for start, end, radius in link.capsules:
+                ends = [upper[:, leg] + x * ahead - z * down for x, z in (start, end)]
+                out.append((np.stack(ends, axis=1), radius))
+        return out
+
     def legs(self) -> Floats:
         """Between links and wheels of the front and the rear leg, exact where it may be least."""
-        f, robot = self.samples.frames, self.robot
-        thigh, calf, wheel = robot.thigh.radius, robot.calf.radius, robot.wheel.radius
-        radii = (thigh, max(thigh, calf), max(calf, wheel))
-        joints = list(zip((f.hips, f.knees, f.wheels), radii, strict=True))
-        low = reduce(np.minimum, [at - r for at, r in joints])
-        high = reduce(np.maximum, [at + r for at, r in joints])
-        between = np.maximum(low[:, 0] - high[:, 1], low[:, 1] - high[:, 0])
+        radius, wheels = self.robot.wheel.radius, self.samples.frames.wheels
+        boxes = []
+        for leg in range(2):
+            ends = [(line[:, k], r) for line, r in self._capsules(leg) for k in range(2)]
+            ends.append((wheels[:, leg], radius))
+            low = reduce(np.minimum, [at - r for at, r in ends])
+            boxes.append((low, reduce(np.maximum, [at + r for at, r in ends])))
+        (low, high), (rear_low, rear_high) = boxes
+        between = np.maximum(low - rear_high, rear_low - high)
         gap: Floats = np.hypot(*np.maximum(between, 0.0).T)
         first = np.array([np.argmin(gap)])
         near = np.flatnonzero(gap <= max(self._between_legs(first)[0], 0.0))
@@ -144,7 +159,7 @@ class Distances:
     def _ground_near(self, x: Floats) -> shapely.Geometry:
         """The piece of terrain that robots may meet whose trunks are at `x`."""
         robot = self.robot
-        reach = 1.0 + robot.thigh.length + robot.calf.length + robot.trunk.size[0]
+        reach = 1.0 + max(leg.reach for leg in robot.legs) + 2 * robot.body.span
         places = self.vertices[:, 0]
         a = max(0, int(np.searchsorted(places, x.min() - reach, side="left")) - 1)
         b = min(len(places), int(np.searchsorted(places, x.max() + reach, side="right")) + 1)
@@ -163,17 +178,12 @@ class Distances:
 
     def _between_legs(self, samples: Ints) -> Floats:
         """Least distance between the links and wheels of both legs at some samples (n,)."""
-        f, robot = self.samples.frames, self.robot
-        parts = []
-        for leg in range(2):
-            hip, knee, wheel = (one[samples, leg] for one in (f.hips, f.knees, f.wheels))
-            parts.append(
-                [
-                    (shapely.linestrings(np.stack([hip, knee], axis=1)), robot.thigh.radius),
-                    (shapely.linestrings(np.stack([knee, wheel], axis=1)), robot.calf.radius),
-                    (shapely.points(wheel), robot.wheel.radius),
-                ]
-            )
+        wheels = self.samples.frames.wheels[samples]
+        parts = [
+            [(shapely.linestrings(line[samples]), radius) for line, radius in self._capsules(leg)]
+            + [(shapely.points(wheels[:, leg]), self.robot.wheel.radius)]
+            for leg in range(2)
+        ]
         gaps = [shapely.distance(a, b) - ra - rb for a, ra in parts[0] for b, rb in parts[1]]
         least: Floats = np.min(gaps, axis=0)
         return least

@@ -20,21 +20,24 @@ _ALIKE = 0.9999  # cosine between normals of what counts as one face
 _BLOCK = 20_000  # segments times samples handled at once
 
 
-def balanced(vertices: Floats, wheels: Floats, com: Floats, reach: float, friction: float) -> Flags:
+def balanced(
+    vertices: Floats, wheels: Floats, com: Floats, reach: float, friction: float, further: Floats
+) -> Flags:
     """Whether forces inside the friction cones of all touching faces balance the weight.
 
     Args:
         vertices: (m, 2) profile [m].
         wheels: (n, 2, 2) wheel centres, front and rear [m].
         com: (n,) x of the centre of mass [m].
-        reach: A face within this distance of a wheel's centre is touched [m].
+        reach: The nearest face within this distance of a wheel's centre is touched [m].
         friction: Coulomb friction.
+        further: (n, 2) any other face within this distance is touched too [m].
 
     Returns:
         (n,) flags.
     """
     n = len(wheels)
-    points, normals, found = touching(vertices, wheels.reshape(-1, 2), reach)
+    points, normals, found = touching(vertices, wheels.reshape(-1, 2), reach, further.ravel())
     # Moments are taken about the CoM: what is asked for is then (0, 1, 0) everywhere.
     points = points.reshape(n, 2 * _FACES, 2) - np.stack([com, np.zeros(n)], axis=1)[:, None]
     normals, found = normals.reshape(n, 2 * _FACES, 2), found.reshape(n, 2 * _FACES)
@@ -50,8 +53,12 @@ def balanced(vertices: Floats, wheels: Floats, com: Floats, reach: float, fricti
     return out
 
 
-def touching(vertices: Floats, centres: Floats, reach: float) -> tuple[Floats, Floats, Flags]:
+def touching(
+    vertices: Floats, centres: Floats, reach: float, further: Floats
+) -> tuple[Floats, Floats, Flags]:
     """Where wheels at `centres` (n, 2) touch the profile, one contact per face, nearest first.
+
+    The nearest face counts within `reach` of the centre, any other within `further` (n,) [m].
 
     Returns:
         (n, 3, 2) points, (n, 3, 2) unit normals towards the centre, (n, 3) whether there is one.
@@ -67,7 +74,7 @@ def touching(vertices: Floats, centres: Floats, reach: float) -> tuple[Floats, F
         fits = np.searchsorted(widest * np.arange(1, len(widest) + 1), _BLOCK, side="right")
         part = slice(begin, begin + max(1, int(fits)))
         points[part], normals[part], found[part] = _nearest_faces(
-            vertices, centres[part], first[part], last[part], reach
+            vertices, centres[part], first[part], last[part], reach, further[part]
         )
         begin = part.stop
     return points, normals, found
@@ -75,7 +82,7 @@ def touching(vertices: Floats, centres: Floats, reach: float) -> tuple[Floats, F
 
 def _nearest_faces(
     vertices: Floats, centres: Floats, first: NDArray[np.int64], last: NDArray[np.int64],
-    reach: float,
+    reach: float, further: Floats,
 ) -> tuple[Floats, Floats, Flags]:  # fmt: skip
     """`touching` for samples whose segments `first` to `last` (excluded) may be near."""
     n = len(centres)
@@ -93,7 +100,7 @@ def _nearest_faces(
     found, rows = np.zeros((n, _FACES), bool), np.arange(n)
     for face in range(_FACES):
         nearest = np.argmin(distance, axis=1)
-        touches = distance[rows, nearest] <= reach
+        touches = distance[rows, nearest] <= (further if face else reach)
         if not touches.any():
             break
         found[:, face] = touches

@@ -215,7 +215,8 @@ def _moves(com: float, shift: float, way: Floats) -> list[float]:
 
 def _com(robot: Robot, trunk: Floats, q: Floats) -> Floats:
     frames = kinematics.forward(robot, trunk[:, 0], trunk[:, 1], trunk[:, 2], q)
-    return kinematics.com(robot, trunk[:, 0], trunk[:, 1], frames)
+    x, z, pitch = trunk.T
+    return kinematics.com(robot, x, z, pitch, frames)
 
 
 def _stretch(time: Floats, q: Floats, joint_rate: float | None) -> Floats:

@@ -67,6 +67,7 @@ class Samples:
         motion: With a pose for each sample.
         slack: (n,) the most that a point of the robot moves halfway to the next samples [m].
         interval: (n - 1,) between which poses the motion after a sample lies.
+        at_pose: (n,) which of them are poses.
         frames: Hips, knees and wheels.
         com: (n, 2) centre of mass [m].
     """
@@ -78,15 +79,17 @@ class Samples:
         self.motion = motion
         self.slack = np.zeros(n) if slack is None else slack
         self.interval = np.arange(n - 1) if interval is None else interval
+        self.at_pose = np.append(np.diff(self.interval, prepend=-1) > 0, True)
         self.frames = motion.frames
-        self.com = kin.com(motion.robot, motion.body[:, 0], motion.body[:, 1], self.frames)
+        x, z, pitch = motion.body.T
+        self.com = kin.com(motion.robot, x, z, pitch, self.frames)
 
 
 def sampled(motion: Motion, closer: NDArray[np.bool_] | None = None) -> Samples:
     """Samples of a motion of two poses or more; more of them where `closer` (poses - 1,)."""
     frames = motion.frames
     x, z, pitch = motion.body.T
-    span = np.hypot(*motion.robot.trunk.size[::2]) / 2
+    span = motion.robot.body.span
     moved = [np.hypot(np.diff(x), np.diff(z)) + span * np.abs(np.diff(pitch))]
     for points in (frames.hips, frames.knees, frames.wheels):
         moved += [np.hypot(*np.diff(points[:, leg], axis=0).T) for leg in range(2)]

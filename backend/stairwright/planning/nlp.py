@@ -143,20 +143,22 @@ def _link_gaps(pose: Skeleton, shape: Shape, block: CellBlock) -> list[Any]:
     gaps = [box_gap(pose, shape, block)]
     for leg in range(2):
         hip, knee, wheel = pose.hips[leg], pose.knees[leg], pose.wheels[leg]
-        gaps.append(link_gap(hip, knee, shape.thigh, block) - shape.thigh_radius)
-        gaps.append(link_gap(knee, wheel, shape.calf, block) - shape.calf_radius)
+        gaps.append(link_gap(hip, knee, shape.thigh[leg], block) - shape.thigh_radius[leg])
+        gaps.append(link_gap(knee, wheel, shape.calf[leg], block) - shape.calf_radius[leg])
     return gaps
 
 
 def _self_gaps(pose: Skeleton, shape: Shape) -> list[Any]:
     """Distances between the front and the rear leg: wheels and links, which share a plane."""
-    (fh, rh), (fk, rk), (fw, rw) = pose.hips, pose.knees, pose.wheels
-    wheel, thigh, calf = shape.wheel_radius, shape.thigh_radius, shape.calf_radius
+    (fw, rw), wheel = pose.wheels, shape.wheel_radius
     gaps = [ca.sqrt((fw[0] - rw[0]) ** 2 + (fw[1] - rw[1]) ** 2 + 1e-12) - 2 * wheel]
-    for centre, (hip, knee, foot) in ((fw, (rh, rk, rw)), (rw, (fh, fk, fw))):
-        gaps.append(segment_gap(centre, hip, knee, shape.thigh) - wheel - thigh)
-        gaps.append(segment_gap(centre, knee, foot, shape.calf) - wheel - calf)
-    for knee_1, (hip, knee, foot) in ((fk, (rh, rk, rw)), (rk, (fh, fk, fw))):
-        gaps.append(segment_gap(knee_1, hip, knee, shape.thigh) - 2 * thigh)
-        gaps.append(segment_gap(knee_1, knee, foot, shape.calf) - thigh - calf)
+    for own, other in ((0, 1), (1, 0)):
+        hip, knee, foot = pose.hips[other], pose.knees[other], pose.wheels[other]
+        upper, lower = shape.thigh[other], shape.calf[other]
+        thigh, calf = shape.thigh_radius[other], shape.calf_radius[other]
+        gaps.append(segment_gap(pose.wheels[own], hip, knee, upper) - wheel - thigh)
+        gaps.append(segment_gap(pose.wheels[own], knee, foot, lower) - wheel - calf)
+        joint = shape.thigh_radius[own]
+        gaps.append(segment_gap(pose.knees[own], hip, knee, upper) - joint - thigh)
+        gaps.append(segment_gap(pose.knees[own], knee, foot, lower) - joint - calf)
     return gaps

@@ -127,7 +127,7 @@ class PoseSearch:
         self.problem = pose_problem(robot, path)
         self.repeats = True  # poses of a uniform flight may be moved along
         self.standing = self.problem.standing
-        self.scale = (robot.thigh.length + robot.calf.length) / 0.4
+        self.scale = min(leg.reach for leg in robot.legs) / 0.4
         w = weights
         # Inside the limits by more than what solvers leave open.
         joints = kinematics.limits(robot) + np.array([1e-5, -1e-5])
@@ -142,7 +142,7 @@ class PoseSearch:
             exact_links=w.exact_links,
         )
         self._native_rules = self.rules.native
-        reach = robot.thigh.length + robot.calf.length
+        reach = max(leg.reach for leg in robot.legs)
         wheelbase = robot.hips.front[0] - robot.hips.rear[0]
         self.span = (2 * robot.wheel.radius + LEGS_DISTANCE, 2 * reach + wheelbase)
         self._usual = 1.4 * wheelbase
@@ -293,7 +293,7 @@ class PoseSearch:
 
 def pose_problem(robot: Robot, path: WheelPath) -> _core.PoseProblem:
     """Pose optimisation for a robot on a terrain, in the native core."""
-    points, size = robot.collision_points, robot.trunk.size
+    points, size = robot.points, robot.trunk.size
     trunk = np.array(points.trunk, float) * (size[0], size[2])
     return _core.PoseProblem(
         _core.Terrain(path.vertices), path.native, robot.native, trunk, points.thigh, points.calf

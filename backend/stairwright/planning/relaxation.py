@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -13,7 +13,7 @@ from stairwright.terrain.profile import Terrain
 
 from .path.course import NoStand
 from .path.lattice import BOLD, Bounds
-from .path.node_margins import Motor
+from .path.node_margins import JOINTS, Motor
 from .path.pieces import pieces
 from .path.search import Place
 from .path.solve import Blocked, Course, Solved, pose_course
@@ -39,6 +39,7 @@ class Candidate:
     limit: float
     change: Callable[[Course, float], Course]
     given: str = ""  # what else the change needs
+    sure: float = 1.15  # relative precision of a value that only whole plans can tell
 
     def at(self, ratio: float) -> float:
         """The value that differs from what there is by the factor `ratio` > 1."""
@@ -87,7 +88,7 @@ def leads_past(course: Course, places: Sequence[Place], bounds: Bounds = BOLD) -
 def candidates_of(course: Course) -> list[Candidate]:
     """Quantities in the order in which they are asked: cheap and likely first."""
     robot = course.robot
-    legs = robot.thigh.length + robot.calf.length
+    legs = robot.legs[0].reach
     joints = (robot.joints.front, robot.joints.rear)
     ranges = {
         part: min(getattr(leg, part)[1] - getattr(leg, part)[0] for leg in joints)
@@ -104,21 +105,24 @@ def candidates_of(course: Course) -> list[Candidate]:
                   lambda c, v: _with_robot(c, _wider(robot, "calf", v - ranges["calf"]))),
         Candidate("joint_limit", "thigh range", "rad", ranges["thigh"], ranges["thigh"] + 1.0,
                   lambda c, v: _with_robot(c, _wider(robot, "thigh", v - ranges["thigh"]))),
+        *(motor_torque(robot, motor) for motor in JOINTS if course.torques),
     ]  # fmt: skip
 
 
 def motor_torque(robot: Robot, motor: Motor) -> Candidate:
-    """The torque of the legs' or wheels' motors; asked where whole plans break no other bound."""
+    """The torque of the legs' or wheels' motors; where they differ the weaker keep their share."""
+    most = float(robot.torque_limits[:, JOINTS[motor]].max())
     return Candidate(
-        "torque", f"{motor} torque", "Nm", getattr(robot.actuators, motor).torque, STRONGEST,
-        lambda c, v: _with_robot(c, _stronger(robot, motor, v)),
+        "torque", f"{motor} torque", "Nm", most, STRONGEST,
+        lambda c, v: _with_robot(c, _stronger(robot, motor, v / most)),
+        sure=1.02,
     )  # fmt: skip
 
 
 def _legs_with_grip(course: Course) -> Candidate:
     """Longer legs, with ample friction."""
     robot = course.robot
-    legs = robot.thigh.length + robot.calf.length
+    legs = robot.legs[0].reach
     grip = max(AMPLE, course.friction)
     return Candidate(
         "reach", "leg length", "m", legs, LONGEST * legs,
@@ -137,7 +141,8 @@ def bold_candidates(course: Course) -> list[Candidate]:
         document = c.terrain.model_dump()
         low = base + (points[:, 1] - base) * (v / height)
         document["points"] = np.stack([points[:, 0], low], axis=1).tolist()
-        return pose_course(Terrain.model_validate(document), c.robot, c.friction, c.weights)
+        changed = pose_course(Terrain.model_validate(document), c.robot, c.friction, c.weights)
+        return replace(changed, torques=c.torques)
 
     if height > 0.0:  # in the end it is flat, which opens every way
         lower = Candidate("reach", "profile height", "m", height, _FLAT * height, lowered)
@@ -147,28 +152,49 @@ def bold_candidates(course: Course) -> list[Candidate]:
 
 def _with_robot(course: Course, robot: Robot) -> Course:
     """The same question for another robot, which stands as it would."""
-    return pose_course(course.terrain, robot, course.friction, course.weights)
+    changed = pose_course(course.terrain, robot, course.friction, course.weights)
+    return replace(changed, torques=course.torques)
 
 
-def _changed(robot: Robot, changes: dict[str, dict[str, Any]]) -> Robot:
-    """A new robot (nothing cached) with some fields of some of its parts replaced."""
+def _changed(robot: Robot, change: Callable[[dict[str, Any]], None]) -> Robot:
+    """A new robot (nothing cached) whose document `change` has changed."""
     data = robot.model_dump()
-    for part, fields in changes.items():
-        data[part] |= fields
+    change(data)
     return Robot.model_validate(data)
+
+
+def _parts(data: dict[str, Any], *names: str) -> Iterator[dict[str, Any]]:
+    """The parts of these names of all legs, where the document has them."""
+    for legs in (data, data.get("rear") or {}):
+        yield from (legs[name] for name in names if legs.get(name))
 
 
 def _longer(robot: Robot, factor: float) -> Robot:
     """The robot with thighs and calves longer by `factor`."""
-    return _changed(
-        robot,
-        {part: {"length": getattr(robot, part).length * factor} for part in ("thigh", "calf")},
-    )
+
+    def change(data: dict[str, Any]) -> None:
+        for link in _parts(data, "thigh", "calf"):
+            link["length"] *= factor
+            if isinstance(link["com"], (tuple, list)):
+                link["com"] = [link["com"][0], link["com"][1] * factor]
+            for piece in link.get("shape", []):
+                for end in ("start", "end"):
+                    piece[end] = [piece[end][0], piece[end][1] * factor]
+
+    return _changed(robot, change)
 
 
 def _flatter(robot: Robot, height: float) -> Robot:
-    size = (robot.trunk.size[0], robot.trunk.size[1], height)
-    return _changed(robot, {"trunk": {"size": size}})
+    """The robot whose trunk is `height` high, all its pieces lower by the same factor."""
+    factor = height / robot.trunk.size[2]
+
+    def change(data: dict[str, Any]) -> None:
+        trunk = data["trunk"]
+        trunk["size"] = [*trunk["size"][:2], height]
+        for piece in trunk.get("outline", []):
+            piece["points"] = [(x, z * factor) for x, z in piece["points"]]
+
+    return _changed(robot, change)
 
 
 def _wider(robot: Robot, part: str, extra: float) -> Robot:
@@ -177,16 +203,23 @@ def _wider(robot: Robot, part: str, extra: float) -> Robot:
     for name in ("front", "rear"):
         leg = getattr(robot.joints, name).model_dump()
         low, high = leg[part]
-        wide = [max(low - extra / 2, -6.28), min(high + extra / 2, 6.28)]
+        wide = [low - extra / 2, high + extra / 2]
         if part == "calf":  # the knee keeps its side and does not fold onto itself
             wide = [
                 max(wide[0], 0.05 if low > 0 else -3.1),
                 min(wide[1], 3.1 if low > 0 else -0.05),
             ]
         legs[name] = leg | {part: tuple(wide)}
-    return _changed(robot, {"joints": legs})
+    return _changed(robot, lambda data: data.update(joints=legs))
 
 
-def _stronger(robot: Robot, motor: Motor, torque: float) -> Robot:
-    stronger = getattr(robot.actuators, motor).model_dump() | {"torque": torque}
-    return _changed(robot, {"actuators": {motor: stronger}})
+def _stronger(robot: Robot, motor: Motor, factor: float) -> Robot:
+    """The robot whose leg or wheel motors are stronger by `factor`."""
+
+    def change(data: dict[str, Any]) -> None:
+        for motors in _parts(data, "actuators"):
+            for name in ("wheel",) if motor == "wheel" else ("leg", "thigh", "calf"):
+                if motors.get(name):
+                    motors[name]["torque"] = min(motors[name]["torque"] * factor, STRONGEST)
+
+    return _changed(robot, change)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .description import Robot
+from .legs import LinkForm
 
 Floats = NDArray[np.float64]
 
@@ -39,6 +40,12 @@ def rotate(pitch: Floats, vector: Floats) -> Floats:
     return np.stack([c * x + s * z, -s * x + c * z], axis=-1)
 
 
+def lengths(robot: Robot) -> tuple[Floats, Floats]:
+    """Lengths (2,) of the thighs and of the calves, front and rear [m]."""
+    legs = robot.legs
+    return np.array([leg.thigh.length for leg in legs]), np.array([leg.calf.length for leg in legs])
+
+
 def hips(robot: Robot, x_c: Floats, z_c: Floats, pitch: Floats) -> Floats:
     """Hip axes (..., 2, 2) in the world [m]."""
     trunk = np.stack([np.asarray(x_c, float), np.asarray(z_c, float)], axis=-1)
@@ -51,8 +58,9 @@ def forward(robot: Robot, x_c: Floats, z_c: Floats, pitch: Floats, q: Floats) ->
     q = np.asarray(q, float)
     hip = hips(robot, x_c, z_c, pitch)
     thigh = np.asarray(pitch)[..., None] + q[..., 0::2]
-    knee = hip + robot.thigh.length * along(thigh)
-    wheel = knee + robot.calf.length * along(thigh + q[..., 1::2])
+    upper, lower = lengths(robot)
+    knee = hip + upper[:, None] * along(thigh)
+    wheel = knee + lower[:, None] * along(thigh + q[..., 1::2])
     return Frames(hip, knee, wheel)
 
 
@@ -63,10 +71,10 @@ def inverse(robot: Robot, x_c: Floats, z_c: Floats, pitch: Floats, wheels: Float
     middle of its range. NaN where a wheel is out of reach. Limits are not applied.
     """
     leg = np.asarray(wheels, float) - hips(robot, x_c, z_c, pitch)
-    l1, l2 = robot.thigh.length, robot.calf.length
+    l1, l2 = lengths(robot)
     square = np.sum(leg**2, axis=-1)
     cosine = (square - l1 * l1 - l2 * l2) / (2 * l1 * l2)
-    knee = np.array([robot.joints.front.knee, robot.joints.rear.knee])
+    knee = np.array([leg.knee for leg in robot.legs])
     with np.errstate(invalid="ignore"):
         calf = knee * np.arccos(np.where(np.abs(cosine) <= 1.0, cosine, np.nan))
     bearing = np.arctan2(-leg[..., 0], -leg[..., 1])
@@ -77,18 +85,29 @@ def inverse(robot: Robot, x_c: Floats, z_c: Floats, pitch: Floats, wheels: Float
     return np.stack([thigh, calf], axis=-1).reshape(*thigh.shape[:-1], 4)
 
 
-def com(robot: Robot, x_c: Floats, z_c: Floats, frames: Frames) -> Floats:
+def com(robot: Robot, x_c: Floats, z_c: Floats, pitch: Floats, frames: Frames) -> Floats:
     """Centre of mass (..., 2) of the whole robot in the world [m]."""
-    p = robot.planar
-    trunk = np.stack([np.asarray(x_c, float), np.asarray(z_c, float)], axis=-1)
-    hip, knee, wheel = frames.hips, frames.knees, frames.wheels
-    legs = (
-        p.thigh_mass * (hip + p.thigh_com * (knee - hip))
-        + p.calf_mass * (knee + p.calf_com * (wheel - knee))
-        + p.wheel_mass * wheel
-    )
-    total: Floats = (p.trunk_mass * trunk + legs.sum(axis=-2)) / p.mass
-    return total
+    body = robot.body
+    turn = np.asarray(pitch)
+    place = np.stack([np.asarray(x_c, float), np.asarray(z_c, float)], axis=-1)
+    total = body.mass * (place + rotate(turn, np.array([body.com[0], body.com[2]])))
+    for k, leg in enumerate(robot.legs):
+        hip, knee, wheel = (p[..., k, :] for p in (frames.hips, frames.knees, frames.wheels))
+        total = total + 2 * (
+            leg.thigh.mass * link_com(leg.thigh, hip, knee)
+            + leg.calf.mass * link_com(leg.calf, knee, wheel)
+            + leg.wheel.mass * wheel
+        )
+    centre: Floats = total / robot.mass
+    return centre
+
+
+def link_com(link: LinkForm, upper: Floats, lower: Floats) -> Floats:
+    """Mass centre (..., 2) of a link between its joints (..., 2) [m]."""
+    along, across = link.com_along
+    d = lower - upper
+    centre: Floats = upper + along * d + across * np.stack([-d[..., 1], d[..., 0]], axis=-1)
+    return centre
 
 
 def wheel_jacobians(robot: Robot, pitch: Floats, q: Floats) -> Floats:
@@ -96,14 +115,15 @@ def wheel_jacobians(robot: Robot, pitch: Floats, q: Floats) -> Floats:
     thigh = np.asarray(pitch)[..., None] + np.asarray(q)[..., 0::2]
     calf = thigh + np.asarray(q)[..., 1::2]
     # d along(a)/da = (-cos a, sin a)
-    upper = np.stack([-np.cos(thigh), np.sin(thigh)], axis=-1) * robot.thigh.length
-    lower = np.stack([-np.cos(calf), np.sin(calf)], axis=-1) * robot.calf.length
+    first, second = lengths(robot)
+    upper = np.stack([-np.cos(thigh), np.sin(thigh)], axis=-1) * first[:, None]
+    lower = np.stack([-np.cos(calf), np.sin(calf)], axis=-1) * second[:, None]
     return np.stack([upper + lower, lower], axis=-1)
 
 
 def collision_points(robot: Robot, x_c: Floats, z_c: Floats, pitch: Floats, q: Floats) -> Floats:
     """The collision points (..., n, 2): trunk, front thigh, front calf, rear thigh, rear calf."""
-    layout = robot.collision_points
+    layout = robot.points
     frames = forward(robot, x_c, z_c, pitch, q)
     trunk = np.stack([np.asarray(x_c, float), np.asarray(z_c, float)], axis=-1)
     size = np.array([robot.trunk.size[0], robot.trunk.size[2]])

@@ -21,11 +21,14 @@ from numpy.typing import NDArray
 from stairwright.arguments import as_friction
 from stairwright.terrain.profile import Terrain
 
-from .description import JOINTS, LEGS, Actuator, LegLimits, Robot
+from .description import JOINTS, LEGS, Robot
+from .legs import LinkForm
+from .parts import Actuator, Outline
 
 Floats = NDArray[np.float64]
 
 TIMESTEP = 0.001  # s
+_GRAVITY = 9.81  # m/s^2
 TERRAIN_HALF_WIDTH = 1.0  # m
 TERRAIN_DEPTH = 0.5  # m below the lowest point
 SPIKE_WIDTH = 0.002  # m; a zero-width spike becomes a prism this thick
@@ -157,18 +160,17 @@ def add_terrain(spec: Any, terrain: Terrain, friction: float, half_width: float)
 def _add_robot(spec: Any, robot: Robot, friction: float, visual: bool) -> None:
     trunk = spec.worldbody.add_body(name="trunk", pos=[0, 0, robot.nominal_height])
     trunk.add_freejoint(name="root")
-    _set_inertial(trunk, robot.trunk.mass, (0.0, 0.0, 0.0), robot.trunk.inertia)
-    trunk.add_geom(
-        name="trunk",
-        type=mujoco.mjtGeom.mjGEOM_BOX,
-        size=[extent / 2 for extent in robot.trunk.size],
-        **_surface("trunk", "trunk", friction),
-    )
+    body = robot.body
+    _set_inertial(trunk, body.mass, body.com, body.inertia)
+    for k, piece in enumerate(body.outline):
+        name = f"trunk_{k}" if k else "trunk"
+        trunk.add_geom(
+            name=name, **_piece(spec, name, piece), **_surface("trunk", "trunk", friction)
+        )
     trunk.add_site(name="imu")
     for leg in LEGS:
         _add_leg(trunk, robot, leg, friction, visual)
-    for joint in JOINTS:
-        motor = robot.actuators.wheel if joint.endswith("wheel") else robot.actuators.leg
+    for joint, motor in zip(JOINTS, robot.motors, strict=True):
         actuator = spec.add_actuator(
             name=joint,
             target=joint,
@@ -198,27 +200,44 @@ def _add_robot(spec: Any, robot: Robot, friction: float, visual: bool) -> None:
     )
 
 
+def _piece(spec: Any, name: str, piece: Outline) -> dict[str, Any]:
+    """A piece of the trunk: a box where it is one, else a mesh."""
+    points = np.array(piece.points)
+    low, high = points.min(axis=0), points.max(axis=0)
+    (x, z), (length, height) = (low + high) / 2, high - low
+    if len(points) == 4 and np.all((points == low) | (points == high)):
+        size = [length / 2, piece.width / 2, height / 2]
+        return {"type": mujoco.mjtGeom.mjGEOM_BOX, "size": size, "pos": [x, 0.0, z]}
+    mesh = spec.add_mesh(name=f"{name}_mesh")
+    half = piece.width / 2
+    mesh.uservert = np.array([(a, y, b) for y in (-half, half) for a, b in points]).ravel()
+    return {"type": mujoco.mjtGeom.mjGEOM_MESH, "meshname": mesh.name}
+
+
 def _add_leg(trunk: Any, robot: Robot, leg: str, friction: float, visual: bool) -> None:
-    hip = robot.hips.front if leg[0] == "F" else robot.hips.rear
-    limits: LegLimits = robot.joints.front if leg[0] == "F" else robot.joints.rear
+    own = robot.legs[0 if leg[0] == "F" else 1]
     side = 1.0 if leg[1] == "L" else -1.0
-    parent, place = trunk, [hip[0], side * robot.hips.half_track, hip[1]]
+    parent, place = trunk, [own.hip[0], side * robot.hips.half_track, own.hip[1]]
     for part in ("thigh", "calf"):
-        link = getattr(robot, part)
+        link: LinkForm = getattr(own, part)
         body = parent.add_body(name=f"{leg}_{part}", pos=place)
-        _add_hinge(body, f"{leg}_{part}", robot.actuators.leg, getattr(limits, part))
-        _set_inertial(body, link.mass, (0.0, 0.0, -link.com * link.length), link.inertia)
-        body.add_geom(
-            name=f"{leg}_{part}",
-            type=mujoco.mjtGeom.mjGEOM_CAPSULE,
-            fromto=[0, 0, 0, 0, 0, -link.length],
-            size=[link.radius, 0, 0],
-            **_surface(leg, part, friction),
-        )
+        _add_hinge(body, f"{leg}_{part}", getattr(own, f"{part}_motor"), getattr(own.limits, part))
+        _set_inertial(body, link.mass, (link.com[0], 0.0, link.com[1]), link.inertia)
+        for k, ((ax, az), (bx, bz), radius) in enumerate(link.capsules):
+            body.add_geom(
+                name=f"{leg}_{part}_{k}" if k else f"{leg}_{part}",
+                type=mujoco.mjtGeom.mjGEOM_CAPSULE,
+                fromto=[ax, 0, az, bx, 0, bz],
+                size=[radius, 0, 0],
+                **_surface(leg, part, friction),
+            )
         parent, place = body, [0.0, 0.0, -link.length]
     wheel = parent.add_body(name=f"{leg}_wheel", pos=place)
-    _add_hinge(wheel, f"{leg}_wheel", robot.actuators.wheel, None)
-    _set_inertial(wheel, robot.wheel.mass, (0.0, 0.0, 0.0), robot.wheel.inertia)
+    _add_hinge(wheel, f"{leg}_wheel", own.wheel_motor, None)
+    # Rolling resistance as a torque in the bearing, at the load of a robot that stands on four.
+    drag = own.wheel.rolling_resistance * robot.mass * _GRAVITY / 4 * own.wheel.radius
+    wheel.joints[0].frictionloss = drag
+    _set_inertial(wheel, own.wheel.mass, (0.0, 0.0, 0.0), own.wheel.inertia)
     surface = _surface(leg, "wheel", friction)
     if visual:
         surface["rgba"] = (0.0, 0.0, 0.0, 0.0)

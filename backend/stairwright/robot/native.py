@@ -3,50 +3,52 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stairwright import _core
 
-from .description import Actuator, LegLimits, Link, Robot
+from .description import Robot
+from .legs import Leg, LinkForm
+from .parts import Actuator
 
 
 def native_robot(robot: Robot) -> _core.Robot:
     """The planar robot of a document."""
-    length, _, height = robot.trunk.size
-    x, z = length / 2, height / 2
-    box = _core.Polygon(np.array([(-x, -z), (x, -z), (x, z), (-x, z)]))
-    trunk = _core.Trunk(robot.trunk.mass, robot.trunk.inertia[1], _core.Vec2(0.0, 0.0), [box])
-    legs = [
-        _leg(robot, hip, limits)
-        for hip, limits in (
-            (robot.hips.front, robot.joints.front),
-            (robot.hips.rear, robot.joints.rear),
-        )
-    ]
+    body = robot.body
+    outline = [_core.Polygon(_anticlockwise(piece.points)) for piece in body.outline]
+    x, _, z = body.com
+    trunk = _core.Trunk(body.mass, body.inertia[1], _core.Vec2(x, z), outline)
+    legs = [_leg(leg) for leg in robot.legs]
     return _core.Robot(trunk, legs, robot.hips.half_track, robot.nominal_height)
 
 
-def _leg(robot: Robot, hip: tuple[float, float], limits: LegLimits) -> _core.Leg:
-    wheel = robot.wheel
-    joint, rim = _motor(robot.actuators.leg), _motor(robot.actuators.wheel)
+def _leg(leg: Leg) -> _core.Leg:
     return _core.Leg(
-        _core.Vec2(*hip),
-        _link(robot.thigh),
-        _link(robot.calf),
-        _core.Wheel(wheel.radius, wheel.mass, wheel.inertia[1]),
-        _core.Range(*limits.thigh),
-        _core.Range(*limits.calf),
-        joint,
-        joint,
-        rim,
-        limits.knee,
+        _core.Vec2(*leg.hip),
+        _link(leg.thigh),
+        _link(leg.calf),
+        _core.Wheel(leg.wheel.radius, leg.wheel.mass, leg.wheel.inertia[1]),
+        _core.Range(*leg.limits.thigh),
+        _core.Range(*leg.limits.calf),
+        _motor(leg.thigh_motor),
+        _motor(leg.calf_motor),
+        _motor(leg.wheel_motor),
+        leg.knee,
     )
 
 
-def _link(link: Link) -> _core.Link:
-    end, com = _core.Vec2(0.0, -link.length), _core.Vec2(0.0, -link.com * link.length)
-    shape = [_core.Capsule(_core.Vec2(0.0, 0.0), end, link.radius)]
-    return _core.Link(end, com, link.mass, link.inertia[1], shape)
+def _link(link: LinkForm) -> _core.Link:
+    shape = [_core.Capsule(_core.Vec2(*a), _core.Vec2(*b), r) for a, b, r in link.capsules]
+    end = _core.Vec2(0.0, -link.length)
+    return _core.Link(end, _core.Vec2(*link.com), link.mass, link.inertia[1], shape)
 
 
 def _motor(actuator: Actuator) -> _core.Motor:
     return _core.Motor(actuator.torque, actuator.speed)
+
+
+def _anticlockwise(points: list[tuple[float, float]]) -> NDArray[np.float64]:
+    p = np.array(points, float)
+    q = np.roll(p, -1, axis=0)
+    area = float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum())
+    return p if area > 0.0 else p[::-1].copy()

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .description import Robot
+from .kinematics import lengths
 
 Floats = NDArray[np.float64]
 
@@ -81,8 +82,9 @@ def place(robot: Robot, position: Floats, quaternion: Floats, q: Floats) -> Bodi
     wheel = multiply(base, quaternion_y(angles.sum(axis=-1)))
     hips = position[:, None, :] + turn(base, hip_offsets(robot))
     down = np.array([0.0, 0.0, -1.0])
-    knees = hips + robot.thigh.length * turn(thigh, down)
-    wheels = knees + robot.calf.length * turn(calf, down)
+    upper, lower = (np.repeat(pair, 2)[:, None] for pair in lengths(robot))
+    knees = hips + upper * turn(thigh, down)
+    wheels = knees + lower * turn(calf, down)
     return Bodies(
         trunk=position,
         trunk_turn=quaternion,
@@ -92,7 +94,7 @@ def place(robot: Robot, position: Floats, quaternion: Floats, q: Floats) -> Bodi
         thigh_turn=thigh,
         calf_turn=calf,
         wheel_turn=wheel,
-        com=_com(robot, position, hips, knees, wheels),
+        com=_com(robot, position, quaternion, hips, thigh, knees, calf, wheels),
         points=_points(robot, position, quaternion, hips, knees, wheels),
     )
 
@@ -129,18 +131,26 @@ def hip_offsets(robot: Robot) -> Floats:
     return np.array([(fx, y, fz), (fx, -y, fz), (rx, y, rz), (rx, -y, rz)])
 
 
-def _com(robot: Robot, trunk: Floats, hips: Floats, knees: Floats, wheels: Floats) -> Floats:
-    total = robot.trunk.mass * trunk
-    total = total + robot.thigh.mass * (hips + robot.thigh.com * (knees - hips)).sum(axis=1)
-    total = total + robot.calf.mass * (knees + robot.calf.com * (wheels - knees)).sum(axis=1)
-    com: Floats = (total + robot.wheel.mass * wheels.sum(axis=1)) / robot.mass
+def _com(
+    robot: Robot, trunk: Floats, base: Floats, hips: Floats, thigh: Floats, knees: Floats,
+    calf: Floats, wheels: Floats,
+) -> Floats:  # fmt: skip
+    body = robot.body
+    total = body.mass * (trunk + turn(base, np.array(body.com)))
+    for leg in range(4):
+        own = robot.legs[leg // 2]
+        for link, joint, turned in ((own.thigh, hips, thigh), (own.calf, knees, calf)):
+            x, z = link.com
+            total = total + link.mass * (joint[:, leg] + turn(turned[:, leg], np.array([x, 0, z])))
+        total = total + own.wheel.mass * wheels[:, leg]
+    com: Floats = total / robot.mass
     return com
 
 
 def _points(
     robot: Robot, trunk: Floats, base: Floats, hips: Floats, knees: Floats, wheels: Floats
 ) -> Floats:
-    layout = robot.collision_points
+    layout = robot.points
     length, width, height = robot.trunk.size
     flat = np.array([(x * length, 0.0, z * height) for x, z in layout.trunk])
     on_thigh, on_calf = np.array(layout.thigh)[:, None], np.array(layout.calf)[:, None]

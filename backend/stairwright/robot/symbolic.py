@@ -25,38 +25,59 @@ DIMENSIONS = (
     "hip_rear_z",
     "half_length",
     "half_height",
-    "thigh",
-    "calf",
-    "thigh_radius",
-    "calf_radius",
+    "front_thigh",
+    "rear_thigh",
+    "front_calf",
+    "rear_calf",
+    "front_thigh_radius",
+    "rear_thigh_radius",
+    "front_calf_radius",
+    "rear_calf_radius",
     "wheel_radius",
 )
 
 
 def dimensions(robot: Robot) -> NDArray[np.float64]:
-    """The numbers (11,) that `Shape.from_vector` unpacks, in the order of `DIMENSIONS` [m]."""
-    planar = robot.planar
-    return np.array([getattr(planar, name) for name in DIMENSIONS])
+    """The numbers (15,) that `Shape.from_vector` unpacks, in the order of `DIMENSIONS` [m].
+
+    The trunk is its box here and links are capsules from joint to joint, as thick as their
+    thickest; what the robot really is, the certificate looks at.
+    """
+    front, rear = robot.legs
+    length, _, height = robot.trunk.size
+    return np.array([
+        *front.hip, *rear.hip, length / 2, height / 2,
+        front.thigh.length, rear.thigh.length, front.calf.length, rear.calf.length,
+        front.thigh.radius, rear.thigh.radius, front.calf.radius, rear.calf.radius,
+        robot.wheel.radius,
+    ])  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Shape:
-    """Dimensions as CasADi scalars [m]."""
+    """Dimensions as CasADi scalars [m]; pairs are front, rear."""
 
     hips: tuple[Point, Point]
     half_length: Scalar
     half_height: Scalar
-    thigh: Scalar
-    calf: Scalar
-    thigh_radius: Scalar
-    calf_radius: Scalar
+    thigh: tuple[Scalar, Scalar]
+    calf: tuple[Scalar, Scalar]
+    thigh_radius: tuple[Scalar, Scalar]
+    calf_radius: tuple[Scalar, Scalar]
     wheel_radius: Scalar
 
     @classmethod
     def from_vector(cls, values: Any) -> Shape:
         """Unpack a vector made by `dimensions`."""
         v = [values[i] for i in range(len(DIMENSIONS))]
-        return cls(((v[0], v[1]), (v[2], v[3])), *v[4:])
+        hips, thigh, calf, thick, thin = (
+            ((v[0], v[1]), (v[2], v[3])),
+            v[6:8],
+            v[8:10],
+            v[10:12],
+            v[12:14],
+        )
+        return cls(hips, v[4], v[5], tuple(thigh), tuple(calf), tuple(thick), tuple(thin), v[14])
 
 
 @dataclass(frozen=True)
@@ -84,8 +105,9 @@ def forward(shape: Shape, x_c: Scalar, z_c: Scalar, pitch: Scalar, q: Any) -> Sk
         hip = to_world(trunk, pitch, shape.hips[leg])
         thigh = pitch + q[2 * leg]
         calf = thigh + q[2 * leg + 1]
-        knee = (hip[0] - shape.thigh * ca.sin(thigh), hip[1] - shape.thigh * ca.cos(thigh))
-        wheel = (knee[0] - shape.calf * ca.sin(calf), knee[1] - shape.calf * ca.cos(calf))
+        upper, lower = shape.thigh[leg], shape.calf[leg]
+        knee = (hip[0] - upper * ca.sin(thigh), hip[1] - upper * ca.cos(thigh))
+        wheel = (knee[0] - lower * ca.sin(calf), knee[1] - lower * ca.cos(calf))
         hips.append(hip)
         knees.append(knee)
         wheels.append(wheel)

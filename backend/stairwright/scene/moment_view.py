@@ -151,7 +151,7 @@ def _culprit(
     problem: Mapping[str, Any], robot: Robot, bodies: Bodies, gaps: Floats
 ) -> tuple[str, int]:
     """Kind of part and leg pair (0 front, 1 rear) that the problem is about."""
-    layout = robot.collision_points
+    layout = robot.points
     if problem["kind"] == "clearance":
         k = int(np.argmin(gaps[: layout.count]))
         if k < len(layout.trunk):

@@ -18,18 +18,29 @@ PARTS = ("trunk", "trim", "thighs", "calves", "motors", "knees", "tyres", "rims"
 
 
 def part_meshes(robot: Robot) -> dict[str, shapes.Mesh]:
-    """One mesh per kind of part, in the part's own frame."""
+    """One mesh per kind of part, in the part's own frame; thighs and calves are the front ones."""
+    leg = robot.legs[0]
     width = min(0.9 * robot.wheel.width, 0.028)
     return {
         "trunk": shapes.trunk(robot),
         "trim": shapes.trunk_trim(robot),
-        "thighs": shapes.link(robot.thigh.length, robot.thigh.radius, width),
-        "calves": shapes.link(robot.calf.length, robot.calf.radius, 0.8 * width),
-        "motors": shapes.joint(max(1.7 * robot.thigh.radius, 0.02), 1.25 * width),
-        "knees": shapes.joint(max(1.25 * robot.thigh.radius, 0.015), 1.1 * width),
+        "thighs": shapes.limb(leg.thigh, width),
+        "calves": shapes.limb(leg.calf, 0.8 * width),
+        "motors": shapes.joint(max(1.7 * leg.thigh.radius, 0.02), 1.25 * width),
+        "knees": shapes.joint(max(1.25 * leg.thigh.radius, 0.015), 1.1 * width),
         "tyres": shapes.tyre(robot),
         "rims": shapes.rim(robot),
     }
+
+
+def part_scales(robot: Robot) -> dict[str, Floats]:
+    """Scales (4, 3) that make the legs' own thighs and calves of the front ones."""
+    front, rear = robot.legs
+    scales = {}
+    for part, name in (("thighs", "thigh"), ("calves", "calf")):
+        ratio = getattr(rear, name).length / getattr(front, name).length
+        scales[part] = np.array([[1, 1, 1], [1, 1, 1], [1, 1, ratio], [1, 1, ratio]], float)
+    return scales
 
 
 def part_places(bodies: Bodies) -> dict[str, tuple[Floats, Floats]]:
@@ -74,7 +85,7 @@ class RobotNodes:
 
     def __init__(self, scene: Any, root: str, robot: Robot, opacity: float | None = None) -> None:
         self._scene, self._root, self._opacity = scene, root, opacity
-        self._meshes = part_meshes(robot)
+        self._meshes, self._scales = part_meshes(robot), part_scales(robot)
         self._parts = [p for p in PARTS if opacity is None or p not in ("trim", "rims", "motors")]
         self._handles: dict[str, Any] = {}
         self._count = 0
@@ -122,7 +133,7 @@ class RobotNodes:
         self._handles, self._count, self._colours = {}, 0, {}
 
     def _make(self, part: str, positions: Floats, turns: Floats, colours: Any) -> None:
-        mesh = self._meshes[part]
+        mesh, scales = self._meshes[part], self._scales.get(part)
         self._handles[part] = self._scene.add_batched_meshes_simple(
             f"{self._root}/{part}",
             mesh.vertices,
@@ -130,6 +141,7 @@ class RobotNodes:
             turns,
             positions,
             batched_colors=colours,
+            batched_scales=None if scales is None else np.tile(scales, (len(turns) // 4, 1)),
             opacity=self._opacity,
             lod="off",
             cast_shadow=False,

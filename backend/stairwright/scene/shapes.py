@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.robot.description import Robot
+from stairwright.robot.legs import LinkForm
+from stairwright.robot.parts import Outline
 
 Floats = NDArray[np.float64]
 
@@ -128,19 +130,37 @@ def revolved(section: list[tuple[float, float]], segments: int, capped: bool) ->
 
 
 def trunk(robot: Robot) -> Mesh:
-    """The body, its size exactly the planner's box."""
-    return rounded_box(robot.trunk.size, 0.012)
+    """The body, its outline exactly the planner's."""
+    return merge(*(_piece(piece) for piece in robot.body.outline))
+
+
+def _piece(piece: Outline) -> Mesh:
+    points = np.array(piece.points)
+    low, high = points.min(axis=0), points.max(axis=0)
+    (x, z), (length, height) = (low + high) / 2, high - low
+    if len(points) == 4 and np.all((points == low) | (points == high)):
+        return moved(rounded_box((length, piece.width, height), 0.012), (x, 0.0, z))
+    a, b = points, np.roll(points, -1, axis=0)
+    if np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) > 0.0:
+        points = points[::-1]  # anticlockwise seen along -z, once z is -y
+    upright = prism(points * [1.0, -1.0], points * [1.0, -1.0], -piece.width / 2, piece.width / 2)
+    x, y, z = upright.vertices.T
+    return Mesh(np.stack([x, z, -y], axis=1), upright.faces)
 
 
 def trunk_trim(robot: Robot) -> Mesh:
     """Dark details: hip axles across the body and a face plate that shows where forward is."""
-    length, width, height = robot.trunk.size
+    main = np.array(robot.body.outline[0].points)
+    (_, low), (nose, high) = main.min(axis=0), main.max(axis=0)
+    width, height = robot.body.outline[0].width, high - low
     across = 2 * robot.hips.half_track - robot.wheel.width
     axles = [
         moved(disc(0.30 * height, across, 0.004, 24), (x, 0.0, z))
         for x, z in (robot.hips.front, robot.hips.rear)
     ]
-    plate = moved(rounded_box((0.004, 0.62 * width, 0.42 * height), 0.001), (length / 2, 0, 0))
+    plate = moved(
+        rounded_box((0.004, 0.62 * width, 0.42 * height), 0.001), (nose, 0, (low + high) / 2)
+    )
     return merge(*axles, plate)
 
 
@@ -153,6 +173,18 @@ def link(length: float, radius: float, wide: float) -> Mesh:
         return octagon(half, wide / 2, c)
 
     return prism(outline(b), outline(a), -length, 0.0)
+
+
+def limb(form: LinkForm, wide: float) -> Mesh:
+    """Bars along the capsules of a thigh or a calf, in its frame."""
+    bars = []
+    for (ax, az), (bx, bz), radius in form.capsules:
+        length = math.hypot(bx - ax, bz - az)
+        bar = link(length, radius, wide)
+        c, s = ((az - bz) / length, (ax - bx) / length) if length else (1.0, 0.0)
+        x, y, z = bar.vertices.T
+        bars.append(Mesh(np.stack([ax + c * x + s * z, y, az - s * x + c * z], axis=1), bar.faces))
+    return merge(*bars)
 
 
 def joint(radius: float, width: float) -> Mesh:

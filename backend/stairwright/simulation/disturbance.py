@@ -69,11 +69,15 @@ def disturb_trunk(spec: Any, robot: Robot, disturbance: Disturbance) -> None:
     """Change the trunk of an uncompiled model: mass, and its place so that the CoM moves."""
     trunk = spec.body("trunk")
     added = disturbance.mass * robot.mass
-    mass = max(0.1, robot.trunk.mass + added)
-    total = robot.mass - robot.trunk.mass + mass
+    body = robot.body
+    mass = max(0.1, body.mass + added)
+    total = robot.mass - body.mass + mass
     trunk.mass = mass
-    trunk.inertia = [value * mass / robot.trunk.mass for value in robot.trunk.inertia]
-    trunk.ipos = [disturbance.com_x * total / mass, 0.0, disturbance.com_z * total / mass]
+    trunk.inertia = [value * mass / body.mass for value in body.inertia]
+    x, y, z = body.com
+    trunk.ipos = [
+        x + disturbance.com_x * total / mass, y, z + disturbance.com_z * total / mass
+    ]  # fmt: skip
 
 
 class Sensors:

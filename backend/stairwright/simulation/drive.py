@@ -139,7 +139,7 @@ def _standing(robot: Robot, controller: Controller, q: Floats) -> Setpoint:
     """The set point of the standing robot with its trunk above the origin."""
     zero, height = np.zeros(()), np.asarray(robot.nominal_height)
     frames = kinematics.forward(robot, zero, height, zero, q)
-    com = kinematics.com(robot, zero, height, frames)
+    com = kinematics.com(robot, zero, height, zero, frames)
     path = controller.path
     places = np.array([path.project(wheel) for wheel in frames.wheels])
     front, rear = frames.wheels[:, 0]

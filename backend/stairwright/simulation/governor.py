@@ -162,7 +162,7 @@ def _speeds(
         speeds = np.minimum(np.append(step, step[-1]), np.append(step[0], step))
     joint_rates = np.abs(rows[:, RATES + JOINTS.start : RATES + JOINTS.stop]).max(axis=1)
     wheel_rates = np.abs(rows[:, RATES + WHEELS.start : RATES + WHEELS.stop]).max(axis=1)
-    wheel_limit = WHEEL_SPEED_SHARE * robot.actuators.wheel.speed * robot.wheel.radius
+    wheel_limit = WHEEL_SPEED_SHARE * robot.wheel_speed * robot.wheel.radius
     speeds = np.minimum(speeds, settings.joint_speed / np.maximum(joint_rates, 1e-9))
     speeds = np.minimum(speeds, wheel_limit / np.maximum(wheel_rates, 1e-9))
     reach = max(1, round(LIMIT_REACH / (grid[1] - grid[0])))

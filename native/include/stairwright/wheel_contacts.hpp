@@ -11,7 +11,8 @@ namespace stairwright {
 
 inline constexpr double kGentleRays = 0.75;  // weights; ray strength that poses with reserve do with: no wheels that pinch
 inline constexpr double kStray = 0.005;      // m; how far a wheel may be from its place
-inline constexpr double kTouch = 0.0018;     // m; a wheel this near to a concave corner (by arc length) touches both faces
+inline constexpr double kTouch = 1e-4;       // m; a wheel this near to a concave corner (by arc length) touches both faces
+inline constexpr double kBeside = 1.1e-4;    // m; a wheel this far from one touches the nearer face alone
 
 // One or two contacts of a wheel.
 struct WheelContacts {

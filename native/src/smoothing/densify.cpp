@@ -46,7 +46,7 @@ double miss(const WheelPath& path, const RobotModel& robot, int pair, const Node
 std::vector<double> contact_marks(const WheelPath& path) {
     std::vector<double> out;
     for (std::size_t k = 1; k < path.pieces().size(); ++k) out.push_back(path.pieces()[k].s);
-    for (const double offset : {-kTouch, 0.0, kTouch})
+    for (const double offset : {-kBeside, 0.0, kBeside})
         for (const double corner : path.corners()) out.push_back(corner + offset);
     return out;
 }

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kIterations = 40;
 constexpr std::size_t kFewestNodes = 40;
+constexpr double kStop = 0.0018;  // m
 
 // Nodes as columns: front and rear arc length, trunk x, z, pitch.
 std::array<Column, 5> columns(std::span<const Node> nodes) {
@@ -58,6 +59,15 @@ bool rolls_forward(std::span<const Node> poses) {
     return true;
 }
 
+// A wheel this near to a concave corner stops in it: only there it leans on both faces.
+void stop_in_corners(Column& s, const std::vector<double>& corners) {
+    for (double& at : s) {
+        const auto next = std::lower_bound(corners.begin(), corners.end(), at);
+        if (next != corners.end() && *next - at <= kStop) at = *next;
+        else if (next != corners.begin() && at - *(next - 1) <= kStop) at = *(next - 1);
+    }
+}
+
 // Smoothing must not make wheels roll back that only rolled forward.
 void keep_rising(Column& s, double first, double last) {
     double highest = first;
@@ -82,6 +92,7 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
         smoothed[c] = gaussian(smoothed[c], spacing.softness * (c < 2 ? 0.01 : 0.05) * size / hop);
     if (rolls_forward(way))
         for (int pair : {kFront, kRear}) keep_rising(smoothed[pair], laid[held - 1].s[pair], laid[n - held].s[pair]);
+    for (int pair : {kFront, kRear}) stop_in_corners(smoothed[pair], problem.path.corners());
     std::vector<Node> nodes = nodes_of(smoothed);
     std::vector<bool> fixed(n, false);
     for (std::size_t k = 0; k < held; ++k)
@@ -97,14 +108,18 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
         contacts.push_back({problem.path.contact(s.front), problem.path.contact(s.rear)});
         bodies.push_back(body);
     }
-    const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, intervals, fixed,
+    std::vector<WheelLoads> loads;
+    if (problem.torques)
+        for (std::size_t k = 0; k < n; ++k)
+            loads.emplace_back(problem.path, nodes[k].s, problem.friction, problem.lag, intervals[k].full, problem.robot.mass * kGravity);
+    const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, intervals, loads, fixed,
                                      objective(problem, spacing, hop / kUsualSpacing)};
     smooth(smoothing, bodies, kIterations);
     for (std::size_t k = 0; k < n; ++k) nodes[k].body = bodies[k];
 
     RefinedPath out;
     out.nodes = densify(problem.path, problem.robot, nodes, changes);
-    out.margins = node_margins(problem.terrain, problem.path, problem.robot, out.nodes, problem.friction);
+    out.margins = node_margins(problem.terrain, problem.path, problem.robot, out.nodes, problem.friction, problem.lag);
     return out;
 }
 

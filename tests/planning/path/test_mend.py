@@ -31,11 +31,9 @@ def flight(direction, robot: str, friction: float, rise=0.18, run=0.28) -> Cours
     return pose_course(terrain, load_robot(robot), friction, PathWeights())
 
 
-@pytest.mark.parametrize(
-    ("direction", "rise", "run", "friction"), [("down", 0.18, 0.28, 0.6), ("up", 0.17, 0.29, 0.3)]
-)
-def test_a_path_that_the_polish_leaves_bad_is_mended(direction, rise, run, friction):
-    course = flight(direction, "a1_wheeled", friction, rise, run)
+@pytest.mark.parametrize(("rise", "run", "friction"), [(0.16, 0.29, 0.6), (0.19, 0.28, 0.6)])
+def test_a_path_that_the_polish_leaves_bad_is_mended(rise, run, friction):
+    course = flight("down", "a1_wheeled", friction, rise, run)
     assert polished(course).margins.worst < -0.005
     answer = course.attempt(Rung(1.7, BOLD))
     assert isinstance(answer, Solved)

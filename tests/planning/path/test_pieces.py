@@ -13,7 +13,7 @@ from stairwright.planning.weights import PathWeights
 from stairwright.terrain.profile import Terrain
 
 FINE = 1.7
-WALLS = (2.0, 4.0)  # x of walls of 0.9 m
+WALLS = (2.0, 4.0)  # x of the walls
 
 
 def course(points, friction=0.6, robot="a1_wheeled") -> Course:
@@ -53,7 +53,7 @@ def test_a_way_from_start_to_goal_leads_through_every_piece(seed):
 
 
 def test_only_the_pieces_round_obstructions_are_closed():
-    question = course(walls(0.9, 0.1))
+    question = course(walls(1.2, 0.1))
     [first], [second] = (pieces(question, [at(question, x)]) for x in WALLS)
     assert not passes(question, first, BOLD, FINE)
     assert passes(question, second, BOLD, FINE)

@@ -83,7 +83,7 @@ def make_tiny(seed: int) -> Tiny:
     n = len(pairs)
     none, slope = np.zeros(n, np.int32), np.zeros(n)
     cells = problem.cells(fronts, rears, none, none, none, slope, origin)
-    x = robot.planar.trunk_mass / robot.planar.mass * STEP * np.arange(NX)
+    x = robot.body.mass / robot.mass * STEP * np.arange(NX)
     low = random.uniform(-0.06, 0.01, n)
     com = np.stack([low, low + 0.15, low + 0.02, low + 0.12, low + 0.01, low + 0.13], axis=1)
     total = front_cost[fronts] + rear_cost[rears] + trunk_cost[None, ..., :NX]

@@ -81,19 +81,59 @@ function terrainShapes(points) {
   return { treads, risers, flanks, edges, floor };
 }
 
-function robotShapes({ trunk, half_track, hips, thigh, calf, wheel }) {
+/** Convex pieces of the trunk, extruded along y, their outer edges chamfered. */
+function trunkShape(pieces) {
+  const body = new Shape();
+  for (const { points, width } of pieces) {
+    const area = points.reduce((sum, [x, z], i) => {
+      const [u, v] = points[(i + 1) % points.length];
+      return sum + x * v - z * u;
+    }, 0);
+    const ring = area > 0 ? points : [...points].reverse();
+    const middle = [0, 1].map((k) => ring.reduce((sum, p) => sum + p[k], 0) / ring.length);
+    const far = Math.max(...ring.map((p) => Math.hypot(p[0] - middle[0], p[1] - middle[1])));
+    const c = Math.min(0.01, 0.2 * width, 0.2 * far);
+    const at = (y, inset) => ring.map(([x, z]) => {
+      const keep = 1 - inset / far;
+      return [middle[0] + keep * (x - middle[0]), y, middle[1] + keep * (z - middle[1])];
+    });
+    const h = width / 2;
+    const bands = [at(-h, c), at(c - h, 0), at(h - c, 0), at(h, c)];
+    body.face(...bands[0]).face(...[...bands[3]].reverse());
+    for (let k = 0; k < 3; k++)
+      for (let i = 0; i < ring.length; i++) {
+        const j = (i + 1) % ring.length;
+        body.face(bands[k][i], bands[k + 1][i], bands[k + 1][j], bands[k][j]);
+      }
+  }
+  return body;
+}
+
+/** Bars along a link's capsules, in the link's frame. */
+function linkShape({ capsules }, wide) {
+  const out = new Shape();
+  for (const [[ax, az], [bx, bz], radius] of capsules) {
+    const length = Math.hypot(bx - ax, bz - az);
+    const a = 1.25 * Math.max(radius, 0.012);
+    const b = Math.max(radius, 0.01);
+    const bar = new Shape().frustum(b, wide / 2, -length, a, wide / 2, 0);
+    const [c, s] = length ? [(az - bz) / length, (ax - bx) / length] : [1, 0];
+    for (let i = 0; i < bar.data.length; i += 6) {
+      const [px, py, pz, nx, ny, nz] = bar.data.slice(i, i + 6);
+      out.data.push(ax + c * px + s * pz, py, az - s * px + c * pz, c * nx + s * nz, ny, c * nz - s * nx);
+    }
+  }
+  return out;
+}
+
+function robotShapes({ trunk, half_track, hips, legs, wheel }) {
   const wide = 0.9 * wheel.width;
-  const link = (l, r) => {
-    const a = 1.25 * Math.max(r, 0.012);
-    const b = Math.max(r, 0.01);
-    return new Shape().frustum(b, wide / 2, -l, a, wide / 2, 0);
-  };
-  const [x, y, z] = trunk;
-  const c = 0.01;
-  const body = new Shape()
-    .frustum(x / 2 - c, y / 2 - c, -z / 2, x / 2, y / 2, c - z / 2)
-    .frustum(x / 2, y / 2, c - z / 2, x / 2, y / 2, z / 2 - c)
-    .frustum(x / 2, y / 2, z / 2 - c, x / 2 - c, y / 2 - c, z / 2);
+  const body = trunkShape(trunk);
+  const [{ points, width: y }] = trunk;
+  const range = (k) => [Math.min(...points.map((p) => p[k])), Math.max(...points.map((p) => p[k]))];
+  const [[, x], [low, high]] = [range(0), range(1)];
+  const z = high - low;
+  const thick = (part) => Math.max(...legs[0][part].capsules.map((capsule) => capsule[2]));
   const axle = new Shape().disc(0.3 * z, 2 * half_track - wheel.width, 0.004, 24);
   const r = wheel.radius;
   const h = wheel.width / 2;
@@ -115,13 +155,15 @@ function robotShapes({ trunk, half_track, hips, thigh, calf, wheel }) {
     }
   }
   rim.box([0.2 * r, 2.04 * h, 0.16 * r], [0, 0, 0.6 * r]);
-  const front = new Shape().box([0.004, 0.62 * y, 0.42 * z], [x / 2, 0, 0]);
+  const front = new Shape().box([0.004, 0.62 * y, 0.42 * z], [x, 0, (low + high) / 2]);
   return {
     body, axle, tyre, rim, front,
-    thigh: link(thigh.length, thigh.radius),
-    calf: link(calf.length, calf.radius),
-    motor: new Shape().disc(Math.max(1.7 * thigh.radius, 0.02), 1.25 * wide, 0.003, 28),
-    knee: new Shape().disc(Math.max(1.25 * thigh.radius, 0.015), 1.1 * wide, 0.003, 24),
+    thigh0: linkShape(legs[0].thigh, wide),
+    thigh1: linkShape(legs[1].thigh, wide),
+    calf0: linkShape(legs[0].calf, wide),
+    calf1: linkShape(legs[1].calf, wide),
+    motor: new Shape().disc(Math.max(1.7 * thick("thigh"), 0.02), 1.25 * wide, 0.003, 28),
+    knee: new Shape().disc(Math.max(1.25 * thick("thigh"), 0.015), 1.1 * wide, 0.003, 24),
     shaft: new Shape().revolve([[0, 0], [1, 0], [1, 1], [0, 1]], 12),
     tip: new Shape().revolve([[0, 0], [1, 0], [0, 1]], 14),
     hips,

@@ -45,11 +45,14 @@ class Scene {
       const y = leg % 2 ? -robot.half_track : robot.half_track;
       const [a, b, w] = state.q.slice(3 * leg, 3 * leg + 3);
       const thigh = multiply(base, hinge(a, [hip[0], y, hip[1]]));
-      const calf = multiply(thigh, hinge(b, [0, 0, -robot.thigh.length]));
-      const wheel = multiply(calf, hinge(w, [0, 0, -robot.calf.length]));
+      const pair = leg < 2 ? 0 : 1;
+      const own = robot.legs[pair];
+      const calf = multiply(thigh, hinge(b, [0, 0, -own.thigh.length]));
+      const wheel = multiply(calf, hinge(w, [0, 0, -own.calf.length]));
       const darker = colour.map((v) => 0.8 * v);
       out.push(
-        [p.thigh, thigh, colour], [p.motor, thigh, darker], [p.calf, calf, colour],
+        [p[`thigh${pair}`], thigh, colour], [p.motor, thigh, darker],
+        [p[`calf${pair}`], calf, colour],
         [p.knee, calf, darker], [p.tyre, wheel, c.tyre], [p.rim, wheel, colour],
       );
       this.arrow(out, wheel, state.force.slice(2 * leg, 2 * leg + 2), y, c.force);

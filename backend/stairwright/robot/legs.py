@@ -1,0 +1,159 @@
+"""A robot's legs and body as planner, controller and simulator see them: everything filled in.
+
+A document may leave out what follows from the rest (rear legs like the front ones, one motor for
+thigh and calf, straight capsules); here nothing is left out. SI units; frames of `description`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .parts import Actuator, LegLimits, Link, Outline, Wheel
+
+if TYPE_CHECKING:
+    from .description import Robot
+
+Vector2 = tuple[float, float]
+Capsule = tuple[Vector2, Vector2, float]  # ends in the link's frame, radius
+
+
+@dataclass(frozen=True)
+class LinkForm:
+    """A thigh or a calf.
+
+    Attributes:
+        length: From joint to joint [m].
+        com: Mass centre in the link's frame: x, z [m].
+        mass: [kg]
+        inertia: Ixx, Iyy, Izz about the mass centre [kg m^2].
+        capsules: What may touch the terrain or the other legs.
+    """
+
+    length: float
+    com: Vector2
+    mass: float
+    inertia: tuple[float, float, float]
+    capsules: tuple[Capsule, ...]
+
+    @property
+    def radius(self) -> float:
+        """Of its thickest capsule [m]."""
+        return max(radius for _, _, radius in self.capsules)
+
+    @property
+    def com_along(self) -> Vector2:
+        """The mass centre in terms of the line between the joints: shares of it along, across.
+
+        It lies at upper + along * d + across * (-d_z, d_x), d = lower - upper joint: no angle is
+        needed.
+        """
+        return -self.com[1] / self.length, self.com[0] / self.length
+
+
+@dataclass(frozen=True)
+class Leg:
+    """The legs of a pair, which are alike; masses are those of one leg."""
+
+    hip: Vector2
+    thigh: LinkForm
+    calf: LinkForm
+    wheel: Wheel
+    limits: LegLimits
+    thigh_motor: Actuator
+    calf_motor: Actuator
+    wheel_motor: Actuator
+
+    @property
+    def knee(self) -> float:
+        """+1 if the calf turns forward, -1 if it turns backward."""
+        return self.limits.knee
+
+    @property
+    def reach(self) -> float:
+        """Distance from hip to wheel of a straight leg [m]."""
+        return self.thigh.length + self.calf.length
+
+    @property
+    def mass(self) -> float:
+        """Of one leg [kg]."""
+        return self.thigh.mass + self.calf.mass + self.wheel.mass
+
+    @property
+    def motors(self) -> tuple[Actuator, Actuator, Actuator]:
+        """Of thigh, calf and wheel."""
+        return self.thigh_motor, self.calf_motor, self.wheel_motor
+
+
+@dataclass(frozen=True)
+class Body:
+    """The trunk with all that is fixed to it: mass [kg], mass centre [m], moments about it."""
+
+    mass: float
+    com: tuple[float, float, float]
+    inertia: tuple[float, float, float]
+    outline: tuple[Outline, ...]
+
+    @property
+    def corners(self) -> NDArray[np.float64]:
+        """(n, 2) corners of all pieces [m]."""
+        return np.array([point for piece in self.outline for point in piece.points])
+
+    @property
+    def span(self) -> float:
+        """Largest distance of a corner from the trunk point [m]."""
+        return float(np.hypot(*self.corners.T).max())
+
+
+def legs_of(robot: Robot) -> tuple[Leg, Leg]:
+    """Front and rear leg."""
+    rear = robot.rear
+    front_leg = Leg(
+        robot.hips.front, _form(robot.thigh), _form(robot.calf), robot.wheel, robot.joints.front,
+        *(robot.actuators.of(part) for part in ("thigh", "calf", "wheel")),
+    )  # fmt: skip
+    motors = (rear and rear.actuators) or robot.actuators
+    rear_leg = Leg(
+        robot.hips.rear,
+        _form((rear and rear.thigh) or robot.thigh),
+        _form((rear and rear.calf) or robot.calf),
+        (rear and rear.wheel) or robot.wheel,
+        robot.joints.rear,
+        *(motors.of(part) for part in ("thigh", "calf", "wheel")),
+    )
+    return front_leg, rear_leg
+
+
+def body_of(robot: Robot) -> Body:
+    """Trunk and payload as one body."""
+    trunk, load = robot.trunk, robot.payload
+    outline = tuple(trunk.outline) or (box(*trunk.size),)
+    if load is None:
+        return Body(trunk.mass, trunk.com, trunk.inertia, outline)
+    mass = trunk.mass + load.mass
+    own, place = np.array(trunk.com), np.array([load.place[0], 0.0, load.place[1]])
+    com = (trunk.mass * own + load.mass * place) / mass
+    moments = np.array(trunk.inertia)
+    for part, centre in ((trunk.mass, own), (load.mass, place)):
+        off = centre - com
+        moments = moments + part * (off @ off - off**2)
+    x, y, z = com.tolist()
+    a, b, c = moments.tolist()
+    return Body(mass, (x, y, z), (a, b, c), outline)
+
+
+def box(length: float, width: float, height: float) -> Outline:
+    """The outline of a box round the trunk point."""
+    x, z = length / 2, height / 2
+    return Outline(points=[(-x, -z), (x, -z), (x, z), (-x, z)], width=width)
+
+
+def _form(link: Link) -> LinkForm:
+    com = link.com if isinstance(link.com, tuple) else (0.0, -link.com * link.length)
+    capsules: tuple[Capsule, ...] = tuple(
+        (shape.start, shape.end, shape.radius) for shape in link.shape
+    ) or (((0.0, 0.0), (0.0, -link.length), link.radius),)
+    return LinkForm(link.length, com, link.mass, link.inertia, capsules)
