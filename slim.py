@@ -39,7 +39,6 @@ NEEDLESS = {
     "zstandard": ("_cffi.*",),  # the other of two forms of the same
     ".": ("setuptools", "pkg_resources", "_distutils_hack", "distutils-precedence.pth"),
 }
-NEEDED_TESTS = ("numpy/_core/tests",)  # numpy.testing imports from there
 
 
 def needless(packages: Path) -> Iterator[Path]:
@@ -47,8 +46,7 @@ def needless(packages: Path) -> Iterator[Path]:
     for package, patterns in NEEDLESS.items():
         for pattern in patterns:
             yield from (packages / package).glob(pattern)
-    kept = {packages / name for name in NEEDED_TESTS}
-    yield from (path for path in packages.rglob("tests") if path.is_dir() and path not in kept)
+    yield from (path for path in packages.rglob("tests") if path.is_dir())
 
 
 def remove(packages: Path) -> None:

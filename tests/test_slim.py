@@ -30,7 +30,7 @@ def test_what_is_needless_goes_and_nothing_else(tmp_path: Path) -> None:
             for name in ("libipopt.so.3", "libcasadi_conic_daqp.so")
         ),
         write(tmp_path / "casadi" / "libcasadi_nlpsol_ipopt.so", b""),
-        write(tmp_path / "numpy" / "_core" / "tests" / "_natype.py", b""),
+        write(tmp_path / "numpy" / "testing" / "_private" / "utils.py", b""),
         write(tmp_path / "else" / "include" / "it.h", b""),
         write(tmp_path / "mujoco" / "include" / "mujoco.h", b""),
     ]

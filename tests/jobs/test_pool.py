@@ -5,9 +5,11 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import platform
 import signal
 import time
 from collections.abc import Awaitable, Callable
+from pathlib import Path
 
 import pytest
 
@@ -17,7 +19,7 @@ from stairwright.jobs import pool as pools
 from stairwright.jobs.failures import DeadlineExceeded, WorkerDied
 from stairwright.jobs.pool import WorkerPool
 from stairwright.jobs.uploads import import_terrain
-from stairwright.jobs.worker import Limits
+from stairwright.jobs.worker import RESTLESS, Limits
 
 Story = Callable[[WorkerPool], Awaitable[None]]
 
@@ -226,3 +228,41 @@ def test_no_task_is_lost_when_the_one_before_it_is_given_up() -> None:
             assert await following == k
 
     tell(story)
+
+
+_KEPT: list[bytes] = []
+
+
+def scatter() -> int:
+    """Resident bytes after some were used and freed, the last of them not."""
+    blocks = [bytes([k % 256]) * 2000 for k in range(50_000)]
+    _KEPT.append(blocks.pop())
+    del blocks
+    return resident()
+
+
+def resident() -> int:
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE")
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="others keep nothing")
+def test_a_worker_without_work_gives_memory_back() -> None:
+    async def story(pool: WorkerPool) -> None:
+        before = await pool.run(resident, deadline=10)
+        used = await pool.run(scatter, deadline=10)
+        assert used > before + 80e6
+        await asyncio.sleep(RESTLESS + 1.0)
+        assert await pool.run(resident, deadline=10) < before + 20e6
+
+    tell(story)
+
+
+def test_the_first_task_starts_the_workers() -> None:
+    async def run() -> None:
+        pool = WorkerPool("test", 1, Limits())
+        try:
+            assert await pool.run(json.loads, "[1]", deadline=10) == [1]
+        finally:
+            await pool.stop()
+
+    asyncio.run(run())

@@ -11,6 +11,7 @@ from functools import partial
 from fastapi.concurrency import run_in_threadpool
 
 from stairwright.jobs.engine import planning_engine, rollout_engine
+from stairwright.jobs.memory import give_memory_back
 from stairwright.jobs.planning import Planning
 from stairwright.jobs.pool import WorkerPool
 from stairwright.jobs.rollouts import Rollouts
@@ -32,6 +33,7 @@ logger = logging.getLogger(__name__)
 
 COLLECT_EVERY = 3600.0  # s
 SETTLE_EVERY = 2.0  # s
+TRIM_EVERY = 60.0  # s
 FIRST_SECOND = 1.0  # s
 UPLOAD_MEMORY = 2048  # MiB
 UPLOAD_DEADLINE = 20.0  # s
@@ -92,6 +94,7 @@ class Services:
             asyncio.create_task(self._start_the_rest()),
             asyncio.create_task(watch_clock(self.store.last_written)),
             asyncio.create_task(self.sessions.close_idle_forever()),
+            asyncio.create_task(self._stay_small()),
         ]
         if not self.store.read_only:
             self._tasks += [
@@ -112,8 +115,9 @@ class Services:
         self._tasks.append(asyncio.create_task(self.readiness.rehearse()))
         await self.readiness.tried.wait()  # what plans cannot, others may
         await asyncio.sleep(FIRST_SECOND)
-        await self.rollout_pool.start()
-        await self.upload_pool.start()
+        await (
+            self.rollout_pool.start()
+        )  # that for uploads, which is large, waits until it is needed
         load_scenes()
         gc.freeze()  # a collector that looks at all that was imported holds every request up
 
@@ -141,6 +145,11 @@ class Services:
             else:
                 trouble.worked()
             await asyncio.sleep(COLLECT_EVERY)
+
+    async def _stay_small(self) -> None:
+        while True:
+            await asyncio.sleep(TRIM_EVERY)
+            await asyncio.to_thread(give_memory_back)
 
     async def _settle(self) -> None:
         trouble = Trouble(logger, "compressing new results")

@@ -41,7 +41,10 @@ class WorkerPool:
         self._keepers: list[asyncio.Task[None]] = []
 
     async def start(self) -> None:
-        """Start the workers, without waiting for them, and keep them alive until `stop`."""
+        """Start the workers, without waiting for them, and keep them alive until `stop`.
+
+        The first task starts them too.
+        """
         self._keepers = [asyncio.create_task(self._keep_one()) for _ in range(self._processes)]
 
     async def stop(self) -> None:
@@ -59,6 +62,8 @@ class WorkerPool:
             OutOfMemory: If it needs more memory than a worker may have.
             Exception: Whatever the function raises.
         """
+        if not self._keepers:
+            await self.start()
         watch = Stopwatch()
         with watch.measured(self.observe):
             return await self._run(watch, function, *args, deadline=deadline)

@@ -9,6 +9,7 @@ import gc
 import os
 import pickle
 import resource
+import select
 import signal
 import socket
 import struct
@@ -17,7 +18,10 @@ import traceback
 from dataclasses import dataclass
 from typing import Any
 
+from .memory import give_memory_back
+
 LENGTH = struct.Struct("!Q")  # before each message: its length without this
+RESTLESS = 5.0  # s without a task until a worker gives back memory that it does not use
 _PR_SET_PDEATHSIG = 1
 _OOM_SCORE = "500"  # of -1000 (never ended for want of memory) to 1000 (first of all)
 
@@ -40,8 +44,16 @@ class Limits:
 def serve(channel: socket.socket, limits: Limits) -> None:
     """Answer every task that comes until the other side closes the channel."""
     _initialise(limits)
+    waiting = select.poll()
+    waiting.register(channel, select.POLLIN)
     with channel, channel.makefile("rb") as tasks:
-        while len(head := tasks.read(LENGTH.size)) == LENGTH.size:
+        while True:
+            if not waiting.poll(RESTLESS * 1000):
+                gc.collect()
+                give_memory_back()
+            head = tasks.read(LENGTH.size)
+            if len(head) < LENGTH.size:
+                return
             channel.sendall(_outcome(tasks.read(*LENGTH.unpack(head))))
 
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
+import sys
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -51,8 +55,30 @@ def _is_current(engine: Engine) -> bool:
 
 
 def _migrate(engine: Engine) -> None:
-    if _is_current(engine):
+    if _is_current(engine) or (_migrated_apart(engine) and _is_current(engine)):
         return
+    _migrate_here(engine)
+
+
+def _migrated_apart(engine: Engine) -> bool:
+    """Migrate in a process that ends: Alembic takes memory that a service would never give back.
+
+    Only where no other thread may hold a lock at the moment of the fork; False if it did not work.
+    """
+    if sys.platform != "linux" or threading.active_count() > 1:
+        return False
+    engine.dispose()
+    child = os.fork()
+    if child == 0:
+        status = 1
+        with contextlib.suppress(Exception):  # the service meets it again and says what it is
+            _migrate_here(engine)
+            status = 0
+        os._exit(status)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+
+
+def _migrate_here(engine: Engine) -> None:
     from alembic import command  # takes a while to import
     from alembic.config import Config
     from alembic.runtime.migration import MigrationContext
