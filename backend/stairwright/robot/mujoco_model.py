@@ -12,6 +12,7 @@ rear leg on the same side; legs pass the trunk freely, because they move beside 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import mujoco
@@ -84,13 +85,7 @@ def build_spec(
     spec = mujoco.MjSpec()
     spec.modelname = robot.name
     spec.compiler.degree = False
-    option = spec.option
-    option.timestep = TIMESTEP
-    option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    option.solver = mujoco.mjtSolver.mjSOL_NEWTON
-    option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-    option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
-    option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
+    set_physics(spec)
     if friction is None:
         friction = terrain.friction if terrain is not None else 1.0
     friction = as_friction(friction)
@@ -99,6 +94,38 @@ def build_spec(
     spec.worldbody.add_light(pos=[0, -2, 4], dir=[0, 0.5, -1])
     _add_robot(spec, robot, friction, visual)
     return spec
+
+
+def set_physics(spec: Any) -> None:
+    """The settings that the tests prove."""
+    option = spec.option
+    option.timestep = TIMESTEP
+    option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    option.solver = mujoco.mjtSolver.mjSOL_NEWTON
+    option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
+
+
+def add_contact_sensors(spec: Any, wheels: Sequence[str], trunk: str) -> None:
+    """What the world does to each wheel's body, and how many contacts the robot has."""
+    for leg, wheel in zip(LEGS, wheels, strict=True):
+        spec.add_sensor(
+            name=f"{leg}_contact",
+            type=mujoco.mjtSensor.mjSENS_CONTACT,
+            objtype=mujoco.mjtObj.mjOBJ_BODY,
+            objname=wheel,
+            reftype=mujoco.mjtObj.mjOBJ_BODY,
+            refname="world",
+            intprm=_WHEEL_SENSOR,
+        )
+    spec.add_sensor(
+        name="all_contacts",
+        type=mujoco.mjtSensor.mjSENS_CONTACT,
+        objtype=mujoco.mjtObj.mjOBJ_XBODY,
+        objname=trunk,
+        intprm=_COUNT_SENSOR,
+    )
 
 
 def build_model(
@@ -181,23 +208,7 @@ def _add_robot(spec: Any, robot: Robot, friction: float, visual: bool) -> None:
             ctrlrange=[-motor.torque, motor.torque],
         )
         actuator.gainprm[0] = 1.0
-    for leg in LEGS:
-        spec.add_sensor(
-            name=f"{leg}_contact",
-            type=mujoco.mjtSensor.mjSENS_CONTACT,
-            objtype=mujoco.mjtObj.mjOBJ_BODY,
-            objname=f"{leg}_wheel",
-            reftype=mujoco.mjtObj.mjOBJ_BODY,
-            refname="world",
-            intprm=_WHEEL_SENSOR,
-        )
-    spec.add_sensor(
-        name="all_contacts",
-        type=mujoco.mjtSensor.mjSENS_CONTACT,
-        objtype=mujoco.mjtObj.mjOBJ_XBODY,
-        objname="trunk",
-        intprm=_COUNT_SENSOR,
-    )
+    add_contact_sensors(spec, [f"{leg}_wheel" for leg in LEGS], "trunk")
 
 
 def _piece(spec: Any, name: str, piece: Outline) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from stairwright.documents import Model
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
 from stairwright.robot.description import Robot
+from stairwright.robot.parts import optional
 from stairwright.terrain.profile import Terrain
 
 Floats = NDArray[np.float64]
@@ -133,6 +134,9 @@ class Rollout(Model):
     robot: str
     robot_hash: str
     robot_description: Robot
+    model: str = optional(
+        "", max_length=2000, description="the file whose model was simulated, if not ours"
+    )
     friction: float
     seed: int
     controller: ControllerSettings

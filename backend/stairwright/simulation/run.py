@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -21,6 +22,7 @@ from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.smoothing.path_timing import retimed
 from stairwright.robot.description import LEGS
 from stairwright.robot.mujoco_model import build_spec
+from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
 
 from . import score
@@ -56,6 +58,9 @@ def runs_natively(settings: ControllerSettings) -> bool:
 class Run:
     """One rollout: model, memory of the controller, score and record."""
 
+    simulated = ""  # the file whose model this is, if it is not ours
+    own_model = True  # ours, whose state the native loop reads where it lies
+
     def __init__(
         self,
         plan: Plan,
@@ -70,10 +75,7 @@ class Run:
         self.robot = robot = plan.robot_description
         self.path = wheel_path(plan.terrain, robot.wheel.radius)
         terrain = real_terrain(plan.terrain, disturbance.height)
-        spec = build_spec(robot, terrain, max(0.01, friction + disturbance.friction), visual=False)
-        disturb_trunk(spec, robot, disturbance)
-        self.model = spec.compile()
-        self.data = mujoco.MjData(self.model)
+        self.model, self.data = self._world(terrain, max(0.01, friction + disturbance.friction))
         self.dt = CONTROL_STEPS * self.model.opt.timestep
         self.track: Track = self._track()
         self.limit = 2.5 * self.track.duration + 5.0
@@ -85,18 +87,29 @@ class Run:
         self.wanted = np.zeros(12)
         self.score = np.zeros(score.SCORES)
         self.loads = LinkLoads(self.dt)
-        self.names = [self.model.geom(i).name for i in range(self.model.ngeom)]
+        self.names = self._geom_names()
         self.floor = float(terrain.vertices[:, 1].min())
         every = max(1, round(1.0 / (record_hz * self.dt)))
         self.controller: Controller | None = None
         self.native: _core.Rollout | None = None
-        if runs_natively(settings):
+        if self.own_model and runs_natively(settings):
             self.native = self._native(every)
         else:
             self.controller = Controller(robot, self.path, plan.friction, settings)
         self.recorder = Recorder(every, self.track, robot.wheel.radius, self.native)
         self.wall = self.time = 0.0
         self._place()
+
+    def _world(self, terrain: Terrain, friction: float) -> tuple[Any, Any]:
+        """The model to simulate and its state."""
+        spec = build_spec(self.robot, terrain, friction, visual=False)
+        disturb_trunk(spec, self.robot, self.disturbance)
+        model = spec.compile()
+        return model, mujoco.MjData(model)
+
+    def _geom_names(self) -> list[str]:
+        """What each shape is part of."""
+        return [self.model.geom(i).name for i in range(self.model.ngeom)]
 
     def _track(self) -> Track:
         plan, settings = self.plan, self.settings
@@ -201,7 +214,11 @@ class Run:
             self.recorder.take(data, self.target, self.places)
             if data.sensordata[16] != wheels or self.loads.loads:
                 self._touch(self.time + k * self.dt)
-            mujoco.mj_step(self.model, data, CONTROL_STEPS)
+            self._advance()
+
+    def _advance(self) -> None:
+        """Physics until the next control step."""
+        mujoco.mj_step(self.model, self.data, CONTROL_STEPS)
 
     def _tick(self, moving: bool, qpos: Floats, qvel: Floats) -> int:
         """One control step with the numpy controller; how many contacts the wheels have."""
@@ -230,10 +247,14 @@ class Run:
             if not first.startswith("terrain"):
                 own = True
             elif not second.endswith("wheel"):
-                mujoco.mj_contactForce(self.model, self.data, i, force)
+                self._contact_force(i, force)
                 loads[second] = loads.get(second, 0.0) + float(np.hypot(*force[:2]))
         self.loads.self_contacts += own
         self.loads.add(time, loads)
+
+    def _contact_force(self, contact: int, force: Floats) -> None:
+        """Write the force and torque (6,) of a contact, in its own frame, into `force`."""
+        mujoco.mj_contactForce(self.model, self.data, contact, force)
 
     def _wheels(self) -> Floats:
         return np.array([self.data.body(f"{leg}_wheel").xpos[[0, 2]] for leg in LEGS])
@@ -273,6 +294,8 @@ class Run:
         )
         deviations = {k: v for k, v in self.disturbance.model_dump().items() if v != 0.0}
         key = [plan.id, plan.friction, self.friction, self.seed, self.settings.model_dump()]
+        if self.simulated:
+            key.append(self.simulated)
         return Rollout(
             id="r-" + content_hash([*key, deviations]).removeprefix("sha256:"),
             plan_id=plan.id,
@@ -282,6 +305,7 @@ class Run:
             robot=plan.robot,
             robot_hash=plan.robot_hash,
             robot_description=robot,
+            model=self.simulated,
             friction=self.friction,
             seed=self.seed,
             controller=self.settings,

@@ -202,7 +202,8 @@ def _not_four(source: Source, paths: list[list[int]], wheels: list[list[int]]) -
     if not wheels:
         what = f"the longest chain of joints has {longest}" if longest else "nothing moves"
         return f"no leg with thigh, calf and wheel: {what}"
-    return f"{len(wheels)} legs with a wheel ({listed(ends)}); there must be four"
+    what = "leg ends" if len(wheels) == 1 else "legs end"
+    return f"{len(wheels)} {what} in a wheel ({listed(ends)}); there must be four"
 
 
 def _refuse_loops(source: Source) -> None:

@@ -50,7 +50,10 @@ def clean(root: ET.Element, notes: Notes) -> Urdf:
     Raises:
         InputError: If links and joints do not make one tree.
     """
-    if any("xacro" in element.tag for element in root.iter()):
+    if any(
+        "xacro" in element.tag or any("${" in value for value in element.attrib.values())
+        for element in root.iter()
+    ):
         raise InputError("this is xacro, not yet URDF: run xacro on it first", ("file",))
     made = ET.Element("robot", name=root.get("name") or "robot")
     settings = root.find("mujoco/compiler")

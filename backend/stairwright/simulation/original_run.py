@@ -1,0 +1,148 @@
+"""A rollout of a robot's own MuJoCo file under our controller."""
+
+from __future__ import annotations
+
+import math
+import os
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.control.measurement import rotation
+from stairwright.control.settings import ControllerSettings
+from stairwright.errors import InputError
+from stairwright.planning.plan import Plan
+from stairwright.terrain.profile import Terrain
+
+from .disturbance import Disturbance
+from .original import Original, build_original, read_original
+from .run import CONTROL_STEPS, Run
+
+Floats = NDArray[np.float64]
+
+
+class Mirror:
+    """The state of a file's model as our own model's `MjData` would have it.
+
+    `qpos` (19,), `qvel` (18,) and `ctrl` (12,) are copies in our layout: `read` fetches the state,
+    `write` hands the torques over. Everything else is the file's own.
+    """
+
+    def __init__(self, original: Original) -> None:
+        self.original = original
+        self.data = mujoco.MjData(original.model)
+        self.qpos, self.qvel, self.ctrl = np.zeros(19), np.zeros(18), np.zeros(12)
+        self._signs = np.array([own.sign for own in original.maps])
+        self._offsets = np.array([own.offset for own in original.maps])
+        self.data.ctrl[12:] = list(original.held.values())
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.data, name)
+
+    def place(self) -> None:
+        """Put the file's model where `qpos` is, at rest."""
+        own, data = self.original, self.data
+        data.qpos[:] = own.model.qpos0
+        for address, value in own.held.items():
+            data.qpos[address] = value
+        data.qpos[own.positions] = self._signs * (self.qpos[7:] - self._offsets)
+        turn = rotation(self.qpos[3:7]) @ own.axes  # of the trunk's body
+        root = self._root()
+        place = self.qpos[:3] - turn @ own.centre
+        mujoco.mj_kinematics(own.model, data)
+        # The free joint's body may carry the trunk's: move it so that the trunk comes right.
+        first = data.xmat[root].reshape(3, 3).T @ data.xmat[own.base].reshape(3, 3)
+        shift = data.xmat[root].reshape(3, 3).T @ (data.xpos[own.base] - data.xpos[root])
+        carried = turn @ first.T
+        data.qpos[:3] = place - carried @ shift
+        mujoco.mju_mat2Quat(data.qpos[3:7], carried.ravel())
+        data.qvel[:] = 0.0
+        mujoco.mj_forward(own.model, data)
+        self.read()
+
+    def read(self) -> None:
+        """Fetch the state."""
+        own, data = self.original, self.data
+        body = data.xmat[own.base].reshape(3, 3)
+        turn = body @ own.axes.T
+        self.qpos[:3] = data.xpos[own.base] + body @ own.centre
+        quaternion = np.empty(4)
+        mujoco.mju_mat2Quat(quaternion, turn.ravel())
+        self.qpos[3:7] = quaternion * math.copysign(1.0, quaternion @ self.qpos[3:7])
+        self.qpos[7:] = self._signs * data.qpos[own.positions] + self._offsets
+        moving = np.empty(6)
+        mujoco.mj_objectVelocity(own.model, data, mujoco.mjtObj.mjOBJ_XBODY, own.base, moving, 0)
+        spin = moving[:3]
+        self.qvel[:3] = moving[3:] + np.cross(spin, body @ own.centre)
+        self.qvel[3:6] = turn.T @ spin
+        self.qvel[6:] = self._signs * data.qvel[own.speeds]
+
+    def write(self) -> None:
+        """Hand over the torques."""
+        self.data.ctrl[:12] = self._signs * self.ctrl
+
+    def _root(self) -> int:
+        return int(self.original.model.body_rootid[self.original.base])
+
+
+class OriginalRun(Run):
+    """One rollout of the file `model`; `self.model` and `self.data` mirror it in our layout."""
+
+    own_model = False
+
+    def __init__(
+        self,
+        plan: Plan,
+        friction: float,
+        settings: ControllerSettings,
+        disturbance: Disturbance,
+        seed: int,
+        record_hz: float,
+        model: str | os.PathLike[str],
+    ) -> None:
+        for name in ("mass", "com_x", "com_z"):
+            if getattr(disturbance, name):
+                raise InputError("is for our own model of the robot", ("disturbance", name))
+        self.upload, self.reading = read_original(model, plan.robot_description)
+        maps = (f"{ours} <- {own.name}" for ours, own in self.reading.joints.items())
+        self.simulated = f"{self.reading.robot.source}: {', '.join(maps)}"
+        super().__init__(plan, friction, settings, disturbance, seed, record_hz)
+
+    def _world(self, terrain: Terrain, friction: float) -> tuple[Any, Any]:
+        self.original = build_original(self.upload, self.reading, self.robot, terrain, friction)
+        return self.original.model, Mirror(self.original)
+
+    def _geom_names(self) -> list[str]:
+        return self.original.labels
+
+    def _place(self) -> None:
+        """Put the robot into the plan's first pose, standing on the terrain."""
+        pose, mirror = self.plan.poses[0], self.data
+        front, rear = list(pose.q[:2]), list(pose.q[2:])
+        mirror.qpos[:3] = pose.x_c, 0.0, pose.z_c
+        mirror.qpos[3:7] = math.cos(pose.pitch / 2), 0.0, math.sin(pose.pitch / 2), 0.0
+        mirror.qpos[7:] = [*front, 0.0, *front, 0.0, *rear, 0.0, *rear, 0.0]
+        mirror.place()
+        lift = max((-float(d) for d in mirror.data.contact.dist), default=0.0)
+        if lift > 1e-3:
+            mirror.qpos[2] += lift
+            mirror.place()
+
+    def _advance(self) -> None:
+        mirror = self.data
+        mirror.write()
+        mujoco.mj_step(self.model, mirror.data, CONTROL_STEPS)
+        mirror.read()
+
+    def _contact_force(self, contact: int, force: Floats) -> None:
+        mujoco.mj_contactForce(self.model, self.data.data, contact, force)
+
+    def _wheels(self) -> Floats:
+        own, data = self.original, self.data.data
+        places = [
+            data.xpos[body] + data.xmat[body].reshape(3, 3) @ plane
+            for body, plane in zip(own.wheels, own.planes, strict=True)
+        ]
+        return np.array(places)[:, [0, 2]]
