@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from .simulation.result import Rollout
     from .simulation.rollout import rollout
     from .simulation.trials import Trials, trials
+    from .studies.study import StudyResult, study
     from .terrain.profile import Terrain
 
 __version__ = "0.1.0"
@@ -27,6 +28,7 @@ __all__ = [
     "Robot",
     "Rollout",
     "ServiceError",
+    "StudyResult",
     "Terrain",
     "Trials",
     "certify",
@@ -35,6 +37,7 @@ __all__ = [
     "plan",
     "robots",
     "rollout",
+    "study",
     "terrains",
     "trials",
 ]
@@ -48,6 +51,7 @@ _HOMES = {
     "Robot": "robot.description",
     "Rollout": "simulation.result",
     "ServiceError": "client",
+    "StudyResult": "studies.study",
     "Terrain": "terrain.profile",
     "Trials": "simulation.trials",
     "certify": "planning.certificate",
@@ -56,6 +60,7 @@ _HOMES = {
     "plan": "planning.planner",
     "robots": "library",
     "rollout": "simulation.rollout",
+    "study": "studies.study",
     "terrains": "library",
     "trials": "simulation.trials",
 }

@@ -78,6 +78,14 @@ def parser() -> argparse.ArgumentParser:
     bench.add_argument("--method", choices=METHODS, default="path")
     bench.add_argument("--repeat", type=int, default=5, metavar="N", help="solves each")
 
+    study = commands.add_parser("study", help="ask over whole ranges of terrains and robots")
+    study.add_argument("file", metavar="FILE", help="the study's document (yaml, json)")
+    study.add_argument("-o", "--output", metavar="FILE", help=".zarr, .nc or .csv")
+    study.add_argument("--workers", type=int, metavar="N", help="processes; all cores by default")
+    study.add_argument("--scheduler", metavar="ADDRESS", help="of Dask (STAIRWRIGHT_SCHEDULER)")
+    study.add_argument("--budget", type=int, metavar="N", help="cells or trials it may take")
+    study.add_argument("--retry", action="store_true", help="try failed cells again")
+
     commands.add_parser("terrains", help="list the terrain presets")
     commands.add_parser("robots", help="list the robots")
     return top

@@ -134,6 +134,13 @@ def bench_command(given: Arguments) -> str | None:
     return None
 
 
+def study_command(given: Arguments) -> str | None:
+    """`stairwright study`."""
+    from .studies.command import run_study
+
+    return run_study(given)
+
+
 def terrains_command(_: Arguments) -> str | None:
     """`stairwright terrains`."""
     print(summary.columns((name, load_terrain(name).description) for name in terrains()))
@@ -152,6 +159,7 @@ COMMANDS: Mapping[str, Command] = {
     "export": export_command,
     "certify": certify_command,
     "bench": bench_command,
+    "study": study_command,
     "terrains": terrains_command,
     "robots": robots_command,
 }

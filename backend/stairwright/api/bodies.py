@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any, Literal
 
-from pydantic import AliasChoices, BeforeValidator, Discriminator, Field, StrictBool, Tag
+from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag
 
-from stairwright.arguments import MOST_FRICTION, MOST_SEED
+from stairwright.arguments import MOST_SEED
 from stairwright.documents import Model
-from stairwright.errors import InputError
 from stairwright.export.table import Kind as Exported
 from stairwright.planning.plan import Method, Plan
 from stairwright.robot.description import Robot
+from stairwright.terrain.generation import Friction, Name
 from stairwright.terrain.profile import Terrain
-from stairwright.terrain.stairs import Direction
 
 
 def _form(value: Any) -> str | None:
@@ -38,7 +36,6 @@ def _without_readonly(value: Any) -> Any:
     return value
 
 
-Name = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[\w .+-]+$")]
 SentTerrain = Annotated[Terrain, BeforeValidator(_without_readonly)]
 _NameOrDocument = Discriminator(
     _form,
@@ -50,9 +47,6 @@ TerrainSource = Annotated[
 ]
 RobotSource = Annotated[
     Annotated[Name, Tag("~name")] | Annotated[Robot, Tag("~document")], _NameOrDocument
-]
-Friction = Annotated[
-    float, Field(strict=True, gt=0.0, le=MOST_FRICTION, description="Coulomb, wheel on terrain")
 ]
 SettingName = Annotated[str, Field(max_length=64, pattern=r"^[a-z0-9_]+$")]
 Number = Annotated[float, Field(strict=True, ge=-1e9, le=1e9)]
@@ -127,87 +121,6 @@ class TerrainDocument(Terrain):
     """A terrain, and whether it is one of the read-only presets."""
 
     readonly: bool = Field(description="a preset; it cannot be changed or deleted")
-
-
-Length = Annotated[float, Field(strict=True, gt=0.0, le=100.0)]
-Name100 = Annotated[Name | None, Field(description="made from the measures by default")]
-
-
-class _Generated(Model):
-    approach: Length = Field(1.5, description="level ground before it [m]")
-    platform: Length = Field(2.0, description="level ground on top and after it [m]")
-    direction: Direction = "up"
-    name: Name100 = None
-    friction: Friction = 0.6
-
-
-class StairParameters(_Generated):
-    """A flight of equal steps."""
-
-    kind: Literal["stair"]
-    rise: Length = Field(description="height of a step [m]")
-    run: Length = Field(0.30, description="from edge to edge [m]")
-    count: int = Field(
-        1,
-        strict=True,
-        ge=1,
-        le=200,
-        validation_alias=AliasChoices("count", "steps"),
-        description="of steps",
-    )
-    face_angle: float = Field(
-        math.pi / 2,
-        strict=True,
-        gt=0.0,
-        le=math.pi / 2,
-        description="of the faces from the horizontal [rad]",
-    )
-
-
-class RampParameters(_Generated):
-    """One inclined plane."""
-
-    kind: Literal["ramp"]
-    rise: Length = Field(
-        validation_alias=AliasChoices("rise", "height"), description="height gained [m]"
-    )
-    slope: float = Field(
-        strict=True,
-        gt=0.0,
-        lt=math.pi / 2,
-        validation_alias=AliasChoices("slope", "angle"),
-        description="from the horizontal [rad]",
-    )
-
-
-class FlatParameters(Model):
-    """Level ground."""
-
-    kind: Literal["flat"]
-    length: Length = Field(4.0, description="[m]")
-    name: Name = "flat"
-    friction: Friction = 0.6
-
-
-GENERATORS = ("stair", "ramp", "flat")
-
-
-def _generator(value: Any) -> str | None:
-    kind = value.get("kind") if isinstance(value, dict) else None
-    return f"~{kind}" if kind in GENERATORS else None
-
-
-Generation = Annotated[
-    Annotated[StairParameters, Tag("~stair")]
-    | Annotated[RampParameters, Tag("~ramp")]
-    | Annotated[FlatParameters, Tag("~flat")],
-    Discriminator(
-        _generator,
-        custom_error_type="generator",
-        custom_error_message="kind must be stair, ramp or flat",
-        custom_error_context={"error": InputError("must be stair, ramp or flat", ("kind",))},
-    ),
-]
 
 
 class ExportFormat(Model):

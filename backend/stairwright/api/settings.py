@@ -3,40 +3,17 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
 from stairwright.errors import InputError
-from stairwright.resources import data_folder
+from stairwright.resources import data_folder, default_data_folder
 
 from . import addresses
 
 LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
-
-
-def default_data_folder() -> Path:
-    """Where this platform keeps a user's data, or systemd a service's.
-
-    Raises:
-        InputError: If this user has no home, as users of services often do.
-    """
-    state = os.environ.get("STATE_DIRECTORY", "").split(":")[0]
-    if state:
-        return Path(state)
-    try:
-        home = Path.home()
-    except RuntimeError:
-        raise InputError(
-            "this user has no home folder: name a folder for the data in STAIRWRIGHT_DATA"
-        ) from None
-    if sys.platform == "darwin":
-        return home / "Library" / "Application Support" / "stairwright"
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local") / "stairwright"
-    return Path(os.environ.get("XDG_DATA_HOME") or home / ".local" / "share") / "stairwright"
 
 
 def page_folder() -> Path:
