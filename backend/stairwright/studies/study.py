@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from stairwright.arguments import as_whole
 from stairwright.errors import InputError
 from stairwright.jobs.engine import planning_engine, rollout_engine
+from stairwright.simulation.trials import all_cores
 
 from .document import Study, check_budget, study_id
 from .fill import Report, all_known, fill_grid
@@ -146,6 +148,17 @@ def open_store(study: Study, path: Path | None) -> ResultStore:
 
 
 def choose_engine(scheduler: str | None, workers: int | None) -> Engine:
-    """Who evaluates the cells."""
-    _ = scheduler, workers
-    return SerialEngine()
+    """Who evaluates the cells: Dask's workers, or this process where one worker was asked for.
+
+    Raises:
+        InputError: If packages are missing.
+    """
+    address = scheduler or os.environ.get("STAIRWRIGHT_SCHEDULER") or None
+    count = all_cores() if workers is None else workers
+    if address is None and count == 1:
+        return SerialEngine()
+    try:
+        from .cluster import ClusterEngine
+    except ImportError as error:
+        raise InputError(MISSING) from error
+    return ClusterEngine(address, count)
