@@ -47,6 +47,7 @@ class ClusterEngine:
         self._workers = workers
         self._local: LocalCluster | None = None
         self._client: Any = None
+        self._sizes: dict[str, BatchSizes] = {}  # by family: boundaries come in many waves
 
     @property
     def scheduler_pid(self) -> int | None:
@@ -94,7 +95,8 @@ class ClusterEngine:
                         yield finished
                 connected.result()
         if cells and not stopped():
-            yield from _Run(self._client, study, cells).finished(stopped)
+            sizes = self._sizes.setdefault(study.family, BatchSizes())
+            yield from _Run(self._client, study, cells, sizes).finished(stopped)
 
     def _connect(self) -> None:
         try:
@@ -165,15 +167,14 @@ def dask_plugin() -> Any:
 class _Run:
     """One pass over cells: a few batches in flight, the next one when one is done."""
 
-    def __init__(self, client: Any, study: Study, cells: Sequence[int]) -> None:
+    def __init__(self, client: Any, study: Study, cells: Sequence[int], sizes: BatchSizes) -> None:
         self._client = client
         self._document = study.model_dump_json().encode()
         self._family, self._engine = study.family, engine_of(study)
-        self._axes = [axis.points for axis in study.axes]
         self._study = study
         self._todo = deque(cells)
         self._split: deque[list[int]] = deque()  # batches that killed their workers, in halves
-        self._sizes = BatchSizes()
+        self._sizes = sizes
         self._flying: dict[Any, list[int]] = {}
         self._landed: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._counted, self._count = float("-inf"), 1

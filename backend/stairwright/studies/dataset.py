@@ -17,6 +17,15 @@ if TYPE_CHECKING:
 ENDINGS = (".zarr", ".nc", ".csv")
 
 
+def dataset_of(store: ResultStore) -> xr.Dataset:
+    """The dataset of a study, in memory."""
+    if store.study.boundary_axis is None:
+        return grid_dataset(store)
+    from .border_dataset import border_dataset
+
+    return border_dataset(store)
+
+
 def grid_dataset(store: ResultStore) -> xr.Dataset:
     """Every variable over all axes, in memory."""
     import xarray as xr

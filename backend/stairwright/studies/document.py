@@ -27,6 +27,7 @@ from stairwright.terrain.profile import Terrain
 from .axes import Axis
 
 MOST_AXES = 8
+MOST_CELLS = 10_000_000  # of one study: its states have to fit into memory
 MOST_TRIALS = 10_000  # of one cell
 Compute = Literal["plan", "rollout", "trials"]
 
@@ -125,13 +126,20 @@ class Study(Model):
 
     @property
     def cells(self) -> int:
-        """Number of cells; of a boundary axis as many as may have to be asked about at worst."""
+        """Number of cells, those included that a boundary leaves out."""
         return math.prod(self.shape)
 
     @property
     def effort(self) -> int:
-        """Plans, rollouts or trials that this takes at most: what budgets count."""
-        return self.cells * (self.trials.count if self.compute == "trials" else 1)
+        """Plans, rollouts or trials that this takes: what budgets count.
+
+        Of a boundary, as many as bisection takes.
+        """
+        cells = self.cells
+        if self.boundary_axis is not None:
+            length = len(self.boundary_axis.points)
+            cells = cells // length * min(length, 4 + length.bit_length())
+        return cells * (self.trials.count if self.compute == "trials" else 1)
 
     @cached_property
     def family(self) -> str:
@@ -157,6 +165,12 @@ def check_budget(study: Study, budget: int, setting: str) -> None:
     Raises:
         InputError: If it is too much.
     """
+    if study.cells > MOST_CELLS:
+        raise InputError(
+            f"{study.cells:,} cells are more than {MOST_CELLS:,}; ask for fewer values, or for "
+            "a larger tolerance",
+            ("axes",),
+        )
     if study.effort > budget:
         each = {"plan": "plans", "rollout": "rollouts", "trials": "trials"}[study.compute]
         raise InputError(

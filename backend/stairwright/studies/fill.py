@@ -67,6 +67,20 @@ def fill_grid(store: ResultStore, engine: Engine, report: Report | None, stopped
         meter.tell(finished)
 
 
-def all_known(store: ResultStore) -> bool:
-    """Whether nothing of a grid is pending."""
-    return bool(np.all(store.states != PENDING))
+def fill(store: ResultStore, engine: Engine, report: Report | None, stopped: Stopped) -> None:
+    """Evaluate what is pending and asked for: every cell, or those that a boundary takes."""
+    if store.study.boundary_axis is None:
+        fill_grid(store, engine, report, stopped)
+    else:
+        from .boundary import fill_boundary
+
+        fill_boundary(store, engine, report, stopped)
+
+
+def is_complete(store: ResultStore) -> bool:
+    """Whether everything that was asked for is known."""
+    if store.study.boundary_axis is None:
+        return bool(np.all(store.states != PENDING))
+    from .boundary import searched_rows
+
+    return searched_rows(store)[1]

@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from stairwright.arguments import as_friction
+from stairwright.control.settings import parse_settings
 from stairwright.documents import parse, wording
 from stairwright.errors import InputError
 from stairwright.planning.plan import Method
@@ -67,6 +68,8 @@ class Questions:
             InputError: If an axis stands for nothing, or nowhere has a value that can be asked.
         """
         self.study = study
+        parse_settings(study.controller)
+        parse_weights(study.method, study.weights)
         self.targets: list[Target] = []
         for i, axis in enumerate(study.axes):
             try:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
+import math
 import shutil
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -28,6 +29,7 @@ from .targets import target
 from .variables import DONE, FAILED, PENDING, REFUSED, VARIABLES, Record
 
 _CHUNK = 4096  # cells; a batch touches few chunks, and none takes long to write
+_MOST_CHUNKS = 64
 _SCHEMA = "stairwright/study-results/1"
 SUFFIX = ".zarr"
 
@@ -202,8 +204,8 @@ def _lay_out(path: Path, study: Study, engine: str) -> None:
 
 
 def _chunks(shape: Sequence[int]) -> tuple[int, ...]:
-    """Whole last axes, as many as make a chunk."""
-    out, room = [1] * len(shape), _CHUNK
+    """Whole last axes, as many as make a chunk; of large studies few chunks all the same."""
+    out, room = [1] * len(shape), max(_CHUNK, math.prod(shape) // _MOST_CHUNKS)
     for k in reversed(range(len(shape))):
         out[k] = max(1, min(shape[k], room))
         room //= out[k]

@@ -14,7 +14,7 @@ from stairwright.jobs.engine import planning_engine, rollout_engine
 from stairwright.simulation.trials import all_cores
 
 from .document import Study, check_budget, study_id
-from .fill import Report, all_known, fill_grid
+from .fill import Report, fill, is_complete
 from .question import Questions, check_axes
 from .resolve import load_study
 from .serial import Engine, SerialEngine, Stopped
@@ -49,15 +49,15 @@ class StudyResult:
 
     @cached_property
     def dataset(self) -> xr.Dataset:
-        """All variables over the axes, in memory."""
-        from .dataset import grid_dataset
+        """All variables over the axes, in memory; those of a border where there is a boundary."""
+        from .dataset import dataset_of
 
-        return grid_dataset(self._store)
+        return dataset_of(self._store)
 
     @property
     def complete(self) -> bool:
-        """Whether no cell is pending."""
-        return all_known(self._store)
+        """Whether everything that was asked for is known."""
+        return is_complete(self._store)
 
     def counts(self) -> dict[str, int]:
         """How many cells are pending, done, refused and failed."""
@@ -107,11 +107,11 @@ def study(
     kept = open_store(chosen, None if store is None else Path(store))
     if retry:
         kept.forget_failures()
-    if not all_known(kept):
+    if not is_complete(kept):
         engine = choose_engine(scheduler, workers)
         try:
             with kept.writing():
-                fill_grid(kept, engine, progress, stopped)
+                fill(kept, engine, progress, stopped)
         finally:
             engine.close()
     return StudyResult(kept)
