@@ -1,4 +1,4 @@
-"""Where data lies: what ships with the program, and what it keeps for its user."""
+"""What this machine has: where data lies that ships with the program or is its user's; cores."""
 
 from __future__ import annotations
 
@@ -37,3 +37,8 @@ def default_data_folder() -> Path:
     if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local") / "stairwright"
     return Path(os.environ.get("XDG_DATA_HOME") or home / ".local" / "share") / "stairwright"
+
+
+def all_cores() -> int:
+    """How many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

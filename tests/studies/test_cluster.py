@@ -17,7 +17,8 @@ from stairwright.studies.dataset import grid_dataset
 from stairwright.studies.fill import fill_grid
 from stairwright.studies.serial import SerialEngine
 from stairwright.studies.store import ResultStore
-from stairwright.studies.study import engine_of, prepared
+from stairwright.studies.study import prepared
+from stairwright.studies.version import engine_of
 from stairwright.studies.worker import OtherVersion, evaluate_batch
 
 from .small import STEP, identical, study

@@ -69,7 +69,7 @@ def test_too_much_is_refused_before_anything_is_made() -> None:
         for name in ("stairs.rise", "stairs.run", "friction")
     ]
     error = _refused(study(*axes))
-    assert "1,000,000,000,000 plans" in error.message
+    assert "1,000,000,000,000 cells" in error.message
     with pytest.raises(InputError, match="trials"):
         check_budget(load_study(STEP | {"compute": "trials"}), 100, "the budget")
 

@@ -26,7 +26,8 @@ from stairwright.studies.dataset import grid_dataset
 from stairwright.studies.fill import fill_grid
 from stairwright.studies.serial import SerialEngine
 from stairwright.studies.store import ResultStore
-from stairwright.studies.study import engine_of, prepared
+from stairwright.studies.study import prepared
+from stairwright.studies.version import engine_of
 
 from .small import STEP, identical, study
 
@@ -92,7 +93,7 @@ def test_what_is_out_of_date_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyP
     ):
         with pytest.raises(InputError, match=why):
             sw.study(document, workers=1, store=path)
-    monkeypatch.setattr("stairwright.studies.study.planning_engine", lambda: "another")
+    monkeypatch.setattr("stairwright.studies.version.planning_engine", lambda: "another")
     with pytest.raises(InputError, match="another version of the planner"):
         sw.study(_heights(0.05), workers=1, store=path)
     monkeypatch.undo()

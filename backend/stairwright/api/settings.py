@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from stairwright.errors import InputError
-from stairwright.resources import data_folder, default_data_folder
+from stairwright.resources import all_cores, data_folder, default_data_folder
 
 from . import addresses
 
@@ -20,10 +20,6 @@ def page_folder() -> Path:
     """The built page: inside an installed wheel, else in the checkout, where it may not exist."""
     shipped = Path(__file__).resolve().parents[1] / "page"
     return shipped if shipped.is_dir() else data_folder("frontend") / "dist"
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _about(text: str, low: float | None = None) -> dict[str, Any]:
@@ -65,11 +61,12 @@ class Settings:
         default=30, metadata=_about("a connection without requests is closed after this, s", 1)
     )
     plan_workers: int = field(
-        default_factory=lambda: min(4, _cores()),
+        default_factory=lambda: min(4, all_cores()),
         metadata=_about("processes for interactive plans", 1),
     )
     rollout_workers: int = field(
-        default_factory=lambda: max(1, _cores() - 1), metadata=_about("processes for rollouts", 1)
+        default_factory=lambda: max(1, all_cores() - 1),
+        metadata=_about("processes for rollouts", 1),
     )
     worker_memory: int = field(
         default=4096, metadata=_about("memory limit of a worker, MiB; 0 for none", 0)
@@ -80,6 +77,16 @@ class Settings:
     )
     queue_limit: int = field(default=64, metadata=_about("rollouts that may wait", 0))
     plan_queue_limit: int = field(default=64, metadata=_about("plans that may wait", 0))
+    scheduler: str = field(
+        default="", metadata=_about("a Dask scheduler for studies; empty for processes of ours")
+    )
+    study_workers: int = field(
+        default_factory=all_cores, metadata=_about("processes for studies, where there are any", 1)
+    )
+    study_cells: int = field(
+        default=50_000, metadata=_about("plans, rollouts or trials that one study may take", 1)
+    )
+    study_queue_limit: int = field(default=16, metadata=_about("studies that may wait", 0))
     body_limit: int = field(
         default=256 * 1024, metadata=_about("largest request body, bytes", 1024)
     )

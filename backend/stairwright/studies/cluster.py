@@ -21,8 +21,8 @@ from .grid import point
 from .local_cluster import LocalCluster
 from .question import Questions
 from .serial import Finished, Stopped
-from .study import engine_of
 from .variables import FAILED, Record, complete
+from .version import engine_of
 from .worker import Batch, CorePlugin, OtherVersion, evaluate_batch
 
 CONNECT_LIMIT = 20.0  # s

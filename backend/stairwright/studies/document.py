@@ -13,7 +13,7 @@ from stairwright.documents import Model, content_hash
 from stairwright.errors import InputError
 from stairwright.planning.plan import Method
 from stairwright.robot.description import Robot
-from stairwright.simulation.trials import Ranges
+from stairwright.simulation.ranges import Ranges
 from stairwright.terrain.generation import (
     GENERATORS,
     FlatParameters,

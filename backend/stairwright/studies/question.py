@@ -72,11 +72,8 @@ class Questions:
         parse_weights(study.method, study.weights)
         self.targets: list[Target] = []
         for i, axis in enumerate(study.axes):
-            try:
-                where = target(axis.name, study.method)
-                self.targets.append(where)
-            except InputError as error:
-                raise error.within("axes", i, "name") from None
+            where = target(axis.name, study.method)
+            self.targets.append(where)
             if where.part in _SIMULATED.get(study.compute, ()):
                 raise InputError(
                     f"has no effect on what is computed, {study.compute}", ("axes", i, "name")

@@ -13,7 +13,7 @@ from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
 from .document import Study
-from .targets import implied_terrain
+from .targets import implied_terrain, target
 
 FindTerrain = Callable[[Any], Terrain]
 FindRobot = Callable[[Any], Robot]
@@ -41,6 +41,11 @@ def resolve(study: Study, find_terrain: FindTerrain, find_robot: FindRobot) -> S
         InputError: If a name is unknown; its path names the field.
     """
     changes: dict[str, Any] = {}
+    for i, axis in enumerate(study.axes):
+        try:
+            target(axis.name, study.method)
+        except InputError as error:
+            raise error.within("axes", i, "name") from None
     if study.terrain is None:
         changes["terrain"] = implied_terrain([axis.name for axis in study.axes])
     elif isinstance(study.terrain, str):

@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 from stairwright.arguments import as_whole
 from stairwright.errors import InputError
-from stairwright.jobs.engine import planning_engine, rollout_engine
-from stairwright.simulation.trials import all_cores
+from stairwright.resources import all_cores
 
 from .document import Study, check_budget, study_id
 from .fill import Report, fill, is_complete
+from .formats import MISSING
 from .question import Questions, check_axes
 from .resolve import load_study
 from .serial import Engine, SerialEngine, Stopped
+from .version import engine_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,10 +27,6 @@ if TYPE_CHECKING:
 
 BUDGET = 1_000_000
 MOST_WORKERS = 1024
-MISSING = (
-    "studies need a few more packages: pip install 'stairwright[studies]' "
-    "(xarray, Zarr, Dask distributed, Optuna; about 200 MB)"
-)
 
 
 class StudyResult:
@@ -127,11 +124,6 @@ def prepared(document: str | Path | Mapping[str, Any] | Study, budget: int = BUD
     check_budget(chosen, budget, "the budget")
     check_axes(Questions(chosen))
     return chosen
-
-
-def engine_of(study: Study) -> str:
-    """Fingerprint of the code that a study's answers depend on."""
-    return planning_engine() if study.compute == "plan" else rollout_engine()
 
 
 def open_store(study: Study, path: Path | None) -> ResultStore:

@@ -19,8 +19,8 @@ from .cell import evaluate
 from .document import Study
 from .grid import point
 from .question import Questions
-from .study import engine_of
 from .variables import Record
+from .version import engine_of
 
 if TYPE_CHECKING:
     from distributed import Worker
