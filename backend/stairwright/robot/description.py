@@ -47,7 +47,7 @@ BENT = 0.05  # rad; a knee that bends both ways keeps this far from straight, on
 # Fields that documents of the first schema do not have.
 _NEW_IN_2: tuple[tuple[str, ...], ...] = (
     ("source",), ("assumed",), ("payload",), ("rear",), ("abduction",), ("trunk", "com"), ("trunk", "outline"),
-
+   
     ("thigh", "shape"), ("calf", "shape"), ("wheel", "friction"), ("wheel", "rolling_resistance"),
     ("actuators", "thigh"), ("actuators", "calf"),
 )  # fmt: skip
