@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from .simulation.result import Rollout
     from .simulation.rollout import rollout
     from .simulation.trials import Trials, trials
+    from .studies.design import design
+    from .studies.design_result import DesignResult
     from .studies.study import StudyResult, study
     from .terrain.profile import Terrain
 
@@ -24,6 +26,7 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Client",
+    "DesignResult",
     "Plan",
     "Robot",
     "Rollout",
@@ -32,6 +35,7 @@ __all__ = [
     "Terrain",
     "Trials",
     "certify",
+    "design",
     "load_robot",
     "load_terrain",
     "plan",
@@ -47,6 +51,7 @@ load_mujoco_library()  # the native core links it
 # Loaded on first use: `stairwright --help` and the web process need neither CasADi nor MuJoCo.
 _HOMES = {
     "Client": "client",
+    "DesignResult": "studies.design_result",
     "Plan": "planning.plan",
     "Robot": "robot.description",
     "Rollout": "simulation.result",
@@ -55,6 +60,7 @@ _HOMES = {
     "Terrain": "terrain.profile",
     "Trials": "simulation.trials",
     "certify": "planning.certificate",
+    "design": "studies.design",
     "load_robot": "library",
     "load_terrain": "library",
     "plan": "planning.planner",

@@ -141,6 +141,13 @@ def study_command(given: Arguments) -> str | None:
     return run_study(given)
 
 
+def design_command(given: Arguments) -> str | None:
+    """`stairwright design`."""
+    from .studies.command import run_design
+
+    return run_design(given)
+
+
 def terrains_command(_: Arguments) -> str | None:
     """`stairwright terrains`."""
     print(summary.columns((name, load_terrain(name).description) for name in terrains()))
@@ -160,6 +167,7 @@ COMMANDS: Mapping[str, Command] = {
     "certify": certify_command,
     "bench": bench_command,
     "study": study_command,
+    "design": design_command,
     "terrains": terrains_command,
     "robots": robots_command,
 }

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import Any
-
-import numpy as np
 
 from stairwright.errors import InputError
+from stairwright.planning.binding import margins_along
 from stairwright.planning.plan import Plan
 from stairwright.planning.planner import plan as make_plan
 from stairwright.planning.threads import one_by_one
-from stairwright.robot.description import Robot
 from stairwright.simulation.trials import clopper_pearson
 
 from .axes import Value
@@ -81,36 +78,13 @@ def _of_plan(plan: Plan) -> Record:
 
 def _margins(plan: Plan) -> Record:
     """The least margin of each kind over all poses, and the one that is least for its size."""
-    robot, poses = plan.robot_description, plan.poses
-    least: dict[str, float] = {
-        name: min(getattr(pose.margins, name) for pose in poses)
-        for name in ("clearance", "com", "friction", "torque")
-    }
-    forces = [pose.forces for pose in poses if pose.forces is not None]
-    if forces:
-        least["wheel_torque"] = _wheel_margin(robot, np.array(forces))
-    legs, wheels = robot.torque_limits[:, :2].min(), robot.torque_limits[:, 2].min()
-    base = (robot.hips.front[0] - robot.hips.rear[0]) / 2
-    scale = {
-        "clearance": robot.wheel.radius,
-        "com": base,
-        "friction": plan.friction,
-        "torque": float(legs),
-        "wheel_torque": float(wheels),
-    }
-    binding = min(least, key=lambda name: least[name] / scale[name])
+    along = margins_along(plan.robot_description, plan.friction, plan.poses)
+    least: dict[str, float] = {name: float(values.min()) for name, (values, _) in along.items()}
     return {
         **{f"margin_{name}": value for name, value in least.items()},
         "least_friction": plan.friction - least["friction"],
-        "binding": binding,
+        "binding": plan.binding.quantity if plan.binding is not None else None,
     }
-
-
-def _wheel_margin(robot: Robot, forces: Any) -> float:
-    """Limit minus static torque of a wheel [Nm]; `forces` (n, 2, 2) are those of wheel pairs."""
-    arms = np.array([leg.wheel.radius for leg in robot.legs])
-    torque = np.abs(forces[:, :, 0]) / 2 * arms
-    return float((robot.torque_limits[:, 2] - torque).min())
 
 
 def _rolled_out(study: Study, question: CellQuestion, plan: Plan) -> Record:

@@ -7,6 +7,7 @@ import signal
 import sys
 from collections import Counter
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,14 +15,15 @@ from stairwright.errors import InputError
 from stairwright.summary import columns
 
 from .fill import Progress
+from .formats import MISSING
 from .study import BUDGET, StudyResult, study
+
+if TYPE_CHECKING:
+    from .design_result import DesignResult
 
 
 def run_study(given: argparse.Namespace) -> str | None:
     """Carry out the study in a file; returns why it is not complete, if it is not."""
-    budget = BUDGET if given.budget is None else given.budget
-    if budget < 1:
-        raise InputError("must be at least 1", ("budget",))
     output = None if given.output is None else Path(given.output)
     if output is not None:
         from .dataset import check_ending
@@ -34,7 +36,7 @@ def run_study(given: argparse.Namespace) -> str | None:
             scheduler=given.scheduler,
             workers=given.workers,
             store=output if kept_there else None,
-            budget=budget,
+            budget=_budget(given),
             retry=given.retry,
             progress=_show if sys.stderr.isatty() else None,
             stopped=lambda: stop.asked,
@@ -47,6 +49,59 @@ def run_study(given: argparse.Namespace) -> str | None:
     if not result.complete:
         return "interrupted: what is done is kept, and the same command goes on with it"
     return None
+
+
+def run_design(given: argparse.Namespace) -> str | None:
+    """Carry out the design study in a file; returns why there is no answer, if there is none."""
+    try:
+        from .design import design
+    except ImportError as error:
+        raise InputError(MISSING) from error
+    output = None if given.output is None else Path(given.output)
+    if output is not None and output.suffix.lower() != ".json":
+        raise InputError("designs can be written as .json only", ("output",))
+
+    def show(done: int, total: int) -> None:
+        print(f"\r{done:,} of {total:,} designs", end="", file=sys.stderr, flush=True)
+
+    with Interruption() as stop:
+        result = design(
+            given.file,
+            scheduler=given.scheduler,
+            workers=given.workers,
+            budget=_budget(given),
+            progress=show if sys.stderr.isatty() else None,
+            stopped=lambda: stop.asked,
+        )
+    if sys.stderr.isatty():
+        print(file=sys.stderr)
+    print(design_summary(result))
+    if output is not None:
+        result.save(output)
+    if not result.complete:
+        return "interrupted: what was tried is kept, and the same command goes on with it"
+    return None if result.front else "no design passes"
+
+
+def design_summary(result: DesignResult) -> str:
+    """How many were tried, and the best ones."""
+    passed = sum(each.passed for each in result.candidates)
+    rows = [
+        ("design", result.design.name or result.id),
+        ("tried", f"{len(result.candidates):,}, of which {passed:,} pass"),
+    ]
+    for each in result.front:
+        aims = ", ".join(f"{name} {value:.4g}" for name, value in each.aims.items())
+        values = ", ".join(f"{name} {value:.4g}" for name, value in each.values.items())
+        rows.append(("best", f"{aims}  ({values})"))
+    return columns(rows)
+
+
+def _budget(given: argparse.Namespace) -> int:
+    budget: int = BUDGET if given.budget is None else given.budget
+    if budget < 1:
+        raise InputError("must be at least 1", ("budget",))
+    return budget
 
 
 class Interruption:

@@ -148,7 +148,15 @@ def _made(study: Study, given: Sequence[tuple[Target, Value]]) -> Robot:
     named = next((v for t, v in given if t.part == "robot"), None)
     robot = study.robot if named is None else study.robots[str(named)]
     assert isinstance(robot, Robot)
-    changes = [(t, v) for t, v in given if t.part != "robot"]
+    return varied_robot(robot, [(t, v) for t, v in given if t.part != "robot"])
+
+
+def varied_robot(robot: Robot, changes: Sequence[tuple[Target, Value]]) -> Robot:
+    """The robot with its payload or numbers of its file changed.
+
+    Raises:
+        InputError: If there is no such number, or they make no robot.
+    """
     if not changes:
         return robot
     data = robot.model_dump(mode="json")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -34,8 +34,10 @@ def load_study(source: str | Path | Mapping[str, Any] | Study) -> Study:
     return resolve(study, library.load_terrain, library.load_robot)
 
 
-def resolve(study: Study, find_terrain: FindTerrain, find_robot: FindRobot) -> Study:
-    """The study with documents instead of names.
+def resolve(
+    study: Study, find_terrain: FindTerrain, find_robot: FindRobot, names: Sequence[str] = ()
+) -> Study:
+    """The study with documents instead of names; `names` are of axes, further ones too.
 
     Raises:
         InputError: If a name is unknown; its path names the field.
@@ -47,7 +49,7 @@ def resolve(study: Study, find_terrain: FindTerrain, find_robot: FindRobot) -> S
         except InputError as error:
             raise error.within("axes", i, "name") from None
     if study.terrain is None:
-        changes["terrain"] = implied_terrain([axis.name for axis in study.axes])
+        changes["terrain"] = implied_terrain(names or [axis.name for axis in study.axes])
     elif isinstance(study.terrain, str):
         changes["terrain"] = _named("terrain", find_terrain, study.terrain)
     robots = dict(study.robots)

@@ -66,6 +66,7 @@ VARIABLES: Mapping[str, Variable] = {
     "margin_friction": Variable("number", "friction there is minus the most that is needed"),
     "margin_torque": Variable("number", "leg motors' limit minus the largest static torque", "Nm"),
     "margin_wheel_torque": Variable("number", "the same of the wheel motors", "Nm"),
+    "margin_joint_limit": Variable("number", "least distance of a joint from its limits", "rad"),
     "binding": Variable("word", "the margin that is least, as a share of what there is", length=16),
     "duration": Variable("number", "planned time; simulated time of rollouts", "s"),
     "energy": Variable("number", "of the rollout: integral of |torque x speed|", "J"),
