@@ -18,25 +18,32 @@ if TYPE_CHECKING:
     from .simulation.result import Rollout
     from .simulation.rollout import rollout
     from .simulation.trials import Trials, trials
+    from .studies.design import design
+    from .studies.design_result import DesignResult
+    from .studies.study import StudyResult, study
     from .terrain.profile import Terrain
 
 __version__ = "0.1.0"
 
 __all__ = [
     "Client",
+    "DesignResult",
     "Plan",
     "Robot",
     "Rollout",
     "ServiceError",
+    "StudyResult",
     "Terrain",
     "Trials",
     "certify",
     "import_robot",
+    "design",
     "load_robot",
     "load_terrain",
     "plan",
     "robots",
     "rollout",
+    "study",
     "terrains",
     "trials",
 ]
@@ -46,19 +53,23 @@ load_mujoco_library()  # the native core links it
 # Loaded on first use: `stairwright --help` and the web process need neither CasADi nor MuJoCo.
 _HOMES = {
     "Client": "client",
+    "DesignResult": "studies.design_result",
     "Plan": "planning.plan",
     "Robot": "robot.description",
     "Rollout": "simulation.result",
     "ServiceError": "client",
+    "StudyResult": "studies.study",
     "Terrain": "terrain.profile",
     "Trials": "simulation.trials",
     "certify": "planning.certificate.certify",
     "import_robot": "importing",
+    "design": "studies.design",
     "load_robot": "library",
     "load_terrain": "library",
     "plan": "planning.planner",
     "robots": "library",
     "rollout": "simulation.rollout",
+    "study": "studies.study",
     "terrains": "library",
     "trials": "simulation.trials",
 }

@@ -78,6 +78,17 @@ def parser() -> argparse.ArgumentParser:
     bench.add_argument("--method", choices=METHODS, default="path")
     bench.add_argument("--repeat", type=int, default=5, metavar="N", help="solves each")
 
+    study = commands.add_parser("study", help="ask over whole ranges of terrains and robots")
+    study.add_argument("file", metavar="FILE", help="the study's document (yaml, json)")
+    study.add_argument("-o", "--output", metavar="FILE", help=".zarr, .nc or .csv")
+    _add_engine(study)
+    study.add_argument("--retry", action="store_true", help="try failed cells again")
+
+    design = commands.add_parser("design", help="look for a robot's best dimensions")
+    design.add_argument("file", metavar="FILE", help="the design study's document (yaml, json)")
+    design.add_argument("-o", "--output", metavar="FILE", help=".json")
+    _add_engine(design)
+
     commands.add_parser("terrains", help="list the terrain presets")
     commands.add_parser("robots", help="list the robots")
     _add_robot(commands.add_parser("robot", help="read robots from other files, or convert them"))
@@ -117,6 +128,12 @@ def _add_planning(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--weight", action="append", default=[], metavar="NAME=VALUE", help="of the planner"
     )
+
+
+def _add_engine(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--workers", type=int, metavar="N", help="processes; default: all cores")
+    command.add_argument("--scheduler", metavar="ADDRESS", help="of Dask (STAIRWRIGHT_SCHEDULER)")
+    command.add_argument("--budget", type=int, metavar="N", help="cells or trials it may take")
 
 
 def _add_rate(command: argparse.ArgumentParser) -> None:

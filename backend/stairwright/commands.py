@@ -135,6 +135,20 @@ def bench_command(given: Arguments) -> str | None:
     return None
 
 
+def study_command(given: Arguments) -> str | None:
+    """`stairwright study`."""
+    from .studies.command import run_study
+
+    return run_study(given)
+
+
+def design_command(given: Arguments) -> str | None:
+    """`stairwright design`."""
+    from .studies.command import run_design
+
+    return run_design(given)
+
+
 def terrains_command(_: Arguments) -> str | None:
     """`stairwright terrains`."""
     print(summary.columns((name, load_terrain(name).description) for name in terrains()))
@@ -153,6 +167,8 @@ COMMANDS: Mapping[str, Command] = {
     "export": export_command,
     "certify": certify_command,
     "bench": bench_command,
+    "study": study_command,
+    "design": design_command,
     "terrains": terrains_command,
     "robots": robots_command,
     "robot": robot_command,

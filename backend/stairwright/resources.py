@@ -1,8 +1,12 @@
-"""Where the data that ships with the program lies: a checkout's top level, or inside the wheel."""
+"""What this machine has: where data lies that ships with the program or is its user's; cores."""
 
 from __future__ import annotations
 
+import os
+import sys
 from pathlib import Path
+
+from .errors import InputError
 
 _PACKAGE = Path(__file__).resolve().parent
 
@@ -11,3 +15,30 @@ def data_folder(name: str) -> Path:
     """The folder `name` (``terrains``, ``robots``) of the checkout or of the installed wheel."""
     shipped = _PACKAGE / "data" / name
     return shipped if shipped.is_dir() else _PACKAGE.parents[1] / name
+
+
+def default_data_folder() -> Path:
+    """Where this platform keeps a user's data, or systemd a service's.
+
+    Raises:
+        InputError: If this user has no home, as users of services often do.
+    """
+    state = os.environ.get("STATE_DIRECTORY", "").split(":")[0]
+    if state:
+        return Path(state)
+    try:
+        home = Path.home()
+    except RuntimeError:
+        raise InputError(
+            "this user has no home folder: name a folder for the data in STAIRWRIGHT_DATA"
+        ) from None
+    if sys.platform == "darwin":
+        return home / "Library" / "Application Support" / "stairwright"
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local") / "stairwright"
+    return Path(os.environ.get("XDG_DATA_HOME") or home / ".local" / "share") / "stairwright"
+
+
+def all_cores() -> int:
+    """How many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -31,6 +31,7 @@ from .routes import (
     rollouts,
     scene,
     sessions,
+    studies,
     terrains,
     tuning,
 )
@@ -88,7 +89,18 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.add_middleware(SecurityHeaders)
     app.add_middleware(Observe, metrics=services.metrics)
     api = APIRouter(prefix=PREFIX, dependencies=[Depends(known_query)])
-    for routes in (health, tuning, robots, terrains, plans, live, rollouts, jobs, sessions):
+    for routes in (
+        health,
+        tuning,
+        robots,
+        terrains,
+        plans,
+        live,
+        rollouts,
+        jobs,
+        studies,
+        sessions,
+    ):
         api.include_router(routes.router)
     app.include_router(api)
     app.include_router(health.router, include_in_schema=False)

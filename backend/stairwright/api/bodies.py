@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any, Literal
 
-from pydantic import AliasChoices, BeforeValidator, Discriminator, Field, StrictBool, Tag
+from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag
 
-from stairwright.arguments import MOST_FRICTION, MOST_SEED
+from stairwright.arguments import MOST_SEED
 from stairwright.documents import Model
-from stairwright.errors import InputError
 from stairwright.export.table import Kind as Exported
 from stairwright.planning.plan import Method, Plan
 from stairwright.robot.description import Robot
+from stairwright.terrain.generation import Friction, Name
 from stairwright.terrain.profile import Terrain
-from stairwright.terrain.stairs import Direction
 
 
 def _form(value: Any) -> str | None:
@@ -38,7 +36,6 @@ def _without_readonly(value: Any) -> Any:
     return value
 
 
-Name = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[\w .+-]+$")]
 SentTerrain = Annotated[Terrain, BeforeValidator(_without_readonly)]
 SentRobot = Annotated[Robot, BeforeValidator(_without_readonly)]
 _NameOrDocument = Discriminator(
@@ -51,9 +48,6 @@ TerrainSource = Annotated[
 ]
 RobotSource = Annotated[
     Annotated[Name, Tag("~name")] | Annotated[SentRobot, Tag("~document")], _NameOrDocument
-]
-Friction = Annotated[
-    float, Field(strict=True, gt=0.0, le=MOST_FRICTION, description="Coulomb, wheel on terrain")
 ]
 SettingName = Annotated[str, Field(max_length=64, pattern=r"^[a-z0-9_]+$")]
 Number = Annotated[float, Field(strict=True, ge=-1e9, le=1e9)]
@@ -137,87 +131,6 @@ class RobotDocument(Robot):
     version: str = Field(description="hash of its content, as in plans' `robot_hash`")
 
 
-Length = Annotated[float, Field(strict=True, gt=0.0, le=100.0)]
-Name100 = Annotated[Name | None, Field(description="made from the measures by default")]
-
-
-class _Generated(Model):
-    approach: Length = Field(1.5, description="level ground before it [m]")
-    platform: Length = Field(2.0, description="level ground on top and after it [m]")
-    direction: Direction = "up"
-    name: Name100 = None
-    friction: Friction = 0.6
-
-
-class StairParameters(_Generated):
-    """A flight of equal steps."""
-
-    kind: Literal["stair"]
-    rise: Length = Field(description="height of a step [m]")
-    run: Length = Field(0.30, description="from edge to edge [m]")
-    count: int = Field(
-        1,
-        strict=True,
-        ge=1,
-        le=200,
-        validation_alias=AliasChoices("count", "steps"),
-        description="of steps",
-    )
-    face_angle: float = Field(
-        math.pi / 2,
-        strict=True,
-        gt=0.0,
-        le=math.pi / 2,
-        description="of the faces from the horizontal [rad]",
-    )
-
-
-class RampParameters(_Generated):
-    """One inclined plane."""
-
-    kind: Literal["ramp"]
-    rise: Length = Field(
-        validation_alias=AliasChoices("rise", "height"), description="height gained [m]"
-    )
-    slope: float = Field(
-        strict=True,
-        gt=0.0,
-        lt=math.pi / 2,
-        validation_alias=AliasChoices("slope", "angle"),
-        description="from the horizontal [rad]",
-    )
-
-
-class FlatParameters(Model):
-    """Level ground."""
-
-    kind: Literal["flat"]
-    length: Length = Field(4.0, description="[m]")
-    name: Name = "flat"
-    friction: Friction = 0.6
-
-
-GENERATORS = ("stair", "ramp", "flat")
-
-
-def _generator(value: Any) -> str | None:
-    kind = value.get("kind") if isinstance(value, dict) else None
-    return f"~{kind}" if kind in GENERATORS else None
-
-
-Generation = Annotated[
-    Annotated[StairParameters, Tag("~stair")]
-    | Annotated[RampParameters, Tag("~ramp")]
-    | Annotated[FlatParameters, Tag("~flat")],
-    Discriminator(
-        _generator,
-        custom_error_type="generator",
-        custom_error_message="kind must be stair, ramp or flat",
-        custom_error_context={"error": InputError("must be stair, ramp or flat", ("kind",))},
-    ),
-]
-
-
 class ExportFormat(Model):
     """A format of files."""
 
@@ -256,6 +169,44 @@ class JobDocument(Model):
     result: str | None = Field(description="where the result is, when done")
     error: dict[str, Any] | None = Field(description="a problem document, when failed")
     links: dict[str, str]
+
+
+class AxisDocument(Model):
+    """An axis of a study."""
+
+    name: str
+    unit: str = Field(description="of the values; 1 for ratios and words")
+    values: list[float | str] = Field(description="all of them, in order")
+    boundary: bool = Field(description="searched for where the outcome changes, not filled")
+
+
+class StudyDocument(Model):
+    """A study's state. Events leave the axes out."""
+
+    id: str
+    name: str
+    state: Literal["queued", "running", "done", "failed", "cancelled"]
+    done: int = Field(description="cells that are known")
+    total: int = Field(description="cells that are to be known, as far as can be told")
+    progress: float = Field(ge=0.0, le=1.0)
+    eta: float | None = Field(description="seconds until it is done, by its own pace so far")
+    created: float = Field(description="seconds since 1970")
+    outdated: bool = Field(description="by another version of the planner than this service's")
+    error: dict[str, Any] | None = Field(description="a problem document, when failed")
+    axes: list[AxisDocument]
+    compute: Literal["plan", "rollout", "trials"]
+    links: dict[str, str]
+
+
+class CellDocument(Model):
+    """One cell of a study."""
+
+    cell: int
+    values: dict[str, float | str] = Field(description="of the axes, by name")
+    plan: dict[str, Any] | None = Field(
+        description="body of POST /plans for this cell; null where its values make no question"
+    )
+    record: dict[str, Any] = Field(description="the variables of the dataset")
 
 
 class SessionDocument(Model):

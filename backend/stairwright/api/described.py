@@ -19,11 +19,13 @@ _OPERATIONS = {
     "post_plan": "create_plan",
     "post_rollout": "create_rollout",
     "post_session": "create_session",
+    "post_study": "create_study",
     "put_playback": "set_playback",
     "put_robot": "save_robot",
     "put_scene": "set_scene",
     "put_terrain": "save_terrain",
     "settings": "get_settings",
+    "study_events": "follow_study",
 }
 
 TAGS = {
@@ -33,6 +35,7 @@ TAGS = {
     "terrains": "Presets and saved terrains; import and generation.",
     "plans": "How a robot gets over a terrain.",
     "rollouts": "Plans carried out in simulation.",
+    "studies": "One question over whole ranges of terrains, frictions and robots.",
     "jobs": "Work that takes longer than a request.",
     "sessions": "3D scenes of the page.",
 }
@@ -52,6 +55,7 @@ KINDS: Mapping[int, tuple[str, ...]] = {
     429: ("attempts", "connections", "queue-full", "sessions"),
     431: ("too-large",),
     500: ("bug",),
+    501: ("missing",),
     503: (
         "deadline", "failed", "interrupted", "memory", "no-scene", "starting", "unavailable",
         "worker-died",
@@ -76,11 +80,15 @@ _MADE = {  # by operation and status
     ("create_session", "201"): (),
     ("save_robot", "200"): ("ETag",),
     ("save_robot", "201"): ("ETag", "Location"),
+    ("create_study", "202"): ("Location", "Retry-After"),
     ("save_terrain", "200"): ("ETag",),
     ("save_terrain", "201"): ("ETag", "Location"),
 }
 _REFUSED = {"401": "WWW-Authenticate", "429": "Retry-After", "503": "Retry-After"}
-_WITHOUT_TAG = {"follow_job", "get_health", "get_job", "get_settings"}
+_WITHOUT_TAG = {
+    "follow_job", "follow_study", "get_cell", "get_cells", "get_health", "get_job", "get_settings",
+    "get_study", "get_study_document",
+}  # fmt: skip
 ANY_FILE = "application/octet-stream"
 
 

@@ -7,8 +7,11 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from .middleware import PREFIX
 from .problems import Problem
 
-_STORED = tuple(f"{PREFIX}/{kind}/" for kind in ("terrains", "robots", "plans", "rollouts", "jobs"))
-_ROLLOUTS = f"{PREFIX}/rollouts"
+_STORED = tuple(
+    f"{PREFIX}/{kind}/"
+    for kind in ("terrains", "robots", "plans", "rollouts", "jobs", "studies")
+)
+_WORK = (f"{PREFIX}/rollouts", f"{PREFIX}/studies")
 
 
 class ReadOnly:
@@ -28,4 +31,4 @@ class ReadOnly:
 def _saves(method: str, path: str) -> bool:
     if method in ("PUT", "PATCH", "DELETE"):
         return path.startswith(_STORED)
-    return method == "POST" and path == _ROLLOUTS
+    return method == "POST" and path in _WORK

@@ -19,6 +19,7 @@ from stairwright.jobs.worker import Limits
 from stairwright.library import load_robot, load_terrain, robots, terrains
 from stairwright.storage.lock import FolderLock
 from stairwright.storage.store import Store
+from stairwright.studies.service import Studies
 
 from .clock_watch import watch_clock
 from .figures import Figures
@@ -71,6 +72,9 @@ class Services:
         self.rollouts = Rollouts(
             self.store, self.rollout_pool, settings.queue_limit, settings.rollout_deadline
         )
+        self.studies = Studies(
+            self.store, settings.study_workers, settings.scheduler, settings.study_queue_limit
+        )
         self.uploading = asyncio.Semaphore(1)
         self.sessions = Sessions(
             settings.session_limit, settings.session_idle, Replanning(self.planning)
@@ -106,6 +110,7 @@ class Services:
         """Go on with what an earlier process left unfinished."""
         await asyncio.to_thread(self.store.idempotency.release_unfinished)
         unfinished = await self.rollouts.resume()
+        await self.studies.start()
         if unfinished:
             logger.info("%d jobs from before the restart go on", unfinished)
 
@@ -128,6 +133,7 @@ class Services:
             with contextlib.suppress(asyncio.CancelledError):
                 await task
         await self.rollouts.stop()
+        await self.studies.stop()
         await self.sessions.close_all()
         await asyncio.gather(*(pool.stop() for pool in self.pools))
         self.store.close()

@@ -3,50 +3,23 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
 from stairwright.errors import InputError
-from stairwright.resources import data_folder
+from stairwright.resources import all_cores, data_folder, default_data_folder
 
 from . import addresses
 
 LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
 
 
-def default_data_folder() -> Path:
-    """Where this platform keeps a user's data, or systemd a service's.
-
-    Raises:
-        InputError: If this user has no home, as users of services often do.
-    """
-    state = os.environ.get("STATE_DIRECTORY", "").split(":")[0]
-    if state:
-        return Path(state)
-    try:
-        home = Path.home()
-    except RuntimeError:
-        raise InputError(
-            "this user has no home folder: name a folder for the data in STAIRWRIGHT_DATA"
-        ) from None
-    if sys.platform == "darwin":
-        return home / "Library" / "Application Support" / "stairwright"
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local") / "stairwright"
-    return Path(os.environ.get("XDG_DATA_HOME") or home / ".local" / "share") / "stairwright"
-
-
 def page_folder() -> Path:
     """The built page: inside an installed wheel, else in the checkout, where it may not exist."""
     shipped = Path(__file__).resolve().parents[1] / "page"
     return shipped if shipped.is_dir() else data_folder("frontend") / "dist"
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _about(text: str, low: float | None = None) -> dict[str, Any]:
@@ -88,11 +61,12 @@ class Settings:
         default=30, metadata=_about("a connection without requests is closed after this, s", 1)
     )
     plan_workers: int = field(
-        default_factory=lambda: min(4, _cores()),
+        default_factory=lambda: min(4, all_cores()),
         metadata=_about("processes for interactive plans", 1),
     )
     rollout_workers: int = field(
-        default_factory=lambda: max(1, _cores() - 1), metadata=_about("processes for rollouts", 1)
+        default_factory=lambda: max(1, all_cores() - 1),
+        metadata=_about("processes for rollouts", 1),
     )
     worker_memory: int = field(
         default=4096, metadata=_about("memory limit of a worker, MiB; 0 for none", 0)
@@ -103,6 +77,16 @@ class Settings:
     )
     queue_limit: int = field(default=64, metadata=_about("rollouts that may wait", 0))
     plan_queue_limit: int = field(default=64, metadata=_about("plans that may wait", 0))
+    scheduler: str = field(
+        default="", metadata=_about("a Dask scheduler for studies; empty for processes of ours")
+    )
+    study_workers: int = field(
+        default_factory=all_cores, metadata=_about("processes for studies, where there are any", 1)
+    )
+    study_cells: int = field(
+        default=50_000, metadata=_about("plans, rollouts or trials that one study may take", 1)
+    )
+    study_queue_limit: int = field(default=16, metadata=_about("studies that may wait", 0))
     body_limit: int = field(
         default=256 * 1024, metadata=_about("largest request body, bytes", 1024)
     )

@@ -3,60 +3,33 @@
 from __future__ import annotations
 
 import math
-import os
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from multiprocessing import get_context
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from stairwright.arguments import MOST_SEED, as_friction, as_model, as_whole
 from stairwright.control.settings import ControllerSettings, parse_settings
 from stairwright.documents import Model, parse
-from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
+from stairwright.resources import all_cores
 
 from .disturbance import Disturbance
+from .ranges import Ranges, parse_ranges
 from .result import Outcome
 from .rollout import rollout
 from .run import runs_natively
 
-Bound = Annotated[float, Field(ge=-5.0, le=5.0)]
-Range = tuple[Bound, Bound]
 Job = tuple[int, Disturbance]  # seed and deviations
 
 MOST_TRIALS = 100_000
 MOST_WORKERS = 1024
 CONFIDENCE_Z = 1.959964  # two-sided 95 %
-
-
-class Ranges(Model):
-    """Ranges (low, high) from which each trial draws its deviations; see `Disturbance`."""
-
-    friction: Range = Field((-0.1, 0.1), description="added to the true friction")
-    mass: Range = Field((-0.1, 0.1), description="share of the robot's mass, on the trunk")
-    com_x: Range = Field((-0.02, 0.02), description="CoM forward [m]")
-    com_z: Range = Field((-0.02, 0.02), description="CoM up [m]")
-    height: Range = Field((-0.01, 0.01), description="added to the terrain's rise [m]")
-    noise: Range = Field((1.0, 1.0), description="sensor noise, in units of the sensors' own")
-    delay: Range = Field((0.004, 0.004), description="from sensing to torque [s]")
-
-    @model_validator(mode="after")
-    def _check_order(self) -> Ranges:
-        for name in type(self).model_fields:
-            low, high = getattr(self, name)
-            if low > high:
-                raise InputError(f"the low end {low:g} lies above the high end {high:g}", (name,))
-            for end in (low, high):
-                try:
-                    parse(Disturbance, {name: end})
-                except InputError as error:
-                    raise InputError(error.message, (name,)) from None
-        return self
 
 
 class Trial(Model):
@@ -151,15 +124,6 @@ def trials(
     )
 
 
-def parse_ranges(ranges: Mapping[str, Any] | Ranges | None) -> Ranges:
-    """Ranges with defaults filled in.
-
-    Raises:
-        InputError: For an unknown name or a bad range.
-    """
-    return as_model(Ranges, ranges, "ranges")
-
-
 def draw(ranges: Ranges, n: int, seed: int) -> list[Disturbance]:
     """`n` deviations, each uniform in its range."""
     random = np.random.default_rng(seed)
@@ -185,11 +149,6 @@ def clopper_pearson(successes: int, n: int) -> tuple[float, float]:
     low = float(beta.ppf(0.025, successes, n - successes + 1)) if successes else 0.0
     high = float(beta.ppf(0.975, successes + 1, n - successes)) if successes < n else 1.0
     return low, high
-
-
-def all_cores() -> int:
-    """How many cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _share(

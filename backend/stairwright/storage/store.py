@@ -18,6 +18,7 @@ from .jobs import JobLog
 from .opening import open_soundly
 from .salvage import was_set_aside
 from .saved import saved_robots, saved_terrains
+from .studies import StudyShelf
 
 DATABASE = "stairwright.sqlite"
 
@@ -41,6 +42,7 @@ class Store:
         self.documents = Documents(self.engine, self.artefacts, fixed=self.read_only is not None)
         self._unsettled = set(self.artefacts.unsettled())  # a process that died may leave some
         self.jobs = JobLog(sessions)
+        self.studies = StudyShelf(sessions, folder / "studies")
         self.observe: Callable[[Entry], None] = lambda _: None  # called with each new result
         self.idempotency = IdempotencyKeys(sessions)
 
@@ -52,6 +54,7 @@ class Store:
     def collect(self, keep_bytes: int) -> int:
         """Remove what is too much; returns how many results went. Age is no reason."""
         trim_records(self._sessions)
+        studies = self.studies.make_room(keep_bytes)
         removed = make_room(self._sessions, keep_bytes)
         needed = self.jobs.needed()
         for digest in removed:
@@ -59,7 +62,7 @@ class Store:
                 self.artefacts.remove(digest)
         if not was_set_aside(self.folder / DATABASE):  # which may refer to any of them
             self.artefacts.sweep(self.documents.digests() | needed)
-        return len(removed)
+        return len(removed) + studies
 
     def delete(self, kind: Kind, document_id: str) -> bool:
         """Remove a plan or a rollout; False if there is none of that id.

@@ -83,6 +83,26 @@ class JobQuestion(Base):
     needs: Mapped[str | None]  # digest of the artefact that it refers to
 
 
+class StoredStudy(Base):
+    """A study; its cells lie in a Zarr group of its own."""
+
+    __tablename__ = "studies"
+
+    id: Mapped[str] = mapped_column(primary_key=True)
+    name: Mapped[str]
+    document: Mapped[str]  # JSON, names resolved
+    engine: Mapped[str]  # fingerprint of the code that its cells are by
+    state: Mapped[str]
+    error: Mapped[str | None]  # JSON, a problem document
+    owner: Mapped[str]
+    done: Mapped[int]  # cells
+    total: Mapped[int]
+    size: Mapped[int]  # bytes on disk
+    losses: Mapped[int]  # of whoever was at it
+    created: Mapped[float]
+    used: Mapped[float] = mapped_column(index=True)
+
+
 class IdempotencyRecord(Base):
     """What a request with an Idempotency-Key led to."""
 

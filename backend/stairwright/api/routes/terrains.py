@@ -9,7 +9,7 @@ from urllib.parse import quote
 from fastapi import APIRouter, File, Form, Path, Request, Response, UploadFile
 from pydantic import ValidationError
 
-from stairwright.api.bodies import Generation, Name, SentTerrain, TerrainDocument
+from stairwright.api.bodies import SentTerrain, TerrainDocument
 from stairwright.api.deps import JSON_BODY, Limit, Offset, Service
 from stairwright.api.problems import Problem, describe, from_validation, not_found
 from stairwright.api.responses import model_json, models_json
@@ -19,7 +19,8 @@ from stairwright.errors import InputError
 from stairwright.jobs import uploads
 from stairwright.jobs.failures import DeadlineExceeded, WorkerDied
 from stairwright.library import load_terrain, terrains
-from stairwright.terrain import stairs
+from stairwright.terrain.generation import Generation, Name
+from stairwright.terrain.generation import generate as make_terrain
 from stairwright.terrain.profile import Terrain
 
 router = APIRouter(prefix="/terrains", tags=["terrains"])
@@ -46,13 +47,10 @@ def list_terrains(
 @router.post("/generate", dependencies=[JSON_BODY], responses=describe(415))
 def generate(body: Generation) -> Terrain:
     """A stair, a ramp or level ground from a few measures; it is not saved."""
-    parameters = body.model_dump(exclude={"kind"})
-    make: Any = {"stair": stairs.stair, "ramp": stairs.ramp, "flat": stairs.flat}[body.kind]
     try:
-        made: Terrain = make(**parameters)
+        return make_terrain(body)
     except ValidationError as error:  # the measures are fine one by one, the terrain is not
         raise from_validation(error.errors()) from None
-    return made
 
 
 @router.post("/import", responses=describe(503))

@@ -1,0 +1,1 @@
+"""Studies: one question asked over a whole range of terrains, frictions, robots."""

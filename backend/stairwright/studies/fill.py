@@ -1,0 +1,86 @@
+"""Fill a store: what is pending is evaluated, written batch by batch, and told as it comes."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .grid import coarse_first
+from .serial import Engine, Finished, Stopped
+from .store import ResultStore
+from .variables import PENDING
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a study is.
+
+    Attributes:
+        done: Cells whose state is known.
+        total: Cells that are to be known in the end; of boundaries, as far as can be told.
+        spent: Time since this process began with it [s].
+        left: Remaining time [s], None while it cannot be told.
+        new: What is new since the last report.
+    """
+
+    done: int
+    total: int
+    spent: float
+    left: float | None
+    new: Finished
+
+
+Report = Callable[[Progress], None]
+
+
+class Meter:
+    """Makes reports of finished cells; the remaining time follows from this run's own pace."""
+
+    def __init__(self, done: int, total: int, report: Report | None) -> None:
+        self.done, self.total = done, total
+        self._report = report
+        self._begun, self._before = time.monotonic(), done
+
+    def tell(self, new: Finished) -> None:
+        """Report finished cells."""
+        self.done += len(new)
+        self.total = max(self.total, self.done)
+        if self._report is not None:
+            spent = time.monotonic() - self._begun
+            pace = (self.done - self._before) / spent if spent > 0.0 else 0.0
+            left = (self.total - self.done) / pace if pace > 0.0 else None
+            self._report(Progress(self.done, self.total, spent, left, new))
+
+
+def fill_grid(store: ResultStore, engine: Engine, report: Report | None, stopped: Stopped) -> None:
+    """Evaluate all pending cells, coarse first."""
+    pending = store.states.ravel() == PENDING
+    order = coarse_first(store.study.axes)
+    todo = order[pending[order]].tolist()
+    meter = Meter(int((~pending).sum()), len(pending), report)
+    meter.tell({})
+    for finished in engine.evaluate(store.study, todo, stopped) if todo else ():
+        store.write(finished)
+        meter.tell(finished)
+
+
+def fill(store: ResultStore, engine: Engine, report: Report | None, stopped: Stopped) -> None:
+    """Evaluate what is pending and asked for: every cell, or those that a boundary takes."""
+    if store.study.boundary_axis is None:
+        fill_grid(store, engine, report, stopped)
+    else:
+        from .boundary import fill_boundary
+
+        fill_boundary(store, engine, report, stopped)
+
+
+def is_complete(store: ResultStore) -> bool:
+    """Whether everything that was asked for is known."""
+    if store.study.boundary_axis is None:
+        return bool(np.all(store.states != PENDING))
+    from .boundary import searched_rows
+
+    return searched_rows(store)[1]

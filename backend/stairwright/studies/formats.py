@@ -1,0 +1,17 @@
+"""What a stored study can be taken along as: media type and ending by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+FORMATS: Mapping[str, tuple[str, str]] = {
+    "netcdf": ("application/x-netcdf", ".nc"),
+    "zarr": ("application/zip", ".zarr.zip"),
+    "csv": ("text/csv; charset=utf-8", ".csv"),
+    "json": ("application/json", ".json"),
+}
+NEEDED = ("cryptography", "distributed", "xarray", "zarr")  # packages
+MISSING = (
+    "studies need a few more packages: pip install 'stairwright[studies]' "
+    "(xarray, Zarr, Dask distributed, Optuna; about 200 MB)"
+)

@@ -1,0 +1,244 @@
+"""Studies of a service: queued, carried out one after the other, followed, cancelled, gone on with.
+
+The work is done by a process of its own (`runner`), started with the first study and ended when
+there was none for a while; its cluster stays warm in between.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+from collections import OrderedDict
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import orjson
+
+from stairwright.errors import Cancelled
+from stairwright.jobs.failures import Interrupted, QueueFull, WorkerDied, problem_of
+from stairwright.jobs.job import Job
+from stairwright.storage.store import Store
+from stairwright.storage.studies import StudyRecord
+
+from .document import Study, study_id
+from .process import RunnerProcess
+from .version import engine_of
+
+logger = logging.getLogger(__name__)
+
+IDLE = 600.0  # s without a study after which the processes end
+MOST_DEATHS = 3  # of the process at one study
+MOST_LOSSES = 20  # of the service while a study ran
+_KEPT = 32  # finished studies in memory
+
+
+class Following:
+    """One study in memory: its job, and the cells that came since this process follows it."""
+
+    def __init__(self, record: StudyRecord) -> None:
+        self.record = record
+        self.job = Job(record.id, "study", owner=record.owner)
+        self.done, self.total = record.done, record.total
+        self.left: float | None = None
+        self.blocks: list[bytes] = []  # JSON, in the order in which they came
+        self.deaths = 0
+        self.retry = False
+        if record.state not in ("queued", "running"):
+            self.job.finish(record.state, error=record.error)  # type: ignore[arg-type]
+
+    def hear(self, report: Mapping[str, Any]) -> None:
+        """Take in what the runner tells while it is at it."""
+        self.done = int(report["done"])
+        self.total = max(self.total, int(report["total"]))
+        self.left = report["left"]
+        if report["cells"] is not None:
+            self.blocks.append(orjson.dumps(report["cells"]))
+        self.job.advance(self.done / self.total if self.total else 0.0)
+
+    def as_record(self) -> StudyRecord:
+        """What is written down of it now."""
+        job = self.job
+        return replace(
+            self.record, state=job.state, error=job.error, done=self.done, total=self.total
+        )
+
+
+class Studies:
+    """All studies of one service. Belongs to one event loop."""
+
+    def __init__(self, store: Store, workers: int, scheduler: str, queue_limit: int) -> None:
+        self._store, self._workers, self._scheduler = store, workers, scheduler
+        self._limit = queue_limit
+        self._known: OrderedDict[str, Following] = OrderedDict()
+        self._waiting: asyncio.Queue[Following] = asyncio.Queue()
+        self._current: Following | None = None
+        self._process: RunnerProcess | None = None
+        self._task: asyncio.Task[None] | None = None
+
+    async def start(self) -> None:
+        """Go on with what an earlier process left unfinished."""
+        for record in await asyncio.to_thread(self._store.studies.unfinished):
+            lost = replace(record, losses=record.losses + (record.state == "running"))
+            following = self._known[record.id] = Following(lost)
+            if lost.losses >= MOST_LOSSES:
+                why = Interrupted(f"given up: the service ended {lost.losses} times meanwhile")
+                following.job.finish("failed", error=problem_of(why))
+                await self._note(following)
+            else:
+                self._enqueue(following)
+
+    async def stop(self) -> None:
+        """End; what is unfinished goes on after the next start."""
+        if self._task is not None:
+            self._task.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await self._task
+        if self._current is not None and not self._current.job.finished:
+            self._current.job.requeue()
+            await self._note(self._current)
+        await self._end_process()
+
+    async def submit(self, study: Study, owner: str, *, retry: bool = False) -> Following:
+        """Carry a study out, or follow it where it is known already.
+
+        Raises:
+            QueueFull: If too many wait.
+        """
+        engine = await asyncio.to_thread(engine_of, study)
+        name = study_id(study, engine)
+        known = await self.find(name)
+        if known is not None and (
+            not known.job.finished or (known.job.state == "done" and not retry)
+        ):
+            return known
+        waiting = sum(not each.job.finished for each in self._known.values())
+        if waiting > self._limit:
+            raise QueueFull(f"{waiting - 1} studies are waiting already", retry_after=10.0)
+        document = study.model_dump_json()
+        record = StudyRecord(name, study.name, document, engine, owner=owner, total=study.cells)
+        following = Following(record)
+        following.retry = retry
+        await asyncio.to_thread(self._store.studies.put, record)
+        self._known[name] = following
+        self._enqueue(following)
+        return following
+
+    async def find(self, name: str) -> Following | None:
+        """A study by its id."""
+        if name in self._known:
+            return self._known[name]
+        record = await asyncio.to_thread(self._store.studies.get, name)
+        return None if record is None else Following(record)
+
+    async def cancel(self, following: Following) -> None:
+        """Stop it; its cells so far stay."""
+        if following.job.finished:
+            return
+        following.job.finish("cancelled", error=problem_of(Cancelled()))
+        await self._note(following)
+        if following is self._current and self._process is not None:
+            await self._process.order({"cancel": following.record.id})
+
+    async def delete(self, following: Following) -> None:
+        """Remove it with its cells."""
+        await self.cancel(following)
+        while following is self._current:  # it is written to no more after this
+            await asyncio.sleep(0.05)
+        self._known.pop(following.record.id, None)
+        await asyncio.to_thread(self._store.studies.delete, following.record.id)
+
+    def counts(self) -> dict[str, int]:
+        """Studies in memory by state."""
+        counts: dict[str, int] = {}
+        for each in self._known.values():
+            counts[each.job.state] = counts.get(each.job.state, 0) + 1
+        return counts
+
+    def _enqueue(self, following: Following) -> None:
+        self._waiting.put_nowait(following)
+        if self._task is None or self._task.done():
+            self._task = asyncio.create_task(self._serve())
+
+    async def _serve(self) -> None:
+        while True:
+            try:
+                following = await asyncio.wait_for(self._waiting.get(), IDLE)
+            except TimeoutError:
+                await self._end_process()
+                return
+            if following.job.finished:  # cancelled while it waited
+                continue
+            self._current = following
+            try:
+                await self._carry_out(following)
+            except asyncio.CancelledError:
+                raise
+            except Exception as error:  # whatever it is, who follows it must learn of it
+                logger.exception("a study failed")
+                following.job.finish("failed", error=problem_of(error))
+            self._current = None
+            await self._note(following)
+            await asyncio.to_thread(self._store.studies.measure, following.record.id)
+            self._forget_some()
+
+    async def _carry_out(self, following: Following) -> None:
+        """Have the runner do it, again where the runner dies."""
+        while True:
+            if self._process is None:
+                self._process = await RunnerProcess.start(self._workers, self._scheduler)
+            following.job.start()
+            await self._note(following)
+            name = following.record.id
+            await self._process.order(
+                {
+                    "run": name,
+                    "study": orjson.loads(following.record.document),
+                    "path": str(self._store.studies.path(name)),
+                    "retry": following.retry,
+                }
+            )
+            if await self._followed(following, self._process):
+                return
+            await self._end_process()
+            if following.job.finished:
+                return
+            following.deaths += 1
+            if following.deaths >= MOST_DEATHS:
+                why = f"given up: the process for studies has died {following.deaths} times at it"
+                following.job.finish("failed", error=problem_of(WorkerDied(why)))
+                return
+            logger.warning("a study goes on: the process that was at it died")
+            following.blocks.clear()  # all known cells come again
+            following.job.requeue()
+
+    async def _followed(self, following: Following, process: RunnerProcess) -> bool:
+        """Take its reports in until it has ended with the study; False if the process died."""
+        async for report in process.reports():
+            if report["id"] != following.record.id:
+                continue
+            if "state" not in report:
+                following.hear(report)
+                continue
+            if report["state"] == "done":
+                following.total = following.done
+            following.job.finish(report["state"], error=report["error"])
+            return True
+        return False
+
+    async def _end_process(self) -> None:
+        process, self._process = self._process, None
+        if process is not None:
+            await process.end()
+
+    async def _note(self, following: Following) -> None:
+        await asyncio.to_thread(self._store.studies.put, following.as_record())
+
+    def _forget_some(self) -> None:
+        finished = [name for name, each in self._known.items() if each.job.finished]
+        for name in finished[: max(0, len(finished) - _KEPT)]:
+            del self._known[name]
+        for name in finished[:-1]:
+            if name in self._known:
+                self._known[name].blocks = []  # they are read from the store from now on

@@ -1,0 +1,129 @@
+"""Cells and the serial engine: what a cell tells is what the plan tells, and is kept."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stairwright as sw
+from stairwright.errors import InputError
+from stairwright.studies import cell
+from stairwright.studies.grid import coarse_first, levels, number, place, point
+from stairwright.studies.question import Questions
+from stairwright.studies.resolve import load_study
+from stairwright.studies.variables import DONE, FAILED, REFUSED
+from stairwright.terrain import stairs
+
+from .small import STEP, study
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory: pytest.TempPathFactory) -> sw.StudyResult:
+    return sw.study(STEP, workers=1, store=tmp_path_factory.mktemp("cell") / "step.zarr")
+
+
+def test_a_cell_is_the_plan_of_its_values(result: sw.StudyResult) -> None:
+    here = result.dataset.sel({"step.height": 0.3, "friction": 0.6})
+    plan = sw.plan(stairs.stair(0.3), "a1_wheeled", friction=0.6)
+    assert str(here.plan_id.values) == plan.id
+    assert bool(here.feasible)
+    assert float(here.duration) == plan.timing.total
+    assert float(here.margin_com) == min(pose.margins.com for pose in plan.poses)
+    needed = 0.6 - min(pose.margins.friction for pose in plan.poses)
+    assert float(here.least_friction) == needed
+    # static: half a pair's traction at the wheel's rim
+    rims = [abs(f[0]) / 2 * 0.05 for pose in plan.poses for f in pose.forces or ()]
+    assert float(here.margin_wheel_torque) == pytest.approx(33.5 - max(rims))
+
+
+def test_what_stops_the_robot_is_told(result: sw.StudyResult) -> None:
+    here = result.dataset.sel({"step.height": 1.2, "friction": 0.3})
+    plan = sw.plan(stairs.stair(1.2), "a1_wheeled", friction=0.3)
+    assert plan.problem is not None
+    assert not bool(here.feasible)
+    assert str(here.reason.values) == plan.problem.kind
+    assert str(here.message.values) == plan.problem.message
+    assert np.isnan(float(here.margin_com))
+
+
+def test_axes_have_units_and_order(result: sw.StudyResult) -> None:
+    data = result.dataset
+    assert data.feasible.dims == ("step.height", "friction")
+    assert data["step.height"].attrs["units"] == "m"
+    assert data.margin_torque.attrs["units"] == "Nm"
+    assert (data.state == DONE).all()
+
+
+def test_values_that_make_no_question_are_an_answer() -> None:
+    made = Questions(
+        load_study(
+            study(
+                {"name": "stairs.run", "values": [0.1, 0.3]},
+                {"name": "stairs.face_angle", "values": [0.8]},
+            )
+        )
+    )
+    record = cell.evaluate(made, (0.1, 0.8))
+    assert record["state"] == REFUSED
+    assert "run" in record["message"]
+
+
+def test_a_bug_is_recorded_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError("by zero")
+
+    monkeypatch.setattr(cell, "make_plan", broken)
+    record = cell.evaluate(Questions(load_study(STEP)), (0.05, 0.3))
+    assert record["state"] == FAILED
+    assert record["message"] == "ZeroDivisionError: by zero"
+
+
+def test_rollouts_and_trials(tmp_path: Path) -> None:
+    low = {"name": "step.height", "values": [0.04]}
+    run = sw.study(study(low, compute="rollout"), workers=1, store=tmp_path / "r.zarr").dataset
+    assert str(run.outcome.values[0]) == "success"
+    assert int(run.success[0]) == int(run.trials[0]) == 1
+    plan = sw.plan(stairs.stair(0.04), "a1_wheeled")
+    metrics = sw.rollout(plan).metrics
+    assert float(run.energy[0]) == metrics.energy
+    assert 0.1 < float(run.cost_of_transport[0]) < 3.0
+    few = study(low, compute="trials", trials={"count": 3})
+    tried = sw.study(few, workers=1, store=tmp_path / "t.zarr").dataset
+    made = sw.trials(plan, 3)
+    assert int(tried.trials[0]) == 3
+    assert int(tried.success[0]) == made.successes
+    assert (float(tried.success_low[0]), float(tried.success_high[0])) == made.clopper_pearson
+
+
+def test_files(result: sw.StudyResult, tmp_path: Path) -> None:
+    import xarray as xr
+
+    result.save(tmp_path / "a.nc")
+    result.save(tmp_path / "a.zarr")
+    result.save(tmp_path / "a.csv")
+    for name in ("a.nc", "a.zarr"):
+        read = xr.open_dataset(tmp_path / name, consolidated=False) if "z" in name else (
+            xr.open_dataset(tmp_path / name)
+        )  # fmt: skip
+        assert read.load().equals(result.dataset)
+    assert len((tmp_path / "a.csv").read_text().splitlines()) == 7
+    with pytest.raises(InputError, match=r"\.zarr, \.nc, \.csv"):
+        result.save(tmp_path / "a.png")
+
+
+def test_a_coarse_picture_comes_first() -> None:
+    axes = load_study(
+        study(
+            {"name": "stairs.rise", "from": 0.1, "to": 0.4, "count": 31},
+            {"name": "stairs.run", "from": 0.2, "to": 0.46, "count": 27},
+        )
+    ).axes
+    order = coarse_first(axes)
+    assert sorted(order) == list(range(31 * 27))
+    first = np.array([place((31, 27), cell) for cell in order[:25]])
+    assert np.ptp(first, axis=0).tolist() == [30, 26]  # all over the map
+    assert levels(1).tolist() == [0]
+    assert number((31, 27), (3, 4)) == 3 * 27 + 4
+    assert point(load_study(STEP), 3) == (0.3, 0.6)

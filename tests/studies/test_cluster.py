@@ -1,0 +1,112 @@
+"""Dask: the same datasets in every bit, whoever computes them, and an end whoever dies."""
+
+from __future__ import annotations
+
+import os
+import signal
+from pathlib import Path
+
+import pytest
+
+import stairwright as sw
+from stairwright.errors import InputError
+from stairwright.studies import worker
+from stairwright.studies.batches import FIRST, MOST, TARGET, BatchSizes
+from stairwright.studies.cluster import ClusterEngine
+from stairwright.studies.dataset import grid_dataset
+from stairwright.studies.fill import fill_grid
+from stairwright.studies.serial import SerialEngine
+from stairwright.studies.store import ResultStore
+from stairwright.studies.study import prepared
+from stairwright.studies.version import engine_of
+from stairwright.studies.worker import OtherVersion, evaluate_batch
+
+from .small import STEP, identical, study
+
+MAP = study(
+    {"name": "stairs.rise", "from": 0.1, "to": 0.9, "count": 5},
+    {"name": "stairs.run", "values": [0.25, 0.32]},
+    {"name": "friction", "values": [0.3, 0.7]},
+)
+
+
+def _store(document: dict[str, object], path: Path) -> ResultStore:
+    made = prepared(document)
+    return ResultStore.create(path, made, engine_of(made))
+
+
+@pytest.fixture(scope="module")
+def serial(tmp_path_factory: pytest.TempPathFactory) -> ResultStore:
+    store = _store(MAP, tmp_path_factory.mktemp("serial") / "s.zarr")
+    fill_grid(store, SerialEngine(), None, lambda: False)
+    return store
+
+
+def test_a_cluster_gives_the_same_dataset_bit_by_bit(
+    serial: ResultStore, cluster: ClusterEngine, tmp_path: Path
+) -> None:
+    store = _store(MAP, tmp_path / "c.zarr")
+    seen: list[int] = []
+    fill_grid(store, cluster, lambda progress: seen.append(progress.done), lambda: False)
+    assert identical(grid_dataset(serial), grid_dataset(store))
+    assert seen == sorted(seen)
+    assert seen[-1] == 20
+    states = grid_dataset(store)
+    assert 0 < int(states.feasible.sum()) < 20  # both kinds were compared
+
+
+def test_workers_of_another_version_are_refused() -> None:
+    document = prepared(STEP).model_dump_json().encode()
+    with pytest.raises(OtherVersion, match="another version"):
+        evaluate_batch(document, "0000", [0])
+
+
+def test_a_scheduler_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"cannot reach tcp://127\.0\.0\.1:9"):
+        sw.study(STEP, scheduler="tcp://127.0.0.1:9", store=tmp_path / "n.zarr")
+
+
+def test_stopping_keeps_what_is_done(cluster: ClusterEngine, tmp_path: Path) -> None:
+    store = _store(MAP, tmp_path / "c.zarr")
+    fill_grid(store, cluster, None, lambda: store.counts()["done"] >= 4)
+    done = store.counts()["done"]
+    assert 4 <= done < 20
+    asked: list[int] = []
+    fill_grid(store, cluster, lambda p: asked.extend(p.new), lambda: False)
+    assert len(asked) == 20 - done  # none twice
+    assert store.counts()["done"] == 20
+
+
+def test_a_cell_that_kills_its_worker_is_found_and_recorded(
+    cluster: ClusterEngine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A worker dies at one cell: that cell fails, with a reason, and all others are done."""
+    monkeypatch.setattr("stairwright.studies.cluster.evaluate_batch", _deadly)
+    store = _store(MAP, tmp_path / "d.zarr")
+    ready = _store(STEP, tmp_path / "r.zarr")
+    fill_grid(ready, cluster, None, lambda: False)  # so that nothing is computed in this process
+    fill_grid(store, cluster, None, lambda: False)
+    assert store.counts() == {"pending": 0, "done": 19, "refused": 0, "failed": 1}
+    record = store.records([13])[13]
+    assert record["reason"] == "lost"
+    assert "died" in record["message"]
+    assert store.forget_failures() == 1
+    assert store.counts()["pending"] == 1
+
+
+def _deadly(document: bytes, engine: str, cells: list[int]) -> worker.Batch:
+    if 13 in cells and b"stairs.rise" in document:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return evaluate_batch(document, engine, cells)
+
+
+def test_batches_take_about_two_seconds() -> None:
+    sizes = BatchSizes()
+    assert sizes.next(1000, 2) == 1  # nothing is known yet
+    sizes.learn(1, 0.05)
+    assert sizes.next(10_000, 2) == round(FIRST / 0.05)
+    sizes._begun -= 100
+    assert sizes.next(10_000, 2) == round(TARGET / 0.05)
+    assert sizes.next(20, 2) == 5  # all end together
+    sizes.typical = 1e-9
+    assert sizes.next(10**6, 2) == MOST

@@ -1,0 +1,231 @@
+"""Whoever dies: what was finished is kept, and the same study goes on."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import stairwright as sw
+from stairwright.errors import InputError
+from stairwright.library import load_robot
+from stairwright.studies import keeping
+from stairwright.studies.cluster import ClusterEngine
+from stairwright.studies.dataset import grid_dataset
+from stairwright.studies.fill import fill_grid
+from stairwright.studies.serial import SerialEngine
+from stairwright.studies.store import ResultStore
+from stairwright.studies.study import prepared
+from stairwright.studies.version import engine_of
+
+from .small import STEP, identical, study
+
+LONG = study(
+    {"name": "step.height", "from": 0.03, "to": 0.4, "count": 30},
+    {"name": "friction", "values": [0.4, 0.5, 0.6, 0.7]},
+)
+
+
+def _heights(*values: float, **fields: Any) -> dict[str, Any]:
+    return study(
+        {"name": "step.height", "values": list(values)},
+        {"name": "friction", "values": [0.5]},
+        **fields,
+    )
+
+
+def _asked(document: dict[str, Any], path: Path) -> list[int]:
+    cells: list[int] = []
+    sw.study(document, workers=1, store=path, progress=lambda p: cells.extend(p.new))
+    return cells
+
+
+def test_a_finished_study_answers_from_its_store(tmp_path: Path) -> None:
+    document, path = _heights(0.05, 0.1), tmp_path / "a.zarr"
+    assert sorted(_asked(document, path)) == [0, 1]
+    assert _asked(document, path) == []
+    assert _asked(document | {"name": "another name"}, path) == []
+
+
+def test_an_extended_axis_computes_only_new_cells(tmp_path: Path) -> None:
+    path = tmp_path / "a.zarr"
+    _asked(_heights(0.05, 0.1), path)
+    before = sw.study(_heights(0.05, 0.1), workers=1, store=path).dataset
+    assert _asked(_heights(0.03, 0.05, 0.1), path) == [0]
+    after = sw.study(_heights(0.03, 0.05, 0.1), workers=1, store=path).dataset
+    assert identical(before, after.sel({"step.height": [0.05, 0.1]}))
+
+
+def test_studies_in_the_data_folder_share_their_cells(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("STAIRWRIGHT_DATA", str(tmp_path))
+    cells: list[int] = []
+    for heights in ((0.05, 0.1), (0.05, 0.08, 0.1), (0.08,)):
+        sw.study(_heights(*heights), workers=1, progress=lambda p: cells.extend(p.new))
+    assert cells == [0, 1, 1]
+    assert len(list((tmp_path / "studies").glob("*.zarr"))) == 3
+
+
+def test_what_is_out_of_date_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "a.zarr"
+    _asked(_heights(0.05), path)
+    heavier = load_robot("a1_wheeled").model_dump(mode="json")
+    heavier["trunk"]["mass"] += 1.0
+    for document, why in (
+        (_heights(0.05, robot=heavier), "the robot a1_wheeled is out of date"),
+        (
+            _heights(0.05, terrain={"kind": "stair", "rise": 0.1, "platform": 3.0}),
+            "the terrain is out of date",
+        ),
+        (_heights(0.05, method="nominal"), "it is another study"),
+    ):
+        with pytest.raises(InputError, match=why):
+            sw.study(document, workers=1, store=path)
+    monkeypatch.setattr("stairwright.studies.version.planning_engine", lambda: "another")
+    with pytest.raises(InputError, match="another version of the planner"):
+        sw.study(_heights(0.05), workers=1, store=path)
+    monkeypatch.undo()
+    assert _asked(_heights(0.05), path) == []
+
+
+def test_failures_are_not_tried_for_ever(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError("by zero")
+
+    path = tmp_path / "a.zarr"
+    with monkeypatch.context() as patch:
+        patch.setattr("stairwright.studies.cell.make_plan", broken)
+        _asked(_heights(0.05), path)
+    assert _asked(_heights(0.05), path) == []
+    tried = sw.study(_heights(0.05), workers=1, store=path, retry=True)
+    assert tried.counts()["done"] == 1
+
+
+def test_two_writers_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.zarr"
+    made = prepared(_heights(0.05))
+    store = ResultStore.create(path, made, engine_of(made))
+    code = (
+        "import sys, stairwright as sw, json\n"
+        "sw.study(json.loads(sys.argv[1]), workers=1, store=sys.argv[2])"
+    )
+    with store.writing():
+        command = [sys.executable, "-c", code, json.dumps(_heights(0.05)), str(path)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "another process is at the study" in done.stderr
+
+
+def test_something_else_at_the_place(tmp_path: Path) -> None:
+    (tmp_path / "a.zarr").mkdir()
+    with pytest.raises(InputError, match="holds no results of a study"):
+        sw.study(STEP, workers=1, store=tmp_path / "a.zarr")
+    assert not list(keeping.relatives(tmp_path, prepared(STEP), "e", tmp_path / "b.zarr"))
+
+
+# ---------------------------------------------------------------- kill -9
+
+
+@pytest.fixture(scope="module")
+def truth(tmp_path_factory: pytest.TempPathFactory) -> ResultStore:
+    made = prepared(LONG)
+    path = tmp_path_factory.mktemp("truth") / "t.zarr"
+    store = ResultStore.create(path, made, engine_of(made))
+    fill_grid(store, SerialEngine(), None, lambda: False)
+    return store
+
+
+@pytest.fixture
+def engine() -> Iterator[ClusterEngine]:
+    made = ClusterEngine(None, 2)
+    yield made
+    made.close()
+
+
+def _children(pid: int) -> list[int]:
+    import psutil
+
+    return [child.pid for child in psutil.Process(pid).children(recursive=True)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("whom", ["worker", "scheduler"])
+def test_whoever_dies_the_study_ends_by_itself(
+    whom: str, truth: ResultStore, engine: ClusterEngine, tmp_path: Path
+) -> None:
+    store = ResultStore.create(tmp_path / "k.zarr", truth.study, truth.engine)
+    killed = threading.Event()
+
+    def kill(progress: Any) -> None:
+        pid = engine.scheduler_pid
+        if not killed.is_set() and progress.done > 40 and pid is not None:
+            workers = [each for each in _children(pid) if _is_worker(each)]
+            if whom == "worker" and not workers:
+                return
+            os.kill(pid if whom == "scheduler" else random.choice(workers), signal.SIGKILL)
+            killed.set()
+
+    fill_grid(store, engine, kill, lambda: False)
+    assert killed.is_set()
+    assert identical(grid_dataset(truth), grid_dataset(store))
+
+
+def _is_worker(pid: int) -> bool:
+    import psutil
+
+    return any("spawn_main" in part for part in psutil.Process(pid).cmdline())
+
+
+@pytest.mark.slow
+def test_a_killed_client_loses_at_most_a_batch(truth: ResultStore, tmp_path: Path) -> None:
+    document, path = tmp_path / "study.json", tmp_path / "out.zarr"
+    document.write_text(json.dumps(LONG))
+    command = [sys.executable, "-m", "stairwright", "study", str(document), "-o", str(path)]
+    command += ["--workers", "2"]
+    rounds = 0
+    known = 0
+    while rounds < 20:
+        rounds += 1
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+        try:
+            process.wait(random.uniform(3.0, 8.0))
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        else:
+            assert process.returncode == 0
+            break
+        if path.exists():
+            states = ResultStore(path).states
+            assert int((states != 0).sum()) >= known  # nothing finished is lost
+            known = int((states != 0).sum())
+    assert rounds > 1
+    store = ResultStore(path)
+    assert np.all(store.states == 1)
+    assert identical(grid_dataset(truth), grid_dataset(store))
+    time.sleep(3)
+    assert not _stray()
+
+
+def _stray() -> list[list[str]]:
+    """Clusters whose client is gone."""
+    import psutil
+
+    return [
+        process.info["cmdline"]
+        for process in psutil.process_iter(["cmdline", "ppid"])
+        if process.info["ppid"] == 1
+        and "stairwright.studies.local_cluster" in (process.info["cmdline"] or [])
+    ]
