@@ -8,8 +8,7 @@ from .middleware import PREFIX
 from .problems import Problem
 
 _STORED = tuple(
-    f"{PREFIX}/{kind}/"
-    for kind in ("terrains", "robots", "plans", "rollouts", "jobs", "studies")
+    f"{PREFIX}/{kind}/" for kind in ("terrains", "robots", "plans", "rollouts", "jobs", "studies")
 )
 _WORK = (f"{PREFIX}/rollouts", f"{PREFIX}/studies")
 

@@ -132,7 +132,9 @@ def build_original(
         labels[bodies[wheel].name] = f"{leg}_wheel"
     chosen = [leg.chain for leg in (reading.legs[name] for name in LEGS)]
     driven = [joints[j] for chain in chosen for j in (chain.thigh, chain.calf, chain.wheel)]
-    _add_motors(spec, robot, driven, {joints[j].name: at for j, at in reading.held.items()}, reading)
+    _add_motors(
+        spec, robot, driven, {joints[j].name: at for j, at in reading.held.items()}, reading
+    )
     add_contact_sensors(spec, [bodies[wheel].name for wheel in wheels], bodies[base].name)
     model = spec.compile()
     at = [model.joint(joint.name) for joint in driven]
@@ -180,7 +182,11 @@ def _labels(reading: Reading, bodies: list[Any]) -> dict[str, str]:
     model = reading.source.model
     part = {}
     for name, leg in reading.legs.items():
-        for what, joint in (("thigh", leg.chain.thigh), ("calf", leg.chain.calf), ("wheel", leg.chain.wheel)):
+        for what, joint in (
+            ("thigh", leg.chain.thigh),
+            ("calf", leg.chain.calf),
+            ("wheel", leg.chain.wheel),
+        ):
             part[int(model.jnt_bodyid[joint])] = f"{name}_{what}"
     found = {}
     for body in range(1, model.nbody):

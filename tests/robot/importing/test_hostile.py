@@ -92,7 +92,9 @@ def test_meshes_outside_are_not_read(tmp_path: Path) -> None:
         file.write_text(text.replace('meshdir="assets"', ""))
         assert gather(file)[2] == {}
         made = sw.import_robot(file)
-        assert any("out.obj" in each or "link.obj" in each or "body.obj" in each for each in made.warnings)
+        assert any(
+            "out.obj" in each or "link.obj" in each or "body.obj" in each for each in made.warnings
+        )
         assert max(z for piece in made.robot.trunk.outline for _, z in piece.points) < 0.2
 
 

@@ -36,7 +36,9 @@ def without_legs(text: str, *legs: str) -> str:
 
 def one(text: str, name: str, old: str, new: str) -> str:
     """Change `old` in the element called `name`."""
-    found = re.search(rf'<(link|joint|body) name="{name}".*?</\1>|<joint name="{name}"[^>]*>', text, re.DOTALL)
+    found = re.search(
+        rf'<(link|joint|body) name="{name}".*?</\1>|<joint name="{name}"[^>]*>', text, re.DOTALL
+    )
     assert found, name
     assert old in found[0], found[0]
     return text.replace(found[0], found[0].replace(old, new, 1), 1)
@@ -50,7 +52,9 @@ def test_two_legs() -> None:
 
 def test_no_wheel_at_the_end() -> None:
     text = one(URDF, "RR_wheel_joint", 'type="continuous"', 'type="revolute"')
-    message = refused(one(text, "RR_wheel_joint", 'velocity="40"', 'velocity="1" lower="-1" upper="1"'))
+    message = refused(
+        one(text, "RR_wheel_joint", 'velocity="40"', 'velocity="1" lower="-1" upper="1"')
+    )
     assert "'RR_wheel' is no wheel" in message
     assert "3 of four" in message
 
@@ -78,7 +82,9 @@ def test_a_leg_that_swings_sideways() -> None:
 
 
 def test_closed_chains() -> None:
-    closed = '<equality><connect name="rod" body1="FL_calf" body2="FL_hip" anchor="0 0 0"/></equality>'
+    closed = (
+        '<equality><connect name="rod" body1="FL_calf" body2="FL_hip" anchor="0 0 0"/></equality>'
+    )
     assert "rod" in refused(mjcf(Design(), extra=closed))
     tied = '<equality><joint joint1="FL_calf_joint" joint2="FR_calf_joint"/></equality>'
     assert "FL_calf_joint" in refused(mjcf(Design(), extra=tied))

@@ -27,7 +27,9 @@ def said(remarks: list[str], *words: str) -> bool:
 def test_motors_of_urdf() -> None:
     made = imported(urdf(Design()))
     motors = made.robot.actuators
-    limits = {part: (motors.of(part).torque, motors.of(part).speed) for part in ("thigh", "calf", "wheel")}
+    limits = {
+        part: (motors.of(part).torque, motors.of(part).speed) for part in ("thigh", "calf", "wheel")
+    }
     assert limits == {"thigh": (24, 30), "calf": (35, 20), "wheel": (15, 40)}
     assert motors.of("calf").damping == 0.05
     assert said(made.assumed, "rotor inertia", "URDF has no place")
@@ -124,7 +126,9 @@ def test_the_height_is_the_keyframes_or_a_bent_knees() -> None:
     drop = design.thigh * math.cos(0.75) + design.calf * math.cos(0.75 - 1.45)
     assert keyed.nominal_height == pytest.approx(drop + design.radius, abs=1e-9)
     bent = imported(urdf(design))
-    reach = math.sqrt(design.thigh**2 + design.calf**2 + 2 * design.thigh * design.calf * math.cos(1.5))
+    reach = math.sqrt(
+        design.thigh**2 + design.calf**2 + 2 * design.thigh * design.calf * math.cos(1.5)
+    )
     assert bent.robot.nominal_height == pytest.approx(reach + design.radius)
     assert said(bent.assumed, "nominal_height")
 
