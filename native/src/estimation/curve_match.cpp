@@ -13,6 +13,7 @@ constexpr double kMostForceCost = 16; // legs that swing feel forces that no fac
 constexpr int kArcSteps = 8;
 constexpr double kEnd = 1e-6;         // m
 constexpr double kBeside = 1e-6;      // m
+constexpr double kBlocks = 0.7;       // sine of the turn from one face to the next that stops a wheel
 
 double squared(double v) { return v * v; }
 
@@ -78,6 +79,11 @@ CurveMatch match(const WheelPath& path, const WheelBelief& wheel, double last, d
         found.piece = k, found.s = piece.s + d, found.point = piece.at(d, path.radius());
         found.before = found.after = found.point.normal;
         found.beyond = free > d + kEnd ? 1 : free < d - kEnd ? -1 : 0;
+        if (found.beyond != 0 && k + found.beyond < pieces.size()) {
+            const Piece& next = pieces[k + found.beyond];
+            const Vec2 n = found.point.normal, other = next.at(found.beyond > 0 ? 0.0 : next.length, path.radius()).normal;
+            found.blocked = found.beyond * cross(n, other) > kBlocks;
+        }
         found.cost = wheel.spread.distance(wheel.centre - found.point.centre) + face_cost(wheel, found.point.normal);
         if (found.cost < best.cost) best = found;
     }

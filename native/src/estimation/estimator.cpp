@@ -13,6 +13,8 @@ using Vec3 = std::array<double, 3>;
 constexpr double kWindow = 0.12;        // m; a wheel is looked for this far from where it was
 constexpr double kTouching = 0.15;      // of the share of the weight: a wheel that carries less says nothing
 constexpr double kForceTime = 0.015;    // s, smoothing of the forces
+// s, smoothing of the speed by which the wheels' scale is judged: noise in it would count twice, and shrink the scale.
+constexpr double kCruiseTime = 0.1;
 constexpr double kGate = 9.0;           // of a normalised innovation squared
 constexpr double kNearCorner = 0.006;   // m; which way a wheel rolls this near to a concave corner is open
 
@@ -124,6 +126,7 @@ void Estimator::see_legs(const Readings& readings, double dt) {
         if (f.known) w.felt += share * (f.force - w.felt);
         const double rate = readings.joint_rates[3 * i] + readings.joint_rates[3 * i + 1] + readings.joint_rates[3 * i + 2] + rate_[1];
         w.rolled = leg.wheel.radius * rate * dt;
+        w.cruise += dt / (kCruiseTime + dt) * (leg.wheel.radius * rate - w.cruise);
     }
 }
 
@@ -175,7 +178,7 @@ void Estimator::measure_place(int, const CurveMatch& on, const Error& along_x, c
     }
     const Vec2 n = on.point.normal;
     covariance_.update(row(n), dot(n, off), variance, error);
-    if (on.beyond == 0) return;
+    if (on.beyond == 0 || !on.blocked) return;
     const Vec2 t = static_cast<double>(on.beyond) * Vec2{n.z, -n.x};
     covariance_.truncate(row(t), dot(t, off), error);
 }
@@ -226,7 +229,7 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
     const double angular = readings.joint_rates[3 * i] + readings.joint_rates[3 * i + 1] + readings.joint_rates[3 * i + 2] + rate_[1];
     const double radius = robot_.legs[i / 2].wheel.radius, rolled = radius * angular;
     h = row(t);
-    h[kScale] = -rolled;
+    h[kScale] = -w.cruise;
     h[kGyroBias + 1] += radius;
     update(h, (1.0 + scale_) * rolled - dot3(t, speed), noise_.rolling);
     const Vec3 off = {n.x, 0.0, n.z};
@@ -267,6 +270,7 @@ Estimator::Judgement Estimator::judge(const control::RobotState& truth) const {
     const double error[] = {out.error[0], out.error[1], out.error[3], out.error[5], out.error[6], out.error[7]};
     // Cholesky factor of the marginal covariance, and its solution with the error.
     double L[6][6] = {}, y6[6];
+    out.scale = scale_, out.offset = offset_;
     out.nees = 0.0;
     for (int i = 0; i < 6; ++i) {
         for (int j = 0; j <= i; ++j) {

@@ -27,7 +27,8 @@ struct CurveMatch {
     bool corner = false;          // on both faces of a concave corner
     Vec2 before, after;           // their normals there
     double cost = 0.0;            // minus twice the logarithm of the likelihood, up to a constant
-    int beyond = 0;               // the wheel seems beyond the face's end (+1) or begin (-1), which it cannot be
+    int beyond = 0;               // the wheel seems beyond the face's end (+1) or begin (-1)
+    bool blocked = false;         // where it cannot be: the next face is steep against this one
 };
 
 struct WheelBelief {

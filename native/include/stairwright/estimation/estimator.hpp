@@ -69,6 +69,8 @@ class Estimator {
     struct Judgement {
         std::array<double, 8> error;
         double nees;
+        double scale;                 // of the wheels, as estimated
+        std::array<Vec2, 2> offset;   // of the map under front and rear wheels, as estimated [m]
     };
     Judgement judge(const control::RobotState& truth) const;
 
@@ -80,6 +82,7 @@ class Estimator {
         double traction = 0.0;    // smoothed [N]
         double s;                 // place on the curve [m]
         double rolled = 0.0;      // by the last step [m]
+        double cruise = 0.0;      // speed that it rolls at, smoothed [m/s]
     };
     using Vec3 = std::array<double, 3>;
     using Rotation = std::array<Vec3, 3>;

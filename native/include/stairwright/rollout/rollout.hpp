@@ -20,7 +20,8 @@ struct Motors {
 struct Judged {
     double time = 0.0;
     std::array<double, 8> error{};
-    double nees = 0.0;
+    double nees = 0.0, scale = 0.0;
+    std::array<Vec2, 2> offset{};
 };
 inline constexpr std::size_t kJudgedWidth = sizeof(Judged) / sizeof(double);
 
