@@ -15,6 +15,9 @@ constexpr double kTouching = 0.15;      // of the share of the weight: a wheel t
 constexpr double kForceTime = 0.015;    // s, smoothing of the forces
 // s, smoothing of the speed by which the wheels' scale is judged: noise in it would count twice, and shrink the scale.
 constexpr double kCruiseTime = 0.1;
+constexpr double kSure = 0.02;         // s that both faces of a corner must be felt before that counts
+constexpr double kMostScale = 0.04;    // of the wheels: more is slip
+constexpr double kGripUsed = 0.25;     // share of the normal force from which on traction makes slip likely
 constexpr double kGate = 9.0;           // of a normalised innovation squared
 constexpr double kNearCorner = 0.006;   // m; which way a wheel rolls this near to a concave corner is open
 
@@ -49,6 +52,12 @@ std::array<double, 4> turn(const Vec3& v) {
     return {std::cos(0.5 * angle), k * v[0], k * v[1], k * v[2]};
 }
 
+double dot_of(const Error& a, const Error& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < kErrors; ++i) sum += a[i] * b[i];
+    return sum;
+}
+
 void normalise(std::array<double, 4>& q) {
     const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     for (double& v : q) v /= length;
@@ -73,6 +82,7 @@ const Estimate& Estimator::step(const Readings& readings, double dt) {
     predict(readings, dt);
     see_legs(readings, dt);
     for (int i = 0; i < 4; ++i) measure(i, readings, dt);
+    started_ = true;
     report(readings);
     return estimate_;
 }
@@ -122,10 +132,13 @@ void Estimator::see_legs(const Readings& readings, double dt) {
         w.leg = {world(leg.hip), world(at_knee), world(w.place), world(leg.hip + upper * leg.thigh.com),
                  world(at_knee + lower * leg.calf.com)};
         const WheelForce f = wheel_force(leg, w.leg, readings.torques[3 * i], readings.torques[3 * i + 1], readings.torques[3 * i + 2]);
-        w.traction += share * (f.traction - w.traction);
         if (f.known) w.felt += share * (f.force - w.felt);
         const double rate = readings.joint_rates[3 * i] + readings.joint_rates[3 * i + 1] + readings.joint_rates[3 * i + 2] + rate_[1];
         w.rolled = leg.wheel.radius * rate * dt;
+        // What spins the wheel up does not reach the ground.
+        const double spin_up = started_ ? leg.wheel.inertia * (rate - w.rate_now) / dt / leg.wheel.radius : 0.0;
+        w.traction += share * (f.traction - spin_up - w.traction);
+        w.rate_now = rate;
         w.cruise += dt / (kCruiseTime + dt) * (leg.wheel.radius * rate - w.cruise);
     }
 }
@@ -155,10 +168,11 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const CurveMatch on = match(path_, belief, w.s, kWindow);
     w.s = on.s;
 
+    w.at_corner = on.corner ? w.at_corner + dt : 0.0;
     estimate_.touching[i] = std::max({dot(w.felt, on.point.normal), dot(w.felt, on.before), dot(w.felt, on.after)}) > kTouching * weight_ / 4;
     if (!estimate_.touching[i]) return;
     Error error{};
-    measure_place(i, on, along_x, along_z, centre, dt, error);
+    if (!on.corner || w.at_corner > kSure) measure_place(i, on, along_x, along_z, centre, dt, error);
     measure_rolling(i, on, readings, dt, error);
     correct(error);
 }
@@ -179,8 +193,10 @@ void Estimator::measure_place(int, const CurveMatch& on, const Error& along_x, c
     const Vec2 n = on.point.normal;
     covariance_.update(row(n), dot(n, off), variance, error);
     if (on.beyond == 0 || !on.blocked) return;
-    const Vec2 t = static_cast<double>(on.beyond) * Vec2{n.z, -n.x};
-    covariance_.truncate(row(t), dot(t, off), error);
+    // The mean alone is projected: that the face is not felt yet is the same news at every step.
+    const Vec2 t = {n.z, -n.x};
+    const double excess = dot(t, off) - dot_of(row(t), error);
+    error[kPlace] += excess * t.x, error[kPlace + 1] += excess * t.z;
 }
 
 void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& readings, double dt, Error& error) {
@@ -231,7 +247,9 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
     h = row(t);
     h[kScale] = -w.cruise;
     h[kGyroBias + 1] += radius;
-    update(h, (1.0 + scale_) * rolled - dot3(t, speed), noise_.rolling);
+    // The nearer to its grip, the less a wheel's turning says.
+    const double used = std::abs(w.traction) / std::max(dot(w.felt, n), 0.02 * weight_) / kGripUsed;
+    update(h, (1.0 + scale_) * rolled - dot3(t, speed), noise_.rolling * std::max(1.0, used * used));
     const Vec3 off = {n.x, 0.0, n.z};
     update(row(off), -dot3(off, speed), noise_.off_face);
 }
@@ -244,7 +262,7 @@ void Estimator::correct(const Error& e) {
         rate_[i] -= e[kGyroBias + i];
     }
     place_ += {e[kPlace], e[kPlace + 1]};
-    scale_ += e[kScale];
+    scale_ = std::clamp(scale_ + e[kScale], -kMostScale, kMostScale);
     offset_[0] += {e[kFrontOffset], e[kFrontOffset + 1]};
     offset_[1] += {e[kRearOffset], e[kRearOffset + 1]};
 }

@@ -82,7 +82,9 @@ class Estimator {
         double traction = 0.0;    // smoothed [N]
         double s;                 // place on the curve [m]
         double rolled = 0.0;      // by the last step [m]
+        double rate_now = 0.0;    // absolute, of its turning [rad/s]
         double cruise = 0.0;      // speed that it rolls at, smoothed [m/s]
+        double at_corner = 0.0;   // for how long it has felt both faces of a corner [s]
     };
     using Vec3 = std::array<double, 3>;
     using Rotation = std::array<Vec3, 3>;
@@ -105,6 +107,7 @@ class Estimator {
     Vec2 place_;
     std::array<Vec2, 2> offset_{};
     double scale_ = 0.0;
+    bool started_ = false;
     Covariance covariance_;
     std::array<WheelState, 4> wheels_;
     Estimate estimate_;
