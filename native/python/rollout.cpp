@@ -4,6 +4,9 @@
 #include <bit>
 #include <cstdint>
 
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/variant.h>
+
 #include "arrays.hpp"
 #include "bindings.hpp"
 
@@ -62,10 +65,64 @@ void bind_follower(nb::module_& m) {
         .def_prop_ro("target", [](const PlanFollower& f) { return row(f.target()); }, nb::rv_policy::automatic);
 }
 
+auto judged(const Rollout& run) {
+    std::vector<double> out;
+    for (const Judged& row : run.judged()) {
+        const auto numbers = std::bit_cast<std::array<double, kJudgedWidth>>(row);
+        out.insert(out.end(), numbers.begin(), numbers.end());
+    }
+    const std::size_t count = run.judged().size();
+    return give(std::move(out), {count, kJudgedWidth});
+}
+
+void bind_noise(nb::module_& m) {
+    using estimation::Noise;
+    nb::class_<Noise>(m, "EstimatorNoise", "Standard deviations that the estimator counts on, see estimation/estimator.hpp.")
+        .def(nb::init<>())
+        .def_rw("start_place", &Noise::start_place)
+        .def_rw("start_height", &Noise::start_height)
+        .def_rw("start_tilt", &Noise::start_tilt)
+        .def_rw("start_heading", &Noise::start_heading)
+        .def_rw("start_gyro_bias", &Noise::start_gyro_bias)
+        .def_rw("start_force_bias", &Noise::start_force_bias)
+        .def_rw("scale", &Noise::scale)
+        .def_rw("gyro", &Noise::gyro)
+        .def_rw("specific_force", &Noise::specific_force)
+        .def_rw("gyro_bias", &Noise::gyro_bias)
+        .def_rw("force_bias", &Noise::force_bias)
+        .def_rw("map_along", &Noise::map_along)
+        .def_rw("map_height", &Noise::map_height)
+        .def_rw("place", &Noise::place)
+        .def_rw("rolling", &Noise::rolling)
+        .def_rw("aside", &Noise::aside)
+        .def_rw("off_face", &Noise::off_face)
+        .def_rw("place_lasts", &Noise::place_lasts)
+        .def_rw("rolling_lasts", &Noise::rolling_lasts)
+        .def_rw("force", &Noise::force);
+}
+
+void bind_perception(nb::module_& m) {
+    nb::class_<SensorModel>(m, "IdealSense", "The whole state, with noise and late; what is believed may be wrong all the time.")
+        .def("__init__", [](SensorModel* self, std::size_t delay_steps, double start, double offset, double scale, double pitch) {
+            new (self) SensorModel(delay_steps, {start, offset, scale, pitch});
+        }, nb::arg("delay_steps"), nb::arg("start"), nb::arg("offset") = 0.0, nb::arg("scale") = 0.0, nb::arg("pitch") = 0.0);
+    nb::class_<RobotSense>(m, "RobotSense", "The robot's own sensors, late, and the estimator.")
+        .def("__init__", [](RobotSense* self, const Robot& robot, const WheelPath& path, std::array<double, 2> start, double pitch,
+                            double noise, double wheel_scale, double tilt, std::size_t delay_steps, std::uint64_t seed,
+                            const estimation::Noise& believed) {
+            SensorErrors errors = usual_errors(noise);
+            errors.wheel_scale = wheel_scale, errors.tilt = tilt;
+            new (self) RobotSense({errors, seed}, {robot, path, {{start[0], start[1]}, pitch}, believed}, delay_steps);
+        }, nb::arg("robot"), nb::arg("path"), nb::arg("start"), nb::arg("pitch"), nb::arg("noise"), nb::arg("wheel_scale"),
+           nb::arg("tilt"), nb::arg("delay_steps"), nb::arg("seed"), nb::arg("believed") = estimation::Noise{});
+}
+
 }  // namespace
 
 void bind_rollout(nb::module_& m) {
     bind_follower(m);
+    bind_noise(m);
+    bind_perception(m);
     nb::class_<Score>(m, "Score")
         .def_ro("pitch_error_max", &Score::pitch_error_max)
         .def_ro("pitch_error_squares", &Score::pitch_error_squares)
@@ -78,12 +135,13 @@ void bind_rollout(nb::module_& m) {
         .def_ro("tilt", &Score::tilt);
     nb::class_<Rollout>(m, "Rollout", "The closed loop in MuJoCo; keep model and data alive as long as it.")
         .def("__init__", [](Rollout* self, std::uintptr_t model, std::uintptr_t data, const Controller& controller,
-                            const PlanFollower& follower, std::size_t delay_steps, std::size_t log_every, int substeps) {
+                            const PlanFollower& follower, const Perception& perception, double motor_bandwidth,
+                            std::size_t log_every, int substeps) {
             if (model == 0 || data == 0) throw std::invalid_argument("model and data must be addresses");
             new (self) Rollout(reinterpret_cast<const mjModel_*>(model), reinterpret_cast<mjData_*>(data), controller, follower,
-                               SensorModel(delay_steps), log_every, substeps);
-        }, nb::arg("model"), nb::arg("data"), nb::arg("controller"), nb::arg("follower"), nb::arg("delay_steps"),
-           nb::arg("log_every"), nb::arg("substeps"))
+                               perception, {motor_bandwidth}, log_every, substeps);
+        }, nb::arg("model"), nb::arg("data"), nb::arg("controller"), nb::arg("follower"), nb::arg("perception"),
+           nb::arg("motor_bandwidth"), nb::arg("log_every"), nb::arg("substeps"))
         .def("run", [](Rollout& self, int first, int last, bool looked, bool loaded, bool moving, double begun, const Noise& noise) {
             nb::gil_scoped_release release;
             return self.run({std::max(first, 0), last, looked, loaded, moving, begun}, {noise.data(), noise.size()});
@@ -93,6 +151,9 @@ void bind_rollout(nb::module_& m) {
         .def_prop_ro("way", [](const Rollout& r) { return r.follower().way(); })
         .def_prop_ro("target", [](const Rollout& r) { return row(r.follower().target()); }, nb::rv_policy::automatic)
         .def_prop_ro("score", [](const Rollout& r) { return r.score(); })
+        .def_prop_ro("judged", &judged, nb::rv_policy::automatic,
+                     "Rows (n, 15) of the estimator against the truth: time, errors of attitude, velocity, place x and z; NEES;\n"
+                     "the estimated scale of the wheels and offsets of the map under front and rear wheels.")
         .def_prop_ro("sample_count", [](const Rollout& r) { return r.log().samples().size(); })
         .def("samples", &samples, nb::arg("first") = 0, nb::arg("stride") = 1, nb::rv_policy::automatic,
              "Rows of the log, see rollout/log.hpp.");

@@ -17,15 +17,11 @@ from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
 from stairwright.planning.poses.interpolation import reference
 from stairwright.robot.mujoco_model import build_spec
-from stairwright.simulation.disturbance import (
-    Disturbance,
-    Sensors,
-    disturb_trunk,
-    real_terrain,
-)
+from stairwright.simulation.disturbance import Disturbance
 from stairwright.simulation.drive import drive
 from stairwright.simulation.governor import follower, track
 from stairwright.simulation.outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
+from stairwright.simulation.sensors import Sensors
 from stairwright.simulation.trials import (
     Ranges,
     clopper_pearson,
@@ -34,6 +30,7 @@ from stairwright.simulation.trials import (
     trials,
     wilson,
 )
+from stairwright.simulation.world import disturb_trunk, real_terrain
 from stairwright.terrain.wheel_path import wheel_path
 
 A1S = ("a1_wheeled", "a1_wheeled_x")
@@ -181,9 +178,9 @@ def test_falling_and_being_stuck() -> None:
 
 def test_deviations_change_what_they_say() -> None:
     robot, terrain = sw.load_robot("a1_wheeled"), sw.load_terrain("three-stairs-up")
-    higher = real_terrain(terrain, 0.03)
+    higher = real_terrain(terrain, Disturbance(height=0.03), 0)
     assert np.ptp(higher.vertices[:, 1]) == pytest.approx(0.375 + 0.03)
-    assert real_terrain(terrain, 0.0) is terrain
+    assert real_terrain(terrain, Disturbance(), 0) is terrain
     for deviation in (Disturbance(mass=0.1, com_x=0.02), Disturbance(com_z=-0.02)):
         spec = build_spec(robot, visual=False)
         disturb_trunk(spec, robot, deviation)

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from stairwright.arguments import as_model
 from stairwright.documents import Model
+from stairwright.errors import InputError
 
 Form = Literal["contact", "paper"]
 Solver = Literal["native", "clarabel"]
+Sensing = Literal["ideal", "robot"]
 
 
 def _number(
@@ -40,6 +42,13 @@ class ControllerSettings(Model):
         title="QP solver",
         description="Solves the balance QP (eqs 11-12): native is part of the control loop; "
         "clarabel, through qpsolvers, is the reference",
+    )
+    sensing: Sensing = Field(
+        "ideal",
+        title="Sensing",
+        description="What the controller knows of its state. ideal: all of it, as the simulation "
+        "has it. robot: what encoders, motor currents and an inertial sensor tell, by an estimator "
+        "that knows the map (form contact, native solver)",
     )
     speed: float | None = _number(
         None, 0.02, 1.0, "m/s", "Speed", "Along the course; the plan's own timing if empty", "log"
@@ -137,6 +146,12 @@ class ControllerSettings(Model):
         "Largest normal force of a wheel (eq 12); 1.3 times the robot's weight if empty",
         "log",
     )
+
+    @model_validator(mode="after")
+    def _check_sensing(self) -> ControllerSettings:
+        if self.sensing == "robot" and (self.form != "contact" or self.solver != "native"):
+            raise InputError("robot needs form contact and the native solver", ("sensing",))
+        return self
 
 
 def parse_settings(settings: Mapping[str, Any] | ControllerSettings | None) -> ControllerSettings:

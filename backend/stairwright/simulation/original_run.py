@@ -21,6 +21,10 @@ from .original import Original, build_original, read_original
 from .run import CONTROL_STEPS, Run
 
 Floats = NDArray[np.float64]
+# Deviations that change our own model of the robot or of the world round it.
+_OUR_MODEL = (
+    "mass", "com_x", "com_z", "payload", "friction_front", "friction_rear", "heading", "cross_slope",
+)  # fmt: skip
 
 
 class Mirror:
@@ -102,7 +106,7 @@ class OriginalRun(Run):
         record_hz: float,
         model: str | os.PathLike[str],
     ) -> None:
-        for name in ("mass", "com_x", "com_z"):
+        for name in _OUR_MODEL:
             if getattr(disturbance, name):
                 raise InputError("is for our own model of the robot", ("disturbance", name))
         self.upload, self.reading = read_original(model, plan.robot_description)
@@ -110,7 +114,8 @@ class OriginalRun(Run):
         self.simulated = f"{self.reading.robot.source}: {', '.join(maps)}"
         super().__init__(plan, friction, settings, disturbance, seed, record_hz)
 
-    def _world(self, terrain: Terrain, friction: float) -> tuple[Any, Any]:
+    def _world(self, terrain: Terrain) -> tuple[Any, Any]:
+        friction = max(0.01, self.friction + self.disturbance.friction)
         self.original = build_original(self.upload, self.reading, self.robot, terrain, friction)
         return self.original.model, Mirror(self.original)
 
@@ -145,4 +150,4 @@ class OriginalRun(Run):
             data.xpos[body] + data.xmat[body].reshape(3, 3) @ plane
             for body, plane in zip(own.wheels, own.planes, strict=True)
         ]
-        return np.array(places)[:, [0, 2]]
+        return np.array(places)

@@ -21,21 +21,17 @@ from stairwright.planning.plan import Plan
 from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.smoothing.path_timing import retimed
 from stairwright.robot.description import LEGS
-from stairwright.robot.mujoco_model import build_spec
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
 
 from . import score
-from .disturbance import (
-    Disturbance,
-    Sensors,
-    disturb_trunk,
-    real_terrain,
-)
+from .disturbance import Disturbance
 from .governor import Track, cruise, follower, track
 from .outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
 from .record import Recorder
 from .result import Metrics, Rollout
+from .sensors import Sensors
+from .world import build_world, course_frame, real_terrain
 
 Floats = NDArray[np.float64]
 
@@ -74,12 +70,12 @@ class Run:
         self.friction, self.disturbance = friction, disturbance
         self.robot = robot = plan.robot_description
         self.path = wheel_path(plan.terrain, robot.wheel.radius)
-        terrain = real_terrain(plan.terrain, disturbance.height)
-        self.model, self.data = self._world(terrain, max(0.01, friction + disturbance.friction))
+        self.terrain = terrain = real_terrain(plan.terrain, disturbance, seed)
+        self.model, self.data = self._world(terrain)
         self.dt = CONTROL_STEPS * self.model.opt.timestep
         self.track: Track = self._track()
         self.limit = 2.5 * self.track.duration + 5.0
-        self.sensors = Sensors(disturbance, self.dt, seed)
+        self.sensors = Sensors(disturbance, self.dt, seed, plan.poses[0].x_c)
         self.way = self.track.start
         self.follower = follower(self.track, settings.leash)
         self.places = np.full(4, np.nan)
@@ -100,11 +96,10 @@ class Run:
         self.wall = self.time = 0.0
         self._place()
 
-    def _world(self, terrain: Terrain, friction: float) -> tuple[Any, Any]:
+    def _world(self, terrain: Terrain) -> tuple[Any, Any]:
         """The model to simulate and its state."""
-        spec = build_spec(self.robot, terrain, friction, visual=False)
-        disturb_trunk(spec, self.robot, self.disturbance)
-        model = spec.compile()
+        begin = self.plan.poses[0].x_c
+        model = build_world(self.robot, terrain, self.friction, self.disturbance, begin)
         return model, mujoco.MjData(model)
 
     def _geom_names(self) -> list[str]:
@@ -123,16 +118,39 @@ class Run:
     def _native(self, every: int) -> _core.Rollout:
         controller = native_controller(self.robot, self.path, self.plan.friction, self.settings)
         model, data = int(self.model._address), int(self.data._address)  # noqa: SLF001
-        delay = len(self.sensors.history) - 1
         line = follower(self.track, self.settings.leash)
-        return _core.Rollout(model, data, controller, line, delay, every, CONTROL_STEPS)
+        bandwidth = self.disturbance.motor_bandwidth
+        perception = self._perception()
+        return _core.Rollout(
+            model, data, controller, line, perception, bandwidth, every, CONTROL_STEPS
+        )
+
+    def _perception(self) -> _core.IdealSense | _core.RobotSense:
+        """What the controller gets to know."""
+        deviation, start = self.disturbance, self.plan.poses[0]
+        late = len(self.sensors.history) - 1
+        if self.settings.sensing == "ideal":
+            return _core.IdealSense(
+                late, start.x_c, deviation.start_x, deviation.odometry, deviation.pitch_bias
+            )
+        return _core.RobotSense(
+            self.robot.native,
+            self.path.native,
+            start=(start.x_c, start.z_c),
+            pitch=start.pitch,
+            noise=max(1.0, deviation.noise),  # real sensors have it anyway
+            wheel_scale=deviation.odometry,
+            tilt=deviation.pitch_bias,
+            delay_steps=late,
+            seed=self.seed,
+        )
 
     def _place(self) -> None:
         """Put the robot into the plan's first pose."""
         pose = self.plan.poses[0]
         front, rear = list(pose.q[:2]), list(pose.q[2:])
         qpos = self.data.qpos
-        qpos[:3] = pose.x_c, 0.0, pose.z_c
+        qpos[:3] = pose.x_c - self.disturbance.start_x, 0.0, pose.z_c
         qpos[3:7] = math.cos(pose.pitch / 2), 0.0, math.sin(pose.pitch / 2), 0.0
         qpos[7:] = [*front, 0.0, *front, 0.0, *rear, 0.0, *rear, 0.0]
         mujoco.mj_forward(self.model, self.data)
@@ -257,12 +275,32 @@ class Run:
         mujoco.mj_contactForce(self.model, self.data, contact, force)
 
     def _wheels(self) -> Floats:
-        return np.array([self.data.body(f"{leg}_wheel").xpos[[0, 2]] for leg in LEGS])
+        """Centres (4, 3) of the wheels in the world [m]."""
+        return np.array([self.data.body(f"{leg}_wheel").xpos for leg in LEGS])
 
     def _end_error(self) -> float:
+        """Largest distance of a wheel from where the plan ends on the real terrain [m].
+
+        What a deviation makes of the way itself (a start elsewhere, faces moved, a wrong measure of
+        length) is not held against the robot: it can know where it is on the stairs, not in the
+        world.
+        """
+        deviation = self.disturbance
+        turn, origin = course_frame(deviation, self.plan.poses[0].x_c)
+        wheels = self._wheels()
+        x, _, z = (turn.T @ (wheels - origin).T) + origin[:, None]
+        if not np.isfinite([x, z]).all():
+            return math.inf
         end = np.array(self.plan.poses[-1].wheels)[[0, 0, 1, 1]]
-        error = float(np.hypot(*(self._wheels() - end).T).max())
-        return error if math.isfinite(error) else math.inf
+        start = np.array(self.plan.poses[0].wheels)[[0, 0, 1, 1]]
+        way = np.abs(end[:, 0] - start[:, 0])
+        lost = abs(deviation.start_x) + deviation.faces + abs(deviation.odometry) * way
+        off = np.maximum(0.0, np.abs(x - end[:, 0]) - lost)
+        real = wheel_path(self.terrain, self.robot.wheel.radius)
+        places = np.column_stack([x, z])
+        nearest = real.centres(np.array([real.project(place) for place in places]))
+        off_ground = np.hypot(*(places - nearest).T)
+        return float(np.hypot(off, off_ground).max())
 
     def _at_rest(self) -> bool:
         return bool(np.abs(self.data.qvel[:3]).max() < 0.02)

@@ -113,13 +113,14 @@ Controller::Controller(Robot robot, WheelPath path, double friction, const Gains
     places_.fill(std::numeric_limits<double>::quiet_NaN());
 }
 
-Torques Controller::step(const RobotState& state, const Reference& target, double yaw_rate) {
+Torques Controller::step(const RobotState& state, const Reference& target, double yaw_rate,
+                         const std::optional<std::array<double, 4>>& places) {
     const Gains& g = gains_;
     const Measurement m = measure(robot_, mass_, state);
     const double usable = std::max(g.friction_share, target.friction_share) * friction_;
     Supports supports;
     for (int i = 0; i < 4; ++i) {
-        places_[i] = locate(path_, m.legs[i].wheel, places_[i]);
+        places_[i] = places ? (*places)[i] : locate(path_, m.legs[i].wheel, places_[i]);
         const auto lean = static_cast<Lean>(whole_part(target.lean[i / 2], 2));
         supports[i] = wheel_support(path_, places_[i], target.value.wheels[i / 2], usable, lean);
     }

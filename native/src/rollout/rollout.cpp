@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace stairwright::rollout {
@@ -17,13 +18,14 @@ constexpr int kAllContacts = 16;  // the sensor that counts every contact; befor
 }  // namespace
 
 Rollout::Rollout(const mjModel* model, mjData* data, control::Controller controller, control::PlanFollower follower,
-                 SensorModel sensors, std::size_t log_every, int substeps)
+                 Perception perception, const Motors& motors, std::size_t log_every, int substeps)
     : model_(model), data_(data), controller_(std::move(controller)), follower_(std::move(follower)),
-      sensors_(std::move(sensors)), log_(log_every), substeps_(substeps), dt_(substeps * model->opt.timestep) {
+      perception_(std::move(perception)), log_(log_every), substeps_(substeps), dt_(substeps * model->opt.timestep) {
     if (model->nq != control::kPositions || model->nv != control::kVelocities || model->nu != 12 ||
         model->nsensordata <= kAllContacts)
         throw std::invalid_argument("the model is not one of a robot with four wheeled legs");
     if (substeps < 1) throw std::invalid_argument("substeps must be at least 1");
+    lag_ = motors.bandwidth > 0.0 ? 1.0 - std::exp(-2.0 * std::numbers::pi * motors.bandwidth * dt_) : 1.0;
 }
 
 RobotState Rollout::truth() const {
@@ -40,14 +42,25 @@ bool Rollout::diverged() const {
     return !(total < kBeyond);
 }
 
-void Rollout::control(const RobotState& seen, bool moving, double time) {
+Perceived Rollout::perceive(std::span<const double> noise) {
+    if (auto* ideal = std::get_if<SensorModel>(&perception_)) return {ideal->perceive(truth(), noise), {}};
+    return std::get<RobotSense>(perception_).perceive(truth(), torques_, dt_);
+}
+
+void Rollout::control(const Perceived& seen, bool moving, double time) {
     const RobotState state = truth();
     const control::Reference& target = follower_.advance(controller_.places(), moving, dt_);
-    const control::Torques wanted = controller_.step(seen, target);
-    const control::Torques torques = control::limit_torques(controller_.robot(), std::span<const double, 12>(state.joint_rates), wanted);
+    const control::Torques wanted = controller_.step(seen.state, target, 0.0, seen.places);
+    for (std::size_t i = 0; i < torques_.size(); ++i) torques_[i] += lag_ * (wanted[i] - torques_[i]);
+    const control::Torques torques = control::limit_torques(controller_.robot(), std::span<const double, 12>(state.joint_rates), torques_);
+    torques_ = torques;
     std::copy(torques.begin(), torques.end(), data_->ctrl);
     score_.add(state, torques, target, dt_);
     if (!log_.due()) return;
+    if (const auto* sense = std::get_if<RobotSense>(&perception_)) {
+        const auto judged = sense->judge();
+        judged_.push_back({time, judged.error, judged.nees, judged.scale, judged.offset});
+    }
     Sample sample;
     sample.time = time, sample.state = state, sample.torques = torques;
     std::copy_n(data_->sensordata, sample.contacts.size(), sample.contacts.begin());
@@ -65,7 +78,7 @@ int Rollout::run(const Chunk& chunk, std::span<const double> noise) {
         if (!(chunk.looked && k == chunk.first)) {
             const std::size_t row = static_cast<std::size_t>(k) * kNoiseWidth;
             const auto drawn = row + kNoiseWidth <= noise.size() ? noise.subspan(row, kNoiseWidth) : std::span<const double>();
-            control(sensors_.perceive(truth(), drawn), chunk.moving, chunk.begun + k * dt_);
+            control(perceive(drawn), chunk.moving, chunk.begun + k * dt_);
             const double* found = data_->sensordata;
             const int wheels = static_cast<int>(found[0] + found[4] + found[8] + found[12]);
             if (chunk.loaded || static_cast<int>(found[kAllContacts]) != wheels) return k;

@@ -27,6 +27,14 @@ const RobotState& SensorModel::perceive(const RobotState& truth, std::span<const
         const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
         for (double& v : q) v /= length;
     }
+    const Misbelief& wrong = misbelief_;
+    latest.position[0] += wrong.offset;
+    latest.position[0] += wrong.scale * (latest.position[0] - wrong.start);
+    if (wrong.pitch != 0.0) {  // turned about the trunk's lateral axis
+        const auto [w, x, y, z] = latest.quaternion;
+        const double c = std::cos(0.5 * wrong.pitch), s = std::sin(0.5 * wrong.pitch);
+        latest.quaternion = {w * c - y * s, x * c - z * s, y * c + w * s, z * c + x * s};
+    }
     const std::size_t oldest = seen_ + 1 >= size ? seen_ + 1 - size : 0;
     ++seen_;
     return history_[oldest % size];

@@ -4,6 +4,7 @@
 // Wheels and legs are in the order FL, FR, RL, RR; pairs are front, rear. SI units; angles about +y.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "stairwright/control/balance_qp.hpp"
@@ -71,8 +72,10 @@ class Controller {
     // `friction` is the one the plan was made for.
     Controller(Robot robot, WheelPath path, double friction, const Gains& gains);
 
-    // Torques before the motors' limits; `yaw_rate` is commanded.
-    Torques step(const RobotState& state, const Reference& target, double yaw_rate = 0.0);
+    // Torques before the motors' limits; `yaw_rate` is commanded. `places` of the wheels on the wheel-centre curve [m]
+    // are those nearest to where the state puts the wheels, unless they are given.
+    Torques step(const RobotState& state, const Reference& target, double yaw_rate = 0.0,
+                 const std::optional<std::array<double, 4>>& places = {});
 
     const Robot& robot() const { return robot_; }
     const Forces& forces() const { return forces_; }

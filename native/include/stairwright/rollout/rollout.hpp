@@ -4,12 +4,26 @@
 #include "stairwright/control/plan_follower.hpp"
 #include "stairwright/rollout/log.hpp"
 #include "stairwright/rollout/score.hpp"
-#include "stairwright/rollout/sensor_model.hpp"
+#include "stairwright/rollout/perception.hpp"
 
 struct mjModel_;
 struct mjData_;
 
 namespace stairwright::rollout {
+
+// What is between the torques that the controller wants and those that act.
+struct Motors {
+    double bandwidth = 0.0;  // of a first-order lag [Hz]; 0: none
+};
+
+// The estimator's error against the truth at one step, see Estimator::judge.
+struct Judged {
+    double time = 0.0;
+    std::array<double, 8> error{};
+    double nees = 0.0, scale = 0.0;
+    std::array<Vec2, 2> offset{};
+};
+inline constexpr std::size_t kJudgedWidth = sizeof(Judged) / sizeof(double);
 
 // Part of a rollout between two looks from outside.
 struct Chunk {
@@ -24,7 +38,7 @@ class Rollout {
   public:
     // Throws std::invalid_argument if the model is not one of the robot. Model and data are borrowed.
     Rollout(const mjModel_* model, mjData_* data, control::Controller controller, control::PlanFollower follower,
-            SensorModel sensors, std::size_t log_every, int substeps);
+            Perception perception, const Motors& motors, std::size_t log_every, int substeps);
 
     // Control steps of a chunk; returns where it stopped: before the physics of a step with a contact to look at (one
     // that is not a wheel's, or any while a link is loaded), or at the end; at once when the state has diverged.
@@ -37,16 +51,22 @@ class Rollout {
     const control::PlanFollower& follower() const { return follower_; }
     const Score& score() const { return score_; }
     const Log& log() const { return log_; }
+    // Empty unless the robot senses by itself; as often as the log's samples.
+    const std::vector<Judged>& judged() const { return judged_; }
 
   private:
     RobotState truth() const;
-    void control(const RobotState& seen, bool moving, double time);
+    Perceived perceive(std::span<const double> noise);
+    void control(const Perceived& seen, bool moving, double time);
 
     const mjModel_* model_;
     mjData_* data_;
     control::Controller controller_;
     control::PlanFollower follower_;
-    SensorModel sensors_;
+    Perception perception_;
+    double lag_;  // share of the wanted torque that acts after a control step
+    control::Torques torques_{};
+    std::vector<Judged> judged_;
     Log log_;
     Score score_;
     int substeps_;

@@ -1,0 +1,116 @@
+// Where the robot is on the map, from its own sensors: an error-state Kalman filter relative to the terrain.
+//
+// Gyro and accelerometer drive the prediction; wheels that carry load measure. Of each:
+//   rolling   the wheel's centre moves along the face as fast as the wheel turns, and neither off it nor sideways
+//             (contact-aided filtering: Bloesch et al. 2013, Hartley et al. 2020; here the contact rolls);
+//   place     the wheel's centre lies on the map's wheel-centre curve, see curve_match.hpp: along the normal of the
+//             face, so a tread says how high the robot is and a face how far along;
+//   corner    both faces are felt: a fix; or the wheel cannot be beyond a face that it does not feel: a truncation.
+// Nothing global is measured. Place and rolling are measured at every step although their errors last longer than one,
+// so their variances are multiplied by how many steps they last. What does not fit (slip, a wheel in the air) is left
+// out by its normalised innovation.
+//
+// Refs: R. Hartley, M. Ghaffari, R. Eustice, J. Grizzle, "Contact-aided invariant extended Kalman filtering for robot
+// state estimation", IJRR 2020. M. Bloesch et al., "State estimation for legged robots", RSS 2013. J. Sola,
+// "Quaternion kinematics for the error-state Kalman filter", 2017. J. Neira, J. Tardos, "Data association in stochastic
+// mapping using the joint compatibility test", 2001. D. Simon, D. L. Simon, "Constrained Kalman filtering via
+// density function truncation", 2010.
+#pragma once
+
+#include "stairwright/control/controller.hpp"
+#include "stairwright/estimation/curve_match.hpp"
+#include "stairwright/estimation/error_state.hpp"
+#include "stairwright/estimation/readings.hpp"
+
+namespace stairwright::estimation {
+
+// Standard deviations; SI units.
+struct Noise {
+    // At the start, of what is believed there.
+    double start_place = 0.03, start_height = 0.003, start_tilt = 0.02, start_heading = 0.04;
+    double start_gyro_bias = 0.01, start_force_bias = 0.2, scale = 0.015;
+    // Of the sensors, a reading.
+    double gyro = 0.02, specific_force = 0.5;
+    // Growth in the square root of a second.
+    double gyro_bias = 2e-4, force_bias = 5e-3;
+    // Growth of the map's error in the square root of a metre rolled, and of measurements.
+    double map_along = 0.012, map_height = 0.006;
+    double place = 0.002, rolling = 0.03, aside = 0.03, off_face = 0.02;
+    // How long an error of these lasts [s].
+    double place_lasts = 0.06, rolling_lasts = 0.02;
+    // Of the force that a leg feels, in robot weights.
+    double force = 0.08;
+};
+
+// What is known before the first reading.
+struct Start {
+    Vec2 place;          // of the trunk point [m]
+    double pitch = 0.0;
+};
+
+// What the filter says of itself.
+struct Estimate {
+    control::RobotState state;       // for the controller: on the map as it was drawn
+    std::array<double, 4> places{};  // of the wheels on the wheel-centre curve [m]
+    std::array<bool, 4> touching{};
+};
+
+class Estimator {
+  public:
+    Estimator(Robot robot, WheelPath path, const Start& start, const Noise& noise);
+
+    // One step of time `dt` on; returns the estimate after it.
+    const Estimate& step(const Readings& readings, double dt);
+
+    const Estimate& estimate() const { return estimate_; }
+    const Covariance& covariance() const { return covariance_; }
+    // Error of attitude (world frame), velocity and place, as far as the filter estimates them, and the
+    // normalised square of roll, pitch, x and z velocity, and place (NEES, 6 degrees of freedom).
+    struct Judgement {
+        std::array<double, 8> error;
+        double nees;
+        double scale;                 // of the wheels, as estimated
+        std::array<Vec2, 2> offset;   // of the map under front and rear wheels, as estimated [m]
+    };
+    Judgement judge(const control::RobotState& truth) const;
+
+  private:
+    struct WheelState {
+        Vec2 place, rate;         // in the trunk frame, and its rate there [m, m/s]
+        LegPlaces leg;            // world, with the trunk point as origin
+        Vec2 felt;                // the force, smoothed [N]
+        double traction = 0.0;    // smoothed [N]
+        double s;                 // place on the curve [m]
+        double rolled = 0.0;      // by the last step [m]
+        double rate_now = 0.0;    // absolute, of its turning [rad/s]
+        double cruise = 0.0;      // speed that it rolls at, smoothed [m/s]
+        double at_corner = 0.0;   // for how long it has felt both faces of a corner [s]
+    };
+    using Vec3 = std::array<double, 3>;
+    using Rotation = std::array<Vec3, 3>;
+
+    Rotation rotation() const;
+    void predict(const Readings& readings, double dt);
+    void see_legs(const Readings& readings, double dt);
+    void measure(int wheel, const Readings& readings, double dt);
+    void measure_place(int wheel, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error);
+    void measure_rolling(int wheel, const CurveMatch& on, const Readings& readings, double dt, Error& error);
+    void correct(const Error& error);
+    void report(const Readings& readings);
+
+    Robot robot_;
+    WheelPath path_;
+    Noise noise_;
+    double weight_;
+    std::array<double, 4> attitude_;  // trunk to world, w x y z
+    Vec3 velocity_{}, gyro_bias_{}, force_bias_{}, rate_{};
+    Vec2 place_;
+    std::array<Vec2, 2> offset_{};
+    double scale_ = 0.0;
+    bool started_ = false;
+    Covariance covariance_;
+    std::array<WheelState, 4> wheels_;
+    Estimate estimate_;
+};
+
+}  // namespace stairwright::estimation

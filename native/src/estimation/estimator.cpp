@@ -1,0 +1,307 @@
+#include "stairwright/estimation/estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stairwright::estimation {
+
+namespace {
+
+using Vec3 = std::array<double, 3>;
+
+constexpr double kWindow = 0.12;        // m; a wheel is looked for this far from where it was
+constexpr double kTouching = 0.15;      // of the share of the weight: a wheel that carries less says nothing
+constexpr double kForceTime = 0.015;    // s, smoothing of the forces
+// s, smoothing of the speed by which the wheels' scale is judged: noise in it would count twice, and shrink the scale.
+constexpr double kCruiseTime = 0.1;
+constexpr double kSure = 0.02;         // s that both faces of a corner must be felt before that counts
+constexpr double kMostScale = 0.04;    // of the wheels: more is slip
+constexpr double kGripUsed = 0.25;     // share of the normal force from which on traction makes slip likely
+constexpr double kGate = 9.0;           // of a normalised innovation squared
+constexpr double kNearCorner = 0.006;   // m; which way a wheel rolls this near to a concave corner is open
+
+Error initial(const Noise& n) {
+    Error d{};
+    d[kAttitude] = d[kAttitude + 1] = n.start_tilt, d[kAttitude + 2] = n.start_heading;
+    d[kVelocity] = d[kVelocity + 1] = d[kVelocity + 2] = 0.02;
+    d[kPlace] = n.start_place, d[kPlace + 1] = n.start_height;
+    for (std::size_t i = 0; i < 3; ++i) d[kGyroBias + i] = n.start_gyro_bias, d[kForceBias + i] = n.start_force_bias;
+    d[kScale] = n.scale;
+    for (const std::size_t at : {kFrontOffset, kRearOffset}) d[at] = d[at + 1] = 0.001;
+    return d;
+}
+
+Vec3 times(const std::array<Vec3, 3>& R, const Vec3& v) {
+    Vec3 out;
+    for (int i = 0; i < 3; ++i) out[i] = R[i][0] * v[0] + R[i][1] * v[1] + R[i][2] * v[2];
+    return out;
+}
+
+Vec3 cross3(const Vec3& a, const Vec3& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
+double dot3(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+std::array<double, 4> product(const std::array<double, 4>& a, const std::array<double, 4>& b) {
+    return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3], a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+            a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1], a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
+}
+
+// Quaternion of a small turn.
+std::array<double, 4> turn(const Vec3& v) {
+    const double angle = std::sqrt(dot3(v, v)), k = angle > 1e-9 ? std::sin(0.5 * angle) / angle : 0.5;
+    return {std::cos(0.5 * angle), k * v[0], k * v[1], k * v[2]};
+}
+
+double dot_of(const Error& a, const Error& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < kErrors; ++i) sum += a[i] * b[i];
+    return sum;
+}
+
+void normalise(std::array<double, 4>& q) {
+    const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    for (double& v : q) v /= length;
+}
+
+}  // namespace
+
+Estimator::Estimator(Robot robot, WheelPath path, const Start& start, const Noise& noise)
+    : robot_(std::move(robot)), path_(std::move(path)), noise_(noise), weight_(robot_.mass() * kGravity),
+      attitude_{std::cos(0.5 * start.pitch), 0.0, std::sin(0.5 * start.pitch), 0.0}, place_(start.place), covariance_(initial(noise)) {
+    for (WheelState& w : wheels_) w.s = std::numeric_limits<double>::quiet_NaN(), w.felt = {0.0, weight_ / 4};
+}
+
+Estimator::Rotation Estimator::rotation() const {
+    const auto [w, x, y, z] = attitude_;
+    return {{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+             {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+             {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
+}
+
+const Estimate& Estimator::step(const Readings& readings, double dt) {
+    predict(readings, dt);
+    see_legs(readings, dt);
+    for (int i = 0; i < 4; ++i) measure(i, readings, dt);
+    started_ = true;
+    report(readings);
+    return estimate_;
+}
+
+void Estimator::predict(const Readings& readings, double dt) {
+    Vec3 rate, force;
+    for (int i = 0; i < 3; ++i) rate[i] = readings.angular_rate[i] - gyro_bias_[i], force[i] = readings.specific_force[i] - force_bias_[i];
+    // The force was felt on the way here: with the attitude half a step back.
+    const Rotation R = rotation();
+    const Vec3 pull = times(R, force);
+    covariance_.propagate(R, pull, dt);
+    place_ += Vec2{velocity_[0], velocity_[2]} * dt;
+    for (int i = 0; i < 3; ++i) velocity_[i] += dt * (pull[i] - (i == 2 ? kGravity : 0.0));
+    attitude_ = product(attitude_, turn({rate[0] * dt, rate[1] * dt, rate[2] * dt}));
+    normalise(attitude_);
+    rate_ = rate;
+    const Noise& n = noise_;
+    const auto square = [](double v) { return v * v; };
+    for (std::size_t i = 0; i < 3; ++i) {
+        covariance_.add_noise(kAttitude + i, square(n.gyro * dt));
+        covariance_.add_noise(kVelocity + i, square(n.specific_force * dt));
+        covariance_.add_noise(kGyroBias + i, square(n.gyro_bias) * dt);
+        covariance_.add_noise(kForceBias + i, square(n.force_bias) * dt);
+    }
+    // The map is the less sure the farther a pair has rolled over it.
+    for (int pair = 0; pair < 2; ++pair) {
+        const double rolled = 0.5 * (std::abs(wheels_[2 * pair].rolled) + std::abs(wheels_[2 * pair + 1].rolled));
+        covariance_.add_noise(kFrontOffset + 2 * pair, square(n.map_along) * rolled);
+        covariance_.add_noise(kFrontOffset + 2 * pair + 1, square(n.map_height) * rolled);
+    }
+}
+
+void Estimator::see_legs(const Readings& readings, double dt) {
+    const Rotation R = rotation();
+    const auto world = [&](Vec2 p) { return Vec2{R[0][0] * p.x + R[0][2] * p.z, R[2][0] * p.x + R[2][2] * p.z}; };
+    const double share = dt / (kForceTime + dt);
+    for (int i = 0; i < 4; ++i) {
+        const Leg& leg = robot_.legs[i / 2];
+        WheelState& w = wheels_[i];
+        const double thigh = readings.joints[3 * i], calf = thigh + readings.joints[3 * i + 1];
+        const double thigh_rate = readings.joint_rates[3 * i], calf_rate = thigh_rate + readings.joint_rates[3 * i + 1];
+        const Turn upper = Turn::by(thigh), lower = Turn::by(calf);
+        const Vec2 knee = upper * leg.thigh.end, shank = lower * leg.calf.end;
+        w.place = leg.hip + knee + shank;
+        w.rate = {knee.z * thigh_rate + shank.z * calf_rate, -knee.x * thigh_rate - shank.x * calf_rate};
+        const Vec2 at_knee = leg.hip + knee;
+        w.leg = {world(leg.hip), world(at_knee), world(w.place), world(leg.hip + upper * leg.thigh.com),
+                 world(at_knee + lower * leg.calf.com)};
+        const WheelForce f = wheel_force(leg, w.leg, readings.torques[3 * i], readings.torques[3 * i + 1], readings.torques[3 * i + 2]);
+        if (f.known) w.felt += share * (f.force - w.felt);
+        const double rate = readings.joint_rates[3 * i] + readings.joint_rates[3 * i + 1] + readings.joint_rates[3 * i + 2] + rate_[1];
+        w.rolled = leg.wheel.radius * rate * dt;
+        // What spins the wheel up does not reach the ground.
+        const double spin_up = started_ ? leg.wheel.inertia * (rate - w.rate_now) / dt / leg.wheel.radius : 0.0;
+        w.traction += share * (f.traction - spin_up - w.traction);
+        w.rate_now = rate;
+        w.cruise += dt / (kCruiseTime + dt) * (leg.wheel.radius * rate - w.cruise);
+    }
+}
+
+void Estimator::measure(int i, const Readings& readings, double dt) {
+    WheelState& w = wheels_[i];
+    const Rotation R = rotation();
+    const double side = i % 2 == 0 ? robot_.half_track : -robot_.half_track;
+    const Vec3 arm = times(R, {w.place.x, side, w.place.z});
+    const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
+    const Vec2 centre = place_ + offset_[i / 2] + Vec2{arm[0], arm[2]};
+
+    // Rows of the wheel's place: d(R f) = e x R f.
+    Error along_x{}, along_z{};
+    along_x[kAttitude + 1] = arm[2], along_x[kAttitude + 2] = -arm[1], along_x[kPlace] = along_x[own] = 1.0;
+    along_z[kAttitude] = arm[1], along_z[kAttitude + 1] = -arm[0], along_z[kPlace + 1] = along_z[own + 1] = 1.0;
+    const Error px = covariance_.times(along_x), pz = covariance_.times(along_z);
+    WheelBelief belief;
+    belief.centre = centre;
+    for (std::size_t k = 0; k < kErrors; ++k) {
+        belief.spread.xx += along_x[k] * px[k], belief.spread.xz += along_x[k] * pz[k], belief.spread.zz += along_z[k] * pz[k];
+    }
+    const double least = noise_.place * noise_.place;
+    belief.spread.xx += least, belief.spread.zz += least;
+    belief.force = {w.felt, w.traction, true};
+    belief.force_deviation = noise_.force * weight_ + 0.15 * norm(w.felt);
+    const CurveMatch on = match(path_, belief, w.s, kWindow);
+    w.s = on.s;
+
+    w.at_corner = on.corner ? w.at_corner + dt : 0.0;
+    estimate_.touching[i] = std::max({dot(w.felt, on.point.normal), dot(w.felt, on.before), dot(w.felt, on.after)}) > kTouching * weight_ / 4;
+    if (!estimate_.touching[i]) return;
+    Error error{};
+    if (!on.corner || w.at_corner > kSure) measure_place(i, on, along_x, along_z, centre, dt, error);
+    measure_rolling(i, on, readings, dt, error);
+    correct(error);
+}
+
+void Estimator::measure_place(int, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error) {
+    const double variance = noise_.place * noise_.place * std::max(1.0, noise_.place_lasts / dt);
+    const Vec2 off = on.point.centre - centre;
+    const auto row = [&](Vec2 d) {
+        Error h;
+        for (std::size_t k = 0; k < kErrors; ++k) h[k] = d.x * along_x[k] + d.z * along_z[k];
+        return h;
+    };
+    if (on.corner) {
+        covariance_.update(row(on.before), dot(on.before, off), variance, error);
+        covariance_.update(row(on.after), dot(on.after, off), variance, error);
+        return;
+    }
+    const Vec2 n = on.point.normal;
+    covariance_.update(row(n), dot(n, off), variance, error);
+    if (on.beyond == 0 || !on.blocked) return;
+    // The mean alone is projected: that the face is not felt yet is the same news at every step.
+    const Vec2 t = {n.z, -n.x};
+    const double excess = dot(t, off) - dot_of(row(t), error);
+    error[kPlace] += excess * t.x, error[kPlace + 1] += excess * t.z;
+}
+
+void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& readings, double dt, Error& error) {
+    const WheelState& w = wheels_[i];
+    const Rotation R = rotation();
+    const double side = i % 2 == 0 ? robot_.half_track : -robot_.half_track;
+    const Vec3 place = {w.place.x, side, w.place.z}, spin = cross3(rate_, place);
+    const Vec3 own = times(R, {spin[0] + w.rate.x, spin[1], spin[2] + w.rate.z});
+    const Vec3 speed = {velocity_[0] + own[0], velocity_[1] + own[1], velocity_[2] + own[2]};
+    const Vec3 axis = {R[0][1], R[1][1], R[2][1]};
+    // How the measured part `d` of the wheel's velocity changes with the state; the lever turns with the trunk.
+    const auto row = [&](const Vec3& d) {
+        Error h{};
+        const Vec3 turned = cross3(own, d);
+        const Vec3 body = {R[0][0] * d[0] + R[1][0] * d[1] + R[2][0] * d[2], R[0][1] * d[0] + R[1][1] * d[1] + R[2][1] * d[2],
+                           R[0][2] * d[0] + R[1][2] * d[1] + R[2][2] * d[2]};
+        const Vec3 bias = cross3(body, place);
+        for (std::size_t k = 0; k < 3; ++k) h[kAttitude + k] = turned[k], h[kVelocity + k] = d[k], h[kGyroBias + k] = bias[k];
+        return h;
+    };
+    const double lasts = std::max(1.0, noise_.rolling_lasts / dt);
+    const auto update = [&](const Error& h, double residual, double deviation) {
+        const Error ph = covariance_.times(h);
+        double spread = deviation * deviation;
+        for (std::size_t k = 0; k < kErrors; ++k) spread += h[k] * ph[k];
+        if (residual * residual > kGate * spread) return;
+        covariance_.update(h, residual, deviation * deviation * lasts, error);
+    };
+    // Sideways; the axis turns with the trunk.
+    Error h = row(axis);
+    const Vec3 swing = cross3(axis, speed);
+    for (std::size_t k = 0; k < 3; ++k) h[kAttitude + k] = swing[k] + cross3(own, axis)[k];
+    update(h, -dot3(axis, speed), noise_.aside);
+    if (on.corner) {  // at rest against both faces
+        return;
+    }
+    const std::size_t next = path_.corner_from(on.s - kNearCorner);
+    const bool near = next < path_.corners().size() && path_.corners()[next] < on.s + kNearCorner;
+    if (near) return;
+    const Vec2 n = on.point.normal;
+    Vec3 t = {n.z, 0.0, -n.x};
+    const double aside = dot3(t, axis);
+    for (int k = 0; k < 3; ++k) t[k] -= aside * axis[k];
+    const double length = std::sqrt(dot3(t, t));
+    for (double& v : t) v /= length;
+    const double angular = readings.joint_rates[3 * i] + readings.joint_rates[3 * i + 1] + readings.joint_rates[3 * i + 2] + rate_[1];
+    const double radius = robot_.legs[i / 2].wheel.radius, rolled = radius * angular;
+    h = row(t);
+    h[kScale] = -w.cruise;
+    h[kGyroBias + 1] += radius;
+    // The nearer to its grip, the less a wheel's turning says.
+    const double used = std::abs(w.traction) / std::max(dot(w.felt, n), 0.02 * weight_) / kGripUsed;
+    update(h, (1.0 + scale_) * rolled - dot3(t, speed), noise_.rolling * std::max(1.0, used * used));
+    const Vec3 off = {n.x, 0.0, n.z};
+    update(row(off), -dot3(off, speed), noise_.off_face);
+}
+
+void Estimator::correct(const Error& e) {
+    attitude_ = product(turn({e[kAttitude], e[kAttitude + 1], e[kAttitude + 2]}), attitude_);
+    normalise(attitude_);
+    for (std::size_t i = 0; i < 3; ++i) {
+        velocity_[i] += e[kVelocity + i], gyro_bias_[i] += e[kGyroBias + i], force_bias_[i] += e[kForceBias + i];
+        rate_[i] -= e[kGyroBias + i];
+    }
+    place_ += {e[kPlace], e[kPlace + 1]};
+    scale_ = std::clamp(scale_ + e[kScale], -kMostScale, kMostScale);
+    offset_[0] += {e[kFrontOffset], e[kFrontOffset + 1]};
+    offset_[1] += {e[kRearOffset], e[kRearOffset + 1]};
+}
+
+void Estimator::report(const Readings& readings) {
+    control::RobotState& out = estimate_.state;
+    const Vec2 at = place_ + 0.5 * (offset_[0] + offset_[1]);
+    out.position = {at.x, 0.0, at.z};
+    out.quaternion = attitude_;
+    out.joints = readings.joints, out.joint_rates = readings.joint_rates;
+    out.velocity = velocity_, out.angular_velocity = rate_;
+    for (int i = 0; i < 4; ++i) estimate_.places[i] = wheels_[i].s;
+}
+
+Estimator::Judgement Estimator::judge(const control::RobotState& truth) const {
+    const auto [w, x, y, z] = attitude_;
+    const auto d = product(truth.quaternion, {w, -x, -y, -z});
+    const double sign = d[0] < 0.0 ? -2.0 : 2.0;
+    Judgement out;
+    out.error = {sign * d[1], sign * d[2], sign * d[3], truth.velocity[0] - velocity_[0], truth.velocity[1] - velocity_[1],
+                 truth.velocity[2] - velocity_[2], truth.position[0] - place_.x, truth.position[2] - place_.z};
+    constexpr std::size_t parts[] = {kAttitude, kAttitude + 1, kVelocity, kVelocity + 2, kPlace, kPlace + 1};
+    const double error[] = {out.error[0], out.error[1], out.error[3], out.error[5], out.error[6], out.error[7]};
+    // Cholesky factor of the marginal covariance, and its solution with the error.
+    double L[6][6] = {}, y6[6];
+    out.scale = scale_, out.offset = offset_;
+    out.nees = 0.0;
+    for (int i = 0; i < 6; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            double sum = covariance_(parts[i], parts[j]);
+            for (int k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
+            L[i][j] = i == j ? std::sqrt(std::max(sum, 1e-16)) : sum / L[j][j];
+        }
+        double sum = error[i];
+        for (int k = 0; k < i; ++k) sum -= L[i][k] * y6[k];
+        y6[i] = sum / L[i][i];
+        out.nees += y6[i] * y6[i];
+    }
+    return out;
+}
+
+}  // namespace stairwright::estimation
