@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stairwright/whole.hpp"
+
 namespace stairwright {
 
 namespace {
@@ -110,7 +112,7 @@ WheelLoads::WheelLoads(const WheelPath& path, WheelPlaces s, double friction, do
 
 std::optional<std::array<WheelLoad, 2>> WheelLoads::at(int way, double com_x) const {
     const double u = step_ > 0.0 ? std::clamp((com_x - first_) / step_, 0.0, kSamples - 1.0) : 0.0;
-    const int k = std::min(static_cast<int>(u), kSamples - 2);
+    const int k = std::min(static_cast<int>(whole_part(u)), kSamples - 2);
     const double share = u - k;
     const Sample &a = samples_[way][k], &b = samples_[way][k + 1];
     if (!a.held || !b.held) return std::nullopt;

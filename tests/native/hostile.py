@@ -73,6 +73,7 @@ def robots() -> dict[str, dict[str, Any]]:
     return {
         "of 3 mm": _scaled(0.01),
         "of 400 m": _scaled(1000.0),
+        "flat trunk": robot(trunk__size=(1e-6, 1e-6, 1e-6)),
         "wheels larger than itself": robot(wheel__radius=0.3, nominal_height=0.62),
         "tiny wheels": robot(wheel__radius=1e-9),
         "thick links": robot(thigh__radius=1000.0),

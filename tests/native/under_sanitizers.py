@@ -68,16 +68,17 @@ def terrains() -> Iterator[str]:
 
 
 def robots() -> Iterator[str]:
-    """Robots that nobody builds, on a step and on a slope; some are driven, too."""
+    """Robots that nobody builds, on a step or a slope; some are driven, too."""
     from tests.native import hostile
+    from tests.robot.random_robots import random_robot
 
     slope = [(-1.5, 0), (0, 0), (1, 0.3), (2.5, 0.3)]
-    for name, robot in hostile.robots().items():
-        for terrain in (slope, "curb-015"):
-            ground = terrain if isinstance(terrain, str) else {"points": terrain}
-            plans = planned(ground, robot, 0.6)
-            outcomes = [sw.rollout(plan).outcome for plan in plans if plan.executable][:1]
-            yield f"{name}: {[plan.status for plan in plans]} {outcomes}"
+    unlike = {f"random {seed}": random_robot(seed) for seed in range(4)}
+    for k, (name, robot) in enumerate((hostile.robots() | unlike).items()):
+        ground = ("curb-015", {"points": slope})[k % 2]
+        plans = planned(ground, robot, 0.6)
+        outcomes = [sw.rollout(plan).outcome for plan in plans if plan.executable][:1]
+        yield f"{name}: {[plan.status for plan in plans]} {outcomes}"
 
 
 def wrecks() -> Iterator[str]:

@@ -148,7 +148,8 @@ def body_of(robot: Robot) -> Body:
 def box(length: float, width: float, height: float) -> Outline:
     """The outline of a box round the trunk point."""
     x, z = length / 2, height / 2
-    return Outline(points=[(-x, -z), (x, -z), (x, z), (-x, z)], width=width)
+    corners = [(-x, -z), (x, -z), (x, z), (-x, z)]
+    return Outline.model_construct(points=corners, width=width)  # of any size
 
 
 def _form(link: Link) -> LinkForm:
