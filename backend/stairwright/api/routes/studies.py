@@ -6,6 +6,7 @@ import asyncio
 import hashlib
 import time
 from collections.abc import AsyncIterator
+from functools import partial
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -126,7 +127,7 @@ async def post_study(
 
 
 def _resolved(services: Services, body: Study) -> Study:
-    study = resolve(body, lambda name: resolve_terrain(services, name), resolve_robot)
+    study = resolve(body, partial(resolve_terrain, services), partial(resolve_robot, services))
     check_budget(study, services.settings.study_cells, "STAIRWRIGHT_STUDY_CELLS")
     check_axes(Questions(study))
     return study
