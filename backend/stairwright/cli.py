@@ -58,6 +58,9 @@ def parser() -> argparse.ArgumentParser:
     rollout.add_argument(
         "--workers", type=int, metavar="N", help="share trials among so many; default: all cores"
     )
+    rollout.add_argument(
+        "--model", metavar="FILE", help="simulate the robot's own MJCF or URDF, not our model of it"
+    )
     rollout.add_argument("-o", "--output", metavar="FILE", help=names("rollout"))
 
     export = commands.add_parser("export", help="write a plan, rollout or robot in another format")
@@ -89,7 +92,11 @@ def _add_robot(command: argparse.ArgumentParser) -> None:
     reading = actions.add_parser("import", help="read a URDF or MJCF file")
     reading.add_argument("file", metavar="FILE", help=".urdf, .xml, or a .zip with the meshes")
     reading.add_argument(
-        "--abduction", type=float, default=0.0, metavar="RAD", help="lock the legs outward by so much"
+        "--abduction",
+        type=float,
+        default=0.0,
+        metavar="RAD",
+        help="lock the legs outward by so much",
     )
     reading.add_argument(
         "--wheel-radius", type=float, metavar="M", help="where the file does not show it"
@@ -98,7 +105,9 @@ def _add_robot(command: argparse.ArgumentParser) -> None:
     convert = actions.add_parser("convert", help="write a robot in the newest schema")
     convert.add_argument("file", metavar="FILE", help="a robot (yaml, json, its name)")
     for action in (reading, convert):
-        action.add_argument("-o", "--output", metavar="FILE", help=f"{names('robot')}; else printed")
+        action.add_argument(
+            "-o", "--output", metavar="FILE", help=f"{names('robot')}; else printed"
+        )
 
 
 def _add_planning(command: argparse.ArgumentParser) -> None:

@@ -116,7 +116,9 @@ class Client:
 
     def generate_terrain(self, kind: Literal["stair", "ramp", "flat"], **measures: Any) -> Terrain:
         """A terrain from a few measures."""
-        return _saved(Terrain, self._json("POST", "/terrains/generate", json={"kind": kind, **measures}))
+        return _saved(
+            Terrain, self._json("POST", "/terrains/generate", json={"kind": kind, **measures})
+        )
 
     def import_terrain(self, path: str | Path, **fields: Any) -> Terrain:
         """The profile in a file: STL, OBJ, PLY, OFF, CSV, JSON or YAML."""

@@ -232,9 +232,7 @@ def _add_leg(trunk: Any, robot: Robot, leg: str, friction: float, visual: bool) 
     for part in ("thigh", "calf"):
         link: LinkForm = getattr(own, part)
         body = parent.add_body(name=f"{leg}_{part}", pos=place)
-        _add_hinge(
-            body, f"{leg}_{part}", getattr(own, f"{part}_motor"), getattr(own.limits, part)
-        )
+        _add_hinge(body, f"{leg}_{part}", getattr(own, f"{part}_motor"), getattr(own.limits, part))
         _set_inertial(body, link.mass, (link.com[0], 0.0, link.com[1]), link.inertia)
         for k, ((ax, az), (bx, bz), radius) in enumerate(link.capsules):
             body.add_geom(

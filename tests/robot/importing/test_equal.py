@@ -18,7 +18,6 @@ from stairwright.robot import kinematics
 from stairwright.robot.importing.read import read
 from stairwright.robot.importing.report import Imported
 from stairwright.robot.importing.upload import Upload
-
 from tests.robot.importing.files import Design, scrambled
 from tests.robot.importing.written import mjcf, urdf
 
@@ -28,7 +27,7 @@ MAKERS = os.environ.get("STAIRWRIGHT_MAKERS")
 
 def load(text: str) -> mujoco.MjModel:
     """MuJoCo's own model, without looks and meshes."""
-    root = ET.fromstring(text)  # noqa: S314 - written here
+    root = ET.fromstring(text)
     for link in root.iter("link"):
         for shown in link.findall("visual"):
             link.remove(shown)
@@ -55,7 +54,9 @@ def differences(model: mujoco.MjModel, made: Imported, postures: int = 1000) -> 
     rng = np.random.default_rng(5)
     limits = [end for leg in robot.legs for end in (leg.limits.thigh, leg.limits.calf)]
     low, high = np.array(limits).T
-    addresses = {name: model.jnt_qposadr[model.joint(own.name).id] for name, own in made.joints.items()}
+    addresses = {
+        name: model.jnt_qposadr[model.joint(own.name).id] for name, own in made.joints.items()
+    }
     centre, worst = None, np.zeros(2)
     for _ in range(postures):
         q = rng.uniform(low, high)
@@ -80,7 +81,11 @@ def differences(model: mujoco.MjModel, made: Imported, postures: int = 1000) -> 
         frames = kinematics.forward(robot, zero, zero, zero, q)
         for leg in LEGS:
             k = 0 if leg[0] == "F" else 1
-            for part, points in (("calf", frames.knees), ("wheel", frames.wheels), ("thigh", frames.hips)):
+            for part, points in (
+                ("calf", frames.knees),
+                ("wheel", frames.wheels),
+                ("thigh", frames.hips),
+            ):
                 off = np.abs(anchors[f"{leg}_{part}"] - centre - points[k]).max()
                 worst[0] = max(worst[0], off)
         ours = kinematics.com(robot, zero, zero, zero, frames)

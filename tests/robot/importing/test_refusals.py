@@ -36,7 +36,9 @@ def without_legs(text: str, *legs: str) -> str:
 
 def one(text: str, name: str, old: str, new: str) -> str:
     """Change `old` in the element called `name`."""
-    found = re.search(rf'<(link|joint|body) name="{name}".*?</\1>|<joint name="{name}"[^>]*>', text, re.DOTALL)
+    found = re.search(
+        rf'<(link|joint|body) name="{name}".*?</\1>|<joint name="{name}"[^>]*>', text, re.DOTALL
+    )
     assert found, name
     assert old in found[0], found[0]
     return text.replace(found[0], found[0].replace(old, new, 1), 1)
@@ -50,7 +52,9 @@ def test_two_legs() -> None:
 
 def test_no_wheel_at_the_end() -> None:
     text = one(URDF, "RR_wheel_joint", 'type="continuous"', 'type="revolute"')
-    message = refused(one(text, "RR_wheel_joint", 'velocity="40"', 'velocity="1" lower="-1" upper="1"'))
+    message = refused(
+        one(text, "RR_wheel_joint", 'velocity="40"', 'velocity="1" lower="-1" upper="1"')
+    )
     assert "'RR_wheel' is no wheel" in message
     assert "3 of four" in message
 
@@ -78,7 +82,9 @@ def test_a_leg_that_swings_sideways() -> None:
 
 
 def test_closed_chains() -> None:
-    closed = '<equality><connect name="rod" body1="FL_calf" body2="FL_hip" anchor="0 0 0"/></equality>'
+    closed = (
+        '<equality><connect name="rod" body1="FL_calf" body2="FL_hip" anchor="0 0 0"/></equality>'
+    )
     assert "rod" in refused(mjcf(Design(), extra=closed))
     tied = '<equality><joint joint1="FL_calf_joint" joint2="FR_calf_joint"/></equality>'
     assert "FL_calf_joint" in refused(mjcf(Design(), extra=tied))
@@ -101,10 +107,13 @@ def test_links_that_hang_on_nothing() -> None:
 
 def test_one_joint_too_many() -> None:
     text = one(URDF, "FL_hip_joint", '<parent link="base"/>', '<parent link="turret"/>')
-    text = text.replace("</robot>", '<link name="turret"><inertial><mass value="1"/><inertia ixx=".01" '
-        'iyy=".01" izz=".01" ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="steer" '
-        'type="revolute"><parent link="base"/><child link="turret"/><axis xyz="0 0 1"/>'
-        '<limit lower="-1" upper="1" effort="9" velocity="9"/></joint></robot>')  # fmt: skip
+    turret = (
+        '<link name="turret"><inertial><mass value="1"/><inertia ixx=".01" iyy=".01" izz=".01" '
+        'ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="steer" type="revolute">'
+        '<parent link="base"/><child link="turret"/><axis xyz="0 0 1"/>'
+        '<limit lower="-1" upper="1" effort="9" velocity="9"/></joint>'
+    )
+    text = text.replace("</robot>", f"{turret}</robot>")
     message = refused(text)
     assert "'steer'" in message
     assert "one joint too many" in message

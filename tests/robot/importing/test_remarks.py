@@ -27,7 +27,9 @@ def said(remarks: list[str], *words: str) -> bool:
 def test_motors_of_urdf() -> None:
     made = imported(urdf(Design()))
     motors = made.robot.actuators
-    limits = {part: (motors.of(part).torque, motors.of(part).speed) for part in ("thigh", "calf", "wheel")}
+    limits = {
+        part: (motors.of(part).torque, motors.of(part).speed) for part in ("thigh", "calf", "wheel")
+    }
     assert limits == {"thigh": (24, 30), "calf": (35, 20), "wheel": (15, 40)}
     assert motors.of("calf").damping == 0.05
     assert said(made.assumed, "rotor inertia", "URDF has no place")
@@ -43,7 +45,8 @@ def test_a_torque_limit_in_two_places() -> None:
 
 def test_position_servos_limit_by_force_not_by_angle() -> None:
     servos = "".join(
-        f'<position joint="{leg}_{part}_joint" kp="50" ctrlrange="-3 3" forcerange="-20 20" gear="2"/>'
+        f'<position joint="{leg}_{part}_joint" kp="50" ctrlrange="-3 3" '
+        'forcerange="-20 20" gear="2"/>'
         for leg in LEGS for part in ("thigh", "calf", "wheel")
     )  # fmt: skip
     made = imported(mjcf(Design(), motors=servos))
@@ -93,8 +96,8 @@ def test_gaps_are_filled_from_a_known_robot_with_the_same_legs() -> None:
 
 def test_shapes_without_mass_weigh_as_in_mujoco_and_it_is_said() -> None:
     fixed = (
-        '<link name="guard"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>'
-        '<joint name="guard_joint" type="fixed"><parent link="base"/><child link="guard"/></joint>'
+        '<link name="guard"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
+        '</link><joint name="guard_joint" type="fixed"><parent link="base"/><child link="guard"/></joint>'
     )
     made = imported(urdf(Design(), extra=fixed))
     assert made.robot.mass == pytest.approx(imported(urdf(Design())).robot.mass + 1.0)
@@ -124,7 +127,9 @@ def test_the_height_is_the_keyframes_or_a_bent_knees() -> None:
     drop = design.thigh * math.cos(0.75) + design.calf * math.cos(0.75 - 1.45)
     assert keyed.nominal_height == pytest.approx(drop + design.radius, abs=1e-9)
     bent = imported(urdf(design))
-    reach = math.sqrt(design.thigh**2 + design.calf**2 + 2 * design.thigh * design.calf * math.cos(1.5))
+    reach = math.sqrt(
+        design.thigh**2 + design.calf**2 + 2 * design.thigh * design.calf * math.cos(1.5)
+    )
     assert bent.robot.nominal_height == pytest.approx(reach + design.radius)
     assert said(bent.assumed, "nominal_height")
 

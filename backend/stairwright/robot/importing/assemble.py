@@ -80,7 +80,9 @@ def assemble(
     """
     tree = find_legs(source)
     frame = find_frame(source, tree, notes)
-    held = {joint: float(source.model.qpos0[source.model.jnt_qposadr[joint]]) for joint in tree.free}
+    held = {
+        joint: float(source.model.qpos0[source.model.jnt_qposadr[joint]]) for joint in tree.free
+    }
     for joint in tree.free:
         notes.warn(f"{source.joint(joint)!r} belongs to no leg: held at {held[joint]:g}")
     held |= upright(source, tree, frame, abduction, notes)
@@ -117,6 +119,7 @@ def assemble(
 
 def _placed(legs: list[Measured]) -> dict[str, Measured]:
     """The legs by our names, front and rear by x, left and right by y."""
+
     def hip(leg: Measured) -> np.ndarray:
         place: np.ndarray = leg.side.axes.T @ leg.side.joints[0]
         return place
@@ -206,9 +209,7 @@ def _document(
         },
         **ends[0],
         "rear": unlike or None,
-        "joints": {
-            pair.name: {"thigh": pair.limits[0], "calf": pair.limits[1]} for pair in pairs
-        },
+        "joints": {pair.name: {"thigh": pair.limits[0], "calf": pair.limits[1]} for pair in pairs},
     }
     return document, centre
 

@@ -35,7 +35,7 @@ def import_bounded(
     task = pickle.dumps((name, content, dict(files), dict(options), documents))
     command = _START.format(path=sys.path, module=f"{__package__}.child")
     try:
-        done = subprocess.run(  # noqa: S603 - our own interpreter and module
+        done = subprocess.run(
             [sys.executable, "-c", command],
             input=task,
             capture_output=True,

@@ -84,7 +84,9 @@ def merged(groups: list[list[Disc2]]) -> list[Disc2]:
             off = _apart(capsule, other)
             if off <= _ALIKE:
                 radius = max(other.radius, capsule.radius + off)
-                found[k] = other if radius - other.radius < 1e-9 else Disc2(other.start, other.end, radius)
+                found[k] = (
+                    other if radius - other.radius < 1e-9 else Disc2(other.start, other.end, radius)
+                )
                 break
         else:
             found.append(capsule)
@@ -107,5 +109,7 @@ def limited(capsules: list[Disc2], most: int) -> list[Disc2]:
     order = sorted(capsules, key=lambda each: -each.area)
     angle = np.arange(24) * 2 * math.pi / 24
     ring = np.column_stack([np.cos(angle), np.sin(angle)]) / math.cos(math.pi / 24)
-    cloud = [end + each.radius * ring for each in order[most - 1 :] for end in (each.start, each.end)]
+    cloud = [
+        end + each.radius * ring for each in order[most - 1 :] for end in (each.start, each.end)
+    ]
     return [*order[: most - 1], around(np.concatenate(cloud))]

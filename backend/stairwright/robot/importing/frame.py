@@ -96,7 +96,9 @@ def _along(source: Source, trunk: Floats, joints: list[int], name: str) -> int:
     return index
 
 
-def upright(source: Source, tree: Tree, frame: Frame, tilt: float, notes: Notes) -> dict[int, float]:
+def upright(
+    source: Source, tree: Tree, frame: Frame, tilt: float, notes: Notes
+) -> dict[int, float]:
     """Positions of the abduction joints at which the legs lean outward by `tilt` [rad].
 
     Raises:

@@ -44,7 +44,7 @@ def provide(spec: Any, upload: Upload) -> dict[str, str]:
 
 
 def _is_text_stl(content: bytes, suffix: str) -> bool:
-    if suffix != ".stl" or not content[:5].lower() == b"solid":
+    if suffix != ".stl" or content[:5].lower() != b"solid":
         return False
     count = int.from_bytes(content[80:84], "little")
     return len(content) != 84 + 50 * count

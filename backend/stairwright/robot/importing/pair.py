@@ -60,9 +60,7 @@ def pair_of(left: Measured, right: Measured, where: str, notes: Notes) -> Pair:
     tracks = [abs(float(hip[1])) for hip in hips]
     if abs(tracks[0] - tracks[1]) > 1e-4:
         notes.warn(f"{both} are {tracks[0]:.4g} and {tracks[1]:.4g} m from the middle; mean taken")
-    lengths = [
-        (a + b) / 2 for a, b in zip(left.side.lengths, right.side.lengths, strict=True)
-    ]
+    lengths = [(a + b) / 2 for a, b in zip(left.side.lengths, right.side.lengths, strict=True)]
     hip = (hips[0] + hips[1]) / 2
     return Pair(
         hip=hip[[0, 2]],
@@ -175,7 +173,9 @@ def link_document(part: LinkPart, length: float) -> dict[str, Any]:
     """As in a robot's document."""
     made: dict[str, Any] = {
         "length": length,
-        "radius": max(capsule.radius for capsule in part.capsules) if part.capsules else 0.04 * length,
+        "radius": max(capsule.radius for capsule in part.capsules)
+        if part.capsules
+        else 0.04 * length,
         "mass": part.mass,
         "com": tuple(tidy(value) for value in part.com),
         "inertia": part.inertia,

@@ -24,7 +24,10 @@ def nominal_height(
     height = _of_keyframe(source, legs, pairs, radius, notes)
     if height is not None:
         return height
-    heights = [_bent(pair) - pair_height for pair, pair_height in zip(pairs, _hip_heights(pairs), strict=True)]
+    heights = [
+        _bent(pair) - pair_height
+        for pair, pair_height in zip(pairs, _hip_heights(pairs), strict=True)
+    ]
     height = min(heights) + radius
     notes.assume(
         f"nominal_height {height:.4g} m: wheels under the hips, knees bent by {_KNEE:g} rad or as "

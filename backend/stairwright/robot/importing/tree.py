@@ -107,7 +107,8 @@ def _nearest(source: Source, own: list[int | None], body: int) -> int | None:
 
 def _above(source: Source, own: list[int | None]) -> list[int | None]:
     """For each joint the next one towards the world."""
-    model, found = source.model, []
+    model = source.model
+    found: list[int | None] = []
     for joint in range(model.njnt):
         body = int(model.jnt_bodyid[joint])
         if joint > model.body_jntadr[body]:
@@ -120,11 +121,12 @@ def _above(source: Source, own: list[int | None]) -> list[int | None]:
 def _paths(source: Source, above: list[int | None]) -> list[list[int]]:
     """From the outermost joint of every branch, the joints that lead to it."""
     paths = []
-    for leaf in sorted(set(range(source.model.njnt)) - set(above)):  # type: ignore[arg-type]
-        path, joint = [], leaf
+    for leaf in sorted(set(range(source.model.njnt)) - {j for j in above if j is not None}):
+        path: list[int] = []
+        joint: int | None = leaf
         while joint is not None:
             path.insert(0, joint)
-            joint = above[joint]  # type: ignore[assignment]
+            joint = above[joint]
         paths.append(path)
     return paths
 
@@ -216,7 +218,11 @@ def _refuse_loops(source: Source) -> None:
         name = model.equality(k).name or kind.name.removeprefix("mjEQ_").lower()
         first = int(model.eq_obj1id[k])
         if kind in (mujoco.mjtEq.mjEQ_CONNECT, mujoco.mjtEq.mjEQ_WELD):
-            where = source.body(first) if int(model.eq_objtype[k]) == int(mujoco.mjtObj.mjOBJ_BODY) else name
+            where = (
+                source.body(first)
+                if int(model.eq_objtype[k]) == int(mujoco.mjtObj.mjOBJ_BODY)
+                else name
+            )
         elif kind == mujoco.mjtEq.mjEQ_JOINT:
             where = source.joint(first)
         else:

@@ -122,7 +122,9 @@ def _main(roots: list[str], files: Mapping[str, bytes]) -> str:
     included = [
         name
         for name in roots
-        if any(PurePosixPath(name).name.encode() in files[other] for other in roots if other != name)
+        if any(
+            PurePosixPath(name).name.encode() in files[other] for other in roots if other != name
+        )
     ]
     tops = [name for name in roots if b"<include" not in files[name]] or roots
     if len(tops) == 1:

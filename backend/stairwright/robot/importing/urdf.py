@@ -57,7 +57,11 @@ def clean(root: ET.Element, notes: Notes) -> Urdf:
         raise InputError("this is xacro, not yet URDF: run xacro on it first", ("file",))
     made = ET.Element("robot", name=root.get("name") or "robot")
     settings = root.find("mujoco/compiler")
-    kept = {} if settings is None else {k: settings.attrib[k] for k in _COMPILER if k in settings.attrib}
+    kept = (
+        {}
+        if settings is None
+        else {k: settings.attrib[k] for k in _COMPILER if k in settings.attrib}
+    )
     block = ET.SubElement(ET.SubElement(made, "mujoco"), "compiler", kept)
     block.set("fusestatic", "false")
     block.set("discardvisual", "true")
