@@ -7,7 +7,6 @@ from xml.sax.saxutils import quoteattr
 
 from tests.robot.importing.files import LEGS, Design, parts
 
-
 # A frame that an exporter wrote as a body.
 _NOTHING = (
     '<link name="imu"><inertial><mass value="4e-15"/><inertia ixx="1e-27" ixy="0" ixz="0" '
