@@ -125,8 +125,8 @@ def _drop_unseen(spec: Any, upload: Upload, notes: Notes) -> list[Any]:
             spec.delete(mesh)
     if files:
         notes.warn(
-            f"collision meshes that were not sent or cannot be read (STL, OBJ, PLY and OFF can): "
-            f"{listed(sorted(set(files)))}"
+            "collision meshes that were not sent or cannot be read (STL, OBJ, DAE, PLY and OFF "
+            f"can): {listed(sorted(set(files)))}"
         )
     if weightless:
         notes.warn(f"{listed(weightless)}: the mass of a mesh that was not sent is missing")
