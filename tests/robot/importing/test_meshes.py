@@ -33,7 +33,8 @@ def collada(vertices: np.ndarray, *, unit: float = 1.0, node: str = "") -> bytes
 <source id="n"><float_array id="b" count="3">9 9 9</float_array></source>
 <vertices id="v"><input semantic="POSITION" source="#p"/></vertices></mesh></geometry>
 </library_geometries><library_visual_scenes><visual_scene id="s"><node><node>{node}
-<instance_geometry url="#g"/></node></node></visual_scene></library_visual_scenes></COLLADA>""".encode()
+<instance_geometry url="#g"/></node></node></visual_scene>
+</library_visual_scenes></COLLADA>""".encode()
 
 
 def text_stl(mesh: trimesh.Trimesh) -> bytes:
