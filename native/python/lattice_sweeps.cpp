@@ -133,6 +133,10 @@ void bind_widest(nb::module_& m) {
              nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>())
         .def("sweep", &WidestSearch::sweep, nb::arg("entry"), nb::arg("begin"), nb::arg("moves"),
              "One sweep over all cells; whether any changed.")
+        .def("limit_torques", [](WidestSearch& s, const WheelPath& path, double friction, double lag, double share) {
+            require(friction > 0.0 && share > 0.0, "friction, share: above 0");
+            s.paths.limit_torques(TorqueLimits(path, friction, lag, share, s.cells.size()));
+        }, nb::arg("path"), nb::arg("friction"), nb::arg("lag"), nb::arg("share"), "Only poses that motors hold with that share of their torque.")
         .def("look_everywhere", [](WidestSearch& s) { std::fill(s.paths.history.seen.begin(), s.paths.history.seen.end(), -1); },
              "Make the next sweep look at every cell.")
         .def("leading_to", [](const WidestSearch& s, int level, std::size_t goal, int moves) {

@@ -121,9 +121,9 @@ void bind_smoothing(nb::module_& m) {
     nb::class_<NodeSpacing>(m, "NodeSpacing")
         .def(nb::init<double, double, double>(), nb::arg("softness"), nb::arg("spacing"), nb::arg("swing"));
     nb::class_<RefineProblem>(m, "RefineProblem")
-        .def(nb::init<const Terrain&, const WheelPath&, const RobotModel&, double, double, double, double, PathWeights>(),
+        .def(nb::init<const Terrain&, const WheelPath&, const RobotModel&, double, double, double, double, PathWeights, bool>(),
              nb::arg("terrain"), nb::arg("path"), nb::arg("robot"), nb::arg("friction"), nb::arg("reserve"), nb::arg("lag"),
-             nb::arg("standing_height"), nb::arg("weights"), nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>())
+             nb::arg("standing_height"), nb::arg("weights"), nb::arg("torques") = false, nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>())
         .def("refine", [](const RefineProblem& problem, const Nodes& ends, const Nodes& poses, const NodeSpacing& spacing,
                           std::size_t held) {
             const RefinedPath found = run(problem, ends, poses, spacing, held);
@@ -138,7 +138,7 @@ void bind_smoothing(nb::module_& m) {
             return std::pair(found.total, terms);
         }, nb::arg("nodes"), "What the smoothing makes small, and the quantity of each weight by name.")
         .def("margins", [](const RefineProblem& p, const Nodes& path) {
-            return arrays(smoothing::node_margins(p.terrain, p.path, p.robot, nodes(path), p.friction));
+            return arrays(smoothing::node_margins(p.terrain, p.path, p.robot, nodes(path), p.friction, p.lag));
         }, nb::arg("nodes"));
     nb::class_<Evenness>(m, "Evenness")
         .def(nb::init<double, double, double>(), nb::arg("rate"), nb::arg("curvature"), nb::arg("lever"))

@@ -151,20 +151,31 @@ double least_friction(const std::array<Contact, 2>& contacts, double com_x, doub
     return high;
 }
 
-LegTorques static_torques(const Leg& leg, const LegPoints& p, const Contact& contact, const ContactForce& f) {
-    // About +y the moment of a force f at r is r_z f_x - r_x f_z; a joint must balance everything below it.
-    const auto moment = [](Vec2 r, Vec2 f) { return r.z * f.x - r.x * f.z; };
+namespace {
+
+// About +y the moment of a force f at r is r_z f_x - r_x f_z.
+double moment(Vec2 r, Vec2 f) { return r.z * f.x - r.x * f.z; }
+
+}  // namespace
+
+LegTorques static_torques(const Leg& leg, const LegPoints& p, const WheelLoad& load) {
+    // A joint must balance everything below it.
     const Vec2 thigh_line = p.knee - p.hip, calf_line = p.wheel - p.knee;
     const Vec2 thigh_com = p.hip + link_turn(leg.thigh, thigh_line) * leg.thigh.com;
     const Vec2 calf_com = p.knee + link_turn(leg.calf, calf_line) * leg.calf.com;
     const auto weight = [&](double mass, Vec2 at, Vec2 joint) { return mass * kGravity * (at.x - joint.x); };
-    const Vec2 force = world_force(contact, f);
     LegTorques out;
-    out.wheel = -leg.wheel.radius * f.tangential;
-    out.calf = moment(contact.point - p.knee, force) + weight(leg.calf.mass, calf_com, p.knee) + weight(leg.wheel.mass, p.wheel, p.knee);
-    out.thigh = moment(contact.point - p.hip, force) + weight(leg.thigh.mass, thigh_com, p.hip) +
+    out.wheel = load.moment;
+    out.calf = moment(p.wheel - p.knee, load.force) + load.moment + weight(leg.calf.mass, calf_com, p.knee) +
+               weight(leg.wheel.mass, p.wheel, p.knee);
+    out.thigh = moment(p.wheel - p.hip, load.force) + load.moment + weight(leg.thigh.mass, thigh_com, p.hip) +
                 weight(leg.calf.mass, calf_com, p.hip) + weight(leg.wheel.mass, p.wheel, p.hip);
     return out;
+}
+
+LegTorques static_torques(const Leg& leg, const LegPoints& p, const Contact& contact, const ContactForce& f) {
+    const Vec2 force = world_force(contact, f);
+    return static_torques(leg, p, {force, moment(contact.point - p.wheel, force)});
 }
 
 }  // namespace stairwright

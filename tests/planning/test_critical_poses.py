@@ -10,7 +10,9 @@ from stairwright.terrain.wheel_path import wheel_path
 from tests.planning.drawn import random_profile
 from tests.shapely_checker import check_pose, skeleton
 
-CASES = [(terrain, robot) for robot in sw.robots() for terrain in sw.terrains()]
+A1S = ("a1_wheeled", "a1_wheeled_x")
+
+CASES = [(terrain, robot) for robot in A1S for terrain in sw.terrains()]
 
 
 def assert_sound(plan, poses=None):
@@ -43,7 +45,7 @@ def test_presets_are_solved(terrain, robot):
     assert np.all(np.diff([pose.time for pose in plan.poses]) > 0.0)
 
 
-@pytest.mark.parametrize("robot", sw.robots())
+@pytest.mark.parametrize("robot", A1S)
 @pytest.mark.parametrize(
     ("terrain", "obstacles", "rests"),
     [("flat", 0, 0), ("single-stair-036", 1, 0), ("ramp-30deg-025", 1, 0),
@@ -56,7 +58,7 @@ def test_two_poses_for_each_obstacle(terrain, robot, obstacles, rests):
     assert len(plan.poses) == 2 + 2 * obstacles + rests
 
 
-@pytest.mark.parametrize("robot", sw.robots())
+@pytest.mark.parametrize("robot", A1S)
 def test_rear_contact_stays_behind_the_rear_hip(robot):
     """Eq 20, at the critical poses."""
     plan = sw.plan("single-stair-036", robot, method="critical")
@@ -66,7 +68,7 @@ def test_rear_contact_stays_behind_the_rear_hip(robot):
         assert pose.contacts[1][0] <= hip[0] + 1e-6
 
 
-@pytest.mark.parametrize("robot", sw.robots())
+@pytest.mark.parametrize("robot", A1S)
 @pytest.mark.parametrize("tilt", [0.02, 0.0, -0.02])
 def test_treads_need_not_be_level(tilt, robot):
     """Two poses for each stair of a flight, the same two again where what lies before repeats."""
@@ -84,7 +86,7 @@ def test_treads_need_not_be_level(tilt, robot):
         assert np.allclose(after.q, before.q, atol=1e-6)
 
 
-@pytest.mark.parametrize("robot", sw.robots())
+@pytest.mark.parametrize("robot", A1S)
 @pytest.mark.parametrize(
     "terrain",
     [
@@ -139,7 +141,7 @@ def test_points_alone_solve_too():
         assert check_pose(plan.robot_description, vertices, pose).wheel_gap < 1e-5
 
 
-@pytest.mark.parametrize("robot", sw.robots())
+@pytest.mark.parametrize("robot", A1S)
 @pytest.mark.parametrize("seed", range(12))
 def test_drawn_profiles(seed, robot):
     """Solved, or a named reason with a place; poses found before it are sound either way."""
@@ -151,7 +153,7 @@ def test_drawn_profiles(seed, robot):
         assert x0 <= plan.problem.at[0] <= x1
 
 
-@pytest.mark.parametrize("robot", sw.robots())
+@pytest.mark.parametrize("robot", A1S)
 def test_a_wall_stops_the_robot(robot):
     plan = sw.plan(stair(1.2), robot, method="critical")
     assert plan.status == "infeasible"

@@ -7,8 +7,10 @@ import stairwright as sw
 from stairwright.planning.joining import certify_motion
 from stairwright.terrain.stairs import stair
 
+A1S = ("a1_wheeled", "a1_wheeled_x")
 
-@pytest.mark.parametrize("robot", sw.robots())
+
+@pytest.mark.parametrize("robot", A1S)
 @pytest.mark.parametrize("terrain", ["single-stair-036", "three-stairs-up", "loading-dock"])
 def test_the_motion_between_critical_poses_passes_the_exact_check(terrain, robot):
     plan = sw.plan(terrain, robot, method="critical")
@@ -57,7 +59,7 @@ def test_motion_without_objection_succeeds():
         count = int(rng.integers(1, 5))
         height = rng.uniform(0.08, 0.38 if count == 1 else 0.2)
         terrain = stair(height, rng.uniform(0.25, 0.4), count, direction=("up", "down")[k % 2])
-        robot, friction = sw.robots()[k // 2 % 2], rng.uniform(0.45, 0.8)
+        robot, friction = A1S[k // 2 % 2], rng.uniform(0.45, 0.8)
         plan = sw.plan(terrain, robot, friction, method="critical")
         if plan.feasible and plan.certificate.motion is None:
             assert certify_motion(plan).passed

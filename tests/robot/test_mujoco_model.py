@@ -54,7 +54,7 @@ def test_kinematics_and_com_equal_the_planners(robot: Robot) -> None:
 
 def test_masses_inertias_and_limits_are_the_files(robot: Robot) -> None:
     model = build_model(robot)
-    assert model.body_mass.sum() == pytest.approx(11.84, abs=1e-12)
+    assert model.body_mass.sum() == pytest.approx(robot.mass, abs=1e-12)
     assert model.body("trunk").mass[0] == robot.trunk.mass
     np.testing.assert_array_equal(model.body("trunk").inertia, robot.trunk.inertia)
     for leg in LEGS:
@@ -70,8 +70,7 @@ def test_masses_inertias_and_limits_are_the_files(robot: Robot) -> None:
         assert not model.jnt_limited[model.joint(f"{leg}_wheel").id]
     assert [model.actuator(i).name for i in range(model.nu)] == list(JOINTS)
     assert [model.joint(i).name for i in range(1, model.njnt)] == list(JOINTS)
-    for name in JOINTS:
-        motor = robot.actuators.wheel if name.endswith("wheel") else robot.actuators.leg
+    for name, motor in zip(JOINTS, robot.motors, strict=True):
         np.testing.assert_array_equal(model.actuator(name).ctrlrange, [-motor.torque, motor.torque])
         assert model.joint(name).armature[0] == motor.armature
 

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.robot.description import Robot
-from stairwright.robot.kinematics import link_com
 
 from .measurement import Measurement
 from .rigid_body import GRAVITY, wrench
@@ -124,11 +123,11 @@ def leg_weight_torques(robot: Robot, state: Measurement) -> Floats:
     """(4, 2) thigh and calf torques that carry the legs' own weight."""
     torques = np.zeros((4, 2))
     for k in range(4):
-        leg, hip, knee, wheel = robot.legs[k // 2], state.hips[k], state.knees[k], state.wheels[k]
+        leg, hip, knee = robot.legs[k // 2], state.hips[k], state.knees[k]
         parts = (
-            (link_com(leg.thigh, hip, knee), leg.thigh.mass),
-            (link_com(leg.calf, knee, wheel), leg.calf.mass),
-            (wheel, leg.wheel.mass),
+            (state.thighs[k], leg.thigh.mass),
+            (state.calves[k], leg.calf.mass),
+            (state.wheels[k], leg.wheel.mass),
         )
         torques[k, 0] = -sum(mass * GRAVITY * (place - hip)[0] for place, mass in parts)
         torques[k, 1] = -sum(mass * GRAVITY * (place - knee)[0] for place, mass in parts[1:])

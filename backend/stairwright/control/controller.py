@@ -49,9 +49,7 @@ def gains(robot: Robot, settings: ControllerSettings) -> Gains:
     would make it swing ever wider.
     """
     own = robot.feedback
-    spin_inertia = min(
-        leg.wheel.inertia[1] + leg.wheel_motor.armature for leg in robot.legs
-    )
+    spin_inertia = min(leg.wheel.inertia[1] + leg.wheel_motor.armature for leg in robot.legs)
 
     def pick(value: float | None, default: float) -> float:
         return default if value is None else value

@@ -34,6 +34,7 @@ class Measurement:
         heading: of the lateral axis about z, so that it has no singularity at 90 degrees of pitch.
         yaw_rate: about the world's z axis [rad/s].
         hips, knees, wheels: (4, 2) x, z.
+        thighs, calves: (4, 2) x, z of their mass centres.
         com: (2,) centre of mass of the whole robot.
         com_velocity: (2,).
         inertia: of the whole robot about its centre of mass, about y [kg m^2].
@@ -54,6 +55,8 @@ class Measurement:
     hips: Floats
     knees: Floats
     wheels: Floats
+    thighs: Floats
+    calves: Floats
     com: Floats
     com_velocity: Floats
     inertia: float
@@ -88,13 +91,13 @@ def measure(robot: Robot, qpos: Floats, qvel: Floats) -> Measurement:
     wheel_v = knee_v + second * _link_rate(calf, calf_rate)
     body = robot.body
     own = np.array([body.com[0], body.com[2]])
+    legs = _legs(robot)
+    thighs = np.array([link_com(leg.thigh, hips[k], knees[k]) for k, leg in enumerate(legs)])
+    calves = np.array([link_com(leg.calf, knees[k], wheels[k]) for k, leg in enumerate(legs)])
     masses, places, speeds, inertia = [body.mass], [own], [np.zeros(2)], body.inertia[1]
-    for k, leg in enumerate(_legs(robot)):
+    for k, leg in enumerate(legs):
         masses += [leg.thigh.mass, leg.calf.mass, leg.wheel.mass]
-        places += [
-            link_com(leg.thigh, hips[k], knees[k]), link_com(leg.calf, knees[k], wheels[k]),
-            wheels[k],
-        ]  # fmt: skip
+        places += [thighs[k], calves[k], wheels[k]]
         speeds += [  # of a point of a link: as its place, a linear map of where the joints are
             link_com(leg.thigh, np.zeros(2), knee_v[k]), link_com(leg.calf, knee_v[k], wheel_v[k]),
             wheel_v[k],
@@ -124,6 +127,8 @@ def measure(robot: Robot, qpos: Floats, qvel: Floats) -> Measurement:
         hips=world(hips),
         knees=world(knees),
         wheels=world(wheels),
+        thighs=world(thighs),
+        calves=world(calves),
         com=(qpos[:3] + turn @ com_solid)[[0, 2]],
         com_velocity=com_velocity[[0, 2]],
         inertia=float(inertia),

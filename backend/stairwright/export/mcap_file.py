@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from stairwright.planning.plan import Plan
 from stairwright.robot import spatial
-from stairwright.robot.kinematics import lengths
 from stairwright.robot.description import JOINTS, LEGS, Robot
+from stairwright.robot.kinematics import lengths
 from stairwright.simulation.result import Rollout
 from stairwright.terrain.profile import Terrain
 

@@ -6,6 +6,7 @@ from stairwright.documents import Model
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
+from .binding import binding_of
 from .certificate import certify
 from .plan import Method, Plan, Pose, Problem, Timing, plan_id
 
@@ -54,6 +55,7 @@ def assemble(
         critical=critical or [],
         timing=Timing(total=poses[-1].time if poses else 0.0, rule="paper"),
         solve_time=seconds,
+        binding=binding_of(robot, friction, poses),
     )
     if not (poses and certified):
         return plan

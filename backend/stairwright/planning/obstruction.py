@@ -17,7 +17,6 @@ from functools import cache, partial
 import numpy as np
 
 from .path.lattice import PLAIN
-from .path.node_margins import Motor
 from .path.pieces import pieces
 from .path.search import Place
 from .path.solve import Blocked, Course, Solved, Way
@@ -40,7 +39,6 @@ Ranked = list[Cause]
 _ROUGH = 1.3  # relative precision of a factor before other quantities were asked
 _MORE = (1.005, 1.05, 1.15, 1.3, 1.7, 2.5, 4.0)  # on the least factor: planning is tried there
 _BETWEEN = 1.05  # of them is left out where not even a search that forgives nothing finds a way
-_SURE = 1.15  # relative precision of a value that only whole plans can tell
 _RIVALS = 2  # candidates for which planning is tried
 _ASKED = 2  # times that candidates are ranked anew, without those that led nowhere
 
@@ -52,6 +50,8 @@ def explain(course: Course, blocked: Blocked) -> tuple[Problem, Way]:
         course: The question without an answer.
         blocked: What its solution attempt returned.
     """
+    if blocked.weak:
+        course = course.within_torques
     pool = search_threads()
     # As far as it goes: found beside the first plan that is tried, where a thread is at leisure.
     partial_way = cache(lambda: pool.submit(course.partial))
@@ -65,9 +65,12 @@ def _cause(
     course: Course, blocked: Blocked, pool: Executor, meanwhile: Callable[[], object]
 ) -> Cause | None:
     """The single change that opens the way, if one does."""
-    torque = _torque(course, blocked.weak) if blocked.weak else None
-    if torque is not None:
-        return torque
+    if blocked.weak and blocked.opened:
+        # A search came through: a little more torque is what its path most likely lacks.
+        motors = [(motor_torque(course.robot, blocked.weak), 1.0)]
+        answer = _confirmed(course, motors, [], pool)
+        if answer is not None and not isinstance(answer, Beyond):
+            return answer
     candidates = candidates_of(course)
     places = list(blocked.stops)
     if not _whole(course, places) and leads_past(course, places):
@@ -213,7 +216,7 @@ def _confirmed(
     """The least factor with which a certified plan exists, and on which of the `ranked`.
 
     Factors from those told on are tried, the least first, two at once. `_BETWEEN` may be left out:
-    those before and after it are within `_SURE` of each other.
+    those before and after it are within 15 % of each other.
 
     Args:
         course: The question.
@@ -248,22 +251,7 @@ def _confirmed(
             return None
     candidate = ranked[k][0]
     if k in low:
-        ratio = _narrow(partial(candidate.solves, course), low[k], ratio, _SURE, pool)[1]
-    return candidate, ratio
-
-
-def _torque(course: Course, motor: Motor) -> Cause | None:
-    """The torque of one kind of motors, if that alone stands in the way."""
-    candidate = motor_torque(course.robot, motor)
-    strong = candidate.change(course, candidate.limit).quick()
-    if isinstance(strong, Blocked):
-        return None
-    ratio = 1.001 * strong.nodes.margins.torque_share(motor) * candidate.most
-    if ratio <= 1.0:
-        return None
-    if not candidate.solves(course, ratio):
-        solves = partial(candidate.solves, course)
-        ratio = _narrow(solves, ratio, candidate.most, _SURE, search_threads())[1]
+        ratio = _narrow(partial(candidate.solves, course), low[k], ratio, candidate.sure, pool)[1]
     return candidate, ratio
 
 

@@ -98,6 +98,25 @@ class Certificate(Model):
     checks: list[Check] = []
 
 
+Bend = Literal["back", "forward"]
+Quantity = Literal["clearance", "com", "friction", "torque", "wheel_torque", "joint_limit"]
+
+
+class Knees(Model):
+    """Which way the knees bend in the plan of a robot whose knees bend both ways."""
+
+    front: Bend
+    rear: Bend
+
+
+class Binding(Model):
+    """The least margin, each taken against what it is a margin of, and where it is."""
+
+    quantity: Quantity
+    value: float = Field(description="m, Nm, rad, or of the friction")
+    progress: float = Field(description="[m]")
+
+
 class Plan(Model):
     """A plan (``stairwright/plan/1``); `id` is a hash of everything that went into it."""
 
@@ -118,6 +137,8 @@ class Plan(Model):
     timing: Timing
     solve_time: float = Field(description="[s]")
     certificate: Certificate | None = None
+    knees: Knees | None = Field(None, description="where the robot's knees bend both ways")
+    binding: Binding | None = Field(None, description="which margin is least")
 
     @model_validator(mode="after")
     def _in_order(self) -> Plan:

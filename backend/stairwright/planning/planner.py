@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
@@ -14,7 +15,8 @@ from stairwright.library import load_robot, load_terrain
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
-from .plan import Method, Plan
+from .knees import configurations, knees_of
+from .plan import Method, Plan, plan_id
 from .weights import parse_weights
 
 if TYPE_CHECKING:
@@ -65,7 +67,8 @@ def plan(
         )
     ground = _within("terrain", load_terrain, terrain)
     machine = _within("robot", load_robot, robot)
-    mu = ground.friction if friction is None else as_friction(friction)
+    tyre = machine.wheel.friction or math.inf
+    mu = min(ground.friction, tyre) if friction is None else as_friction(friction)
     chosen = parse_weights(method, weights)
     if solver not in (None, *get_args(PoseSolver)):
         there = ", ".join(get_args(PoseSolver))
@@ -77,18 +80,41 @@ def plan(
     ):
         if value is not None and method != "critical":
             raise InputError("belongs to the method critical", (field,))
+    configured = list(configurations(machine))
     if method == "path":
         from .path.planner import plan_path
 
-        return plan_path(ground, machine, mu, chosen)
-    if method == "critical":
+        found = plan_path(ground, configured, mu, chosen)
+    elif method == "critical":
         from .critical_poses import plan_critical
 
         search = _pose_search(solver, extra_cost, extra_constraints)
-        return plan_critical(ground, machine, mu, chosen, search, certified)
-    from .nominal import plan_nominal
+        plans = (plan_critical(ground, one, mu, chosen, search, certified) for one in configured)
+        found = _first_feasible(plans)
+    else:
+        from .nominal import plan_nominal
 
-    return plan_nominal(ground, machine, mu, chosen)
+        found = _first_feasible(plan_nominal(ground, one, mu, chosen) for one in configured)
+    if len(configured) == 1 and configured[0] is machine:
+        return found
+    identity = plan_id(ground, machine, mu, method, found.weights)
+    return found.model_copy(update={"id": identity, "knees": knees_of(found.robot_description)})
+
+
+def _first_feasible(plans: Iterable[Plan]) -> Plan:
+    """The first feasible plan, else the one that comes farthest."""
+    best: Plan | None = None
+    for found in plans:
+        if found.feasible:
+            return found
+        if best is None or _reach(found) > _reach(best):
+            best = found
+    assert best is not None
+    return best
+
+
+def _reach(found: Plan) -> float:
+    return found.problem.progress if found.problem else math.inf
 
 
 def _pose_search(

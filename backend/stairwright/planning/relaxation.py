@@ -39,6 +39,7 @@ class Candidate:
     limit: float
     change: Callable[[Course, float], Course]
     given: str = ""  # what else the change needs
+    sure: float = 1.15  # relative precision of a value that only whole plans can tell
 
     def at(self, ratio: float) -> float:
         """The value that differs from what there is by the factor `ratio` > 1."""
@@ -104,6 +105,7 @@ def candidates_of(course: Course) -> list[Candidate]:
                   lambda c, v: _with_robot(c, _wider(robot, "calf", v - ranges["calf"]))),
         Candidate("joint_limit", "thigh range", "rad", ranges["thigh"], ranges["thigh"] + 1.0,
                   lambda c, v: _with_robot(c, _wider(robot, "thigh", v - ranges["thigh"]))),
+        *(motor_torque(robot, motor) for motor in JOINTS if course.torques),
     ]  # fmt: skip
 
 
@@ -113,6 +115,7 @@ def motor_torque(robot: Robot, motor: Motor) -> Candidate:
     return Candidate(
         "torque", f"{motor} torque", "Nm", most, STRONGEST,
         lambda c, v: _with_robot(c, _stronger(robot, motor, v / most)),
+        sure=1.02,
     )  # fmt: skip
 
 
@@ -138,7 +141,8 @@ def bold_candidates(course: Course) -> list[Candidate]:
         document = c.terrain.model_dump()
         low = base + (points[:, 1] - base) * (v / height)
         document["points"] = np.stack([points[:, 0], low], axis=1).tolist()
-        return pose_course(Terrain.model_validate(document), c.robot, c.friction, c.weights)
+        changed = pose_course(Terrain.model_validate(document), c.robot, c.friction, c.weights)
+        return replace(changed, torques=c.torques)
 
     if height > 0.0:  # in the end it is flat, which opens every way
         lower = Candidate("reach", "profile height", "m", height, _FLAT * height, lowered)
@@ -148,7 +152,8 @@ def bold_candidates(course: Course) -> list[Candidate]:
 
 def _with_robot(course: Course, robot: Robot) -> Course:
     """The same question for another robot, which stands as it would."""
-    return pose_course(course.terrain, robot, course.friction, course.weights)
+    changed = pose_course(course.terrain, robot, course.friction, course.weights)
+    return replace(changed, torques=course.torques)
 
 
 def _changed(robot: Robot, change: Callable[[dict[str, Any]], None]) -> Robot:
@@ -198,7 +203,7 @@ def _wider(robot: Robot, part: str, extra: float) -> Robot:
     for name in ("front", "rear"):
         leg = getattr(robot.joints, name).model_dump()
         low, high = leg[part]
-        wide = [max(low - extra / 2, -6.28), min(high + extra / 2, 6.28)]
+        wide = [low - extra / 2, high + extra / 2]
         if part == "calf":  # the knee keeps its side and does not fold onto itself
             wide = [
                 max(wide[0], 0.05 if low > 0 else -3.1),
@@ -215,6 +220,6 @@ def _stronger(robot: Robot, motor: Motor, factor: float) -> Robot:
         for motors in _parts(data, "actuators"):
             for name in ("wheel",) if motor == "wheel" else ("leg", "thigh", "calf"):
                 if motors.get(name):
-                    motors[name]["torque"] *= factor
+                    motors[name]["torque"] = min(motors[name]["torque"] * factor, STRONGEST)
 
     return _changed(robot, change)

@@ -41,9 +41,7 @@ def suitable_gains(robot: Robot) -> Gains:
 def standard_points(robot: Robot) -> CollisionPoints:
     """The paper's 25 points, and the corners of a trunk that is more than its box."""
     length, _, height = robot.trunk.size
-    corners = [
-        (x / length, z / height) for piece in robot.trunk.outline for x, z in piece.points
-    ]
+    corners = [(x / length, z / height) for piece in robot.trunk.outline for x, z in piece.points]
     beyond = [point for point in corners if max(map(abs, point)) > 0.5 + 1e-9]
     return CollisionPoints(
         trunk=_BOX + beyond, thigh=[0.25, 0.5, 0.75, 1.0], calf=[0.2, 0.4, 0.6, 0.8]

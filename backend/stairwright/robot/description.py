@@ -44,11 +44,12 @@ LEGS = ("FL", "FR", "RL", "RR")
 JOINTS = tuple(f"{leg}_{part}" for leg in LEGS for part in ("thigh", "calf", "wheel"))
 _ROS_NAME = re.compile(r"[A-Za-z][\w/.-]{0,99}", re.ASCII)
 BENT = 0.05  # rad; a knee that bends both ways keeps this far from straight, on its side
+FOLDED = 3.1  # rad; a calf lies on its thigh at pi
 # Fields that documents of the first schema do not have.
 _NEW_IN_2: tuple[tuple[str, ...], ...] = (
-    ("source",), ("assumed",), ("payload",), ("rear",), ("abduction",), ("trunk", "com"), ("trunk", "outline"),
-   
-    ("thigh", "shape"), ("calf", "shape"), ("wheel", "friction"), ("wheel", "rolling_resistance"),
+    ("source",), ("assumed",), ("payload",), ("rear",), ("abduction",),
+    ("trunk", "com"), ("trunk", "outline"), ("thigh", "shape"), ("calf", "shape"),
+    ("wheel", "friction"), ("wheel", "rolling_resistance"),
     ("actuators", "thigh"), ("actuators", "calf"),
 )  # fmt: skip
 PLANAR_JOINTS = ("front_thigh", "front_calf", "rear_thigh", "rear_calf")
@@ -250,6 +251,7 @@ class Robot(Model):
             pair: LegLimits = getattr(self.joints, name)
             low, high = pair.calf
             low, high = (max(low, BENT), high) if knee > 0 else (low, min(high, -BENT))
+            low, high = max(low, -FOLDED), min(high, FOLDED)
             if low >= high:
                 raise InputError("the knee does not bend that way", ("joints", name, "calf"))
             limits[name] = pair.model_copy(update={"calf": (low, high)})

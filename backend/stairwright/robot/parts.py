@@ -16,7 +16,7 @@ Mass = Annotated[float, Field(ge=1e-6, le=1000.0)]
 Moment = Annotated[float, Field(ge=1e-12, le=1000.0)]
 Place = Annotated[float, Field(ge=-100.0, le=100.0)]
 Point = tuple[Place, Place]
-Angle = Annotated[float, Field(ge=-4 * math.pi, le=4 * math.pi)]
+Angle = Annotated[float, Field(ge=-5 * math.pi, le=5 * math.pi)]
 Range = tuple[Angle, Angle]
 
 

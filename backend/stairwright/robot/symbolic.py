@@ -70,7 +70,13 @@ class Shape:
     def from_vector(cls, values: Any) -> Shape:
         """Unpack a vector made by `dimensions`."""
         v = [values[i] for i in range(len(DIMENSIONS))]
-        hips, thigh, calf, thick, thin = ((v[0], v[1]), (v[2], v[3])), v[6:8], v[8:10], v[10:12], v[12:14]
+        hips, thigh, calf, thick, thin = (
+            ((v[0], v[1]), (v[2], v[3])),
+            v[6:8],
+            v[8:10],
+            v[10:12],
+            v[12:14],
+        )
         return cls(hips, v[4], v[5], tuple(thigh), tuple(calf), tuple(thick), tuple(thin), v[14])
 
 

@@ -158,7 +158,9 @@ def trunk_trim(robot: Robot) -> Mesh:
         moved(disc(0.30 * height, across, 0.004, 24), (x, 0.0, z))
         for x, z in (robot.hips.front, robot.hips.rear)
     ]
-    plate = moved(rounded_box((0.004, 0.62 * width, 0.42 * height), 0.001), (nose, 0, (low + high) / 2))
+    plate = moved(
+        rounded_box((0.004, 0.62 * width, 0.42 * height), 0.001), (nose, 0, (low + high) / 2)
+    )
     return merge(*axles, plate)
 
 

@@ -64,6 +64,14 @@ struct LegTorques {
     double thigh = 0.0, calf = 0.0, wheel = 0.0;  // Nm
 };
 
+// What the ground does to one wheel: force in world axes [N], and its moment about the wheel's centre, about +y [Nm].
+struct WheelLoad {
+    Vec2 force;
+    double moment = 0.0;
+};
+
+// Static torques of one leg under the load on its wheel.
+LegTorques static_torques(const Leg& leg, const LegPoints& points, const WheelLoad& load);
 // Static torques of one leg whose wheel carries `force` [N] at `contact`. The wheel's motor sits in the calf, so for
 // the leg's joints the wheel is one body with it.
 LegTorques static_torques(const Leg& leg, const LegPoints& points, const Contact& contact, const ContactForce& force);

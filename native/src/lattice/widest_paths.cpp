@@ -1,6 +1,7 @@
 #include "stairwright/lattice/widest_paths.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "stairwright/lattice/leg_clearance.hpp"
 #include "stairwright/simd.hpp"
@@ -171,6 +172,7 @@ bool WidestPaths::widen(const Problem& problem, const Cell& cell, const ComInter
         if (least == 0 || so_far > 0) continue;
         wider.at[count] = at;
         wider.width[count] = least;
+        wider.com[count] = wider.com[k];
         wider.x[count] = wider.x[k];
         wider.z[count] = wider.z[k];
         wider.cos[count] = wider.cos[k];
@@ -178,11 +180,16 @@ bool WidestPaths::widen(const Problem& problem, const Cell& cell, const ComInter
         ++count;
     }
     if (count == 0) return changed;
-    const Vec2 rear_wheel = problem.centres[cell.rear] - problem.centres[cell.front];
+    const Vec2 front = problem.centres[cell.front], rear_wheel = problem.centres[cell.rear] - front;
     legs_clear(problem.robot, problem.least_leg_distance, rear_wheel,
                {wider.x.data(), wider.z.data(), wider.cos.data(), wider.sin.data(), count}, wider.clear.data());
     for (int k = 0; k < count; ++k) {
         if (wider.clear[k] == 0) continue;
+        if (torques_) {
+            const double sine = wider.sin[k], cosine = wider.cos[k];
+            const Body body = {front.x + wider.x[k], front.z + wider.z[k], std::atan2(sine, cosine)};
+            if (!torques_->hold(problem, cell, number, com, body, {cosine, sine}, wider.com[k])) continue;
+        }
         const int at = wider.at[k];
         ways[at] = wider.width[k];
         best[number] = std::max(best[number], wider.width[k]);

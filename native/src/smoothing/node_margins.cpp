@@ -1,69 +1,39 @@
 #include "stairwright/smoothing/node_margins.hpp"
 
-#include <cmath>
+#include "stairwright/gentlest_support.hpp"
 
 namespace stairwright::smoothing {
 
 namespace {
 
 constexpr double kQueryRadius = 0.3;  // m; larger clearances are not told apart
-constexpr double kPinched = 1.6;      // weights; wheels that press harder pinch something between them
-// Shares of the friction that forces may take without harm, tried in turn.
-constexpr std::array<double, 2> kAmple = {0.75, 0.98};
+double larger(double a, double b) { return std::abs(b) > std::abs(a) ? b : a; }
 
-// A wheel's contacts, and where it touches two faces the bisector of both: it stands for leaning on both, with a cone
-// that is narrower than the true one.
-struct Faces {
-    std::array<Contact, 3> at;
-    int count = 0;
-};
-
-Faces with_bisector(const WheelContacts& contacts, Vec2 centre, double radius) {
-    Faces out;
-    for (const Contact& contact : contacts.span()) out.at[out.count++] = contact;
-    if (out.count < 2) return out;
-    const Vec2 sum = out.at[0].normal + out.at[1].normal;
-    const double length = norm(sum);
-    if (length < 0.2) return out;  // opposite walls: no direction between them
-    const Vec2 normal = {sum.x / length, sum.z / length};
-    out.at[out.count++] = {centre - radius * normal, normal, contacts.at[0].friction};
-    return out;
-}
-
-// Forces on both wheel pairs in weights, and the faces that they push on.
-struct Support {
-    std::array<ContactForce, 2> forces;
-    std::array<Contact, 2> faces;
-    bool found = false;
-};
-
-// The gentlest pair of faces that holds the robot.
-Support gentlest_support(const Faces& front, const Faces& rear, double com_x, double friction) {
-    Support out;
-    double least = std::numeric_limits<double>::infinity();
-    for (const double share : kAmple) {
-        // Wheels that pinch a curb between them press hard at low friction: use more of it.
-        if (share != kAmple.front() && least < kPinched) break;
-        const double ample = share * friction;
-        for (int i = front.count - 1; i >= 0; --i) {
-            for (int j = rear.count - 1; j >= 0; --j) {
-                std::array<ContactForce, 2> forces;
-                const std::array<Contact, 2> faces = {front.at[i], rear.at[j]};
-                const double needed = least_friction(faces, com_x, ample, forces);
-                const double score = needed <= ample ? forces[0].normal + forces[1].normal : 100.0 + needed;
-                if (score >= least - 1e-9) continue;
-                least = score;
-                out = {forces, faces, true};
-            }
+// Largest static torques of both legs of all ways of touching the ground that hold the robot; of `otherwise` if none does.
+std::array<LegTorques, 2> worst_torques(const RobotModel& robot, const Posture& posture, const Touches& touches, double friction,
+                                        double weight, const Support& otherwise) {
+    std::array<LegTorques, 2> out;
+    bool any = false;
+    const auto count = [&](const Support& support, double unit) {
+        for (const int pair : {kFront, kRear}) {
+            const ContactForce f = {0.5 * unit * support.forces[pair].tangential, 0.5 * unit * support.forces[pair].normal};
+            const LegTorques t = static_torques(robot.legs[pair].leg, posture.legs[pair], support.faces[pair], f);
+            out[pair] = {larger(out[pair].thigh, t.thigh), larger(out[pair].calf, t.calf), larger(out[pair].wheel, t.wheel)};
         }
+        any = true;
+    };
+    for (int way = 0; way < touches.count; ++way) {
+        const Support support = resting_support(touches.ways[way][kFront], touches.ways[way][kRear], posture.com.x, friction);
+        if (support.found) count(support, weight);
     }
+    if (!any) count(otherwise, 1.0);
     return out;
 }
 
 }  // namespace
 
 std::vector<NodeMargins> node_margins(const Terrain& terrain, const WheelPath& path, const RobotModel& robot,
-                                      std::span<const Node> nodes, double friction) {
+                                      std::span<const Node> nodes, double friction, double lag) {
     std::vector<NodeMargins> out(nodes.size());
     const double weight = robot.mass * kGravity;
     std::array<ContactForce, 2> before = {ContactForce{0.0, 0.5 * weight}, ContactForce{0.0, 0.5 * weight}};
@@ -91,11 +61,7 @@ std::vector<NodeMargins> node_margins(const Terrain& terrain, const WheelPath& p
         else
             support = {before, {front.at[0], rear.at[0]}, true};
         node.forces = before = support.forces;
-        for (const int pair : {kFront, kRear}) {
-            const ContactForce of_one_leg = {0.5 * support.forces[pair].tangential, 0.5 * support.forces[pair].normal};
-            node.torques[pair] = static_torques(robot.legs[pair].leg, node.geometry.posture.legs[pair],
-                                                support.faces[pair], of_one_leg);
-        }
+        node.torques = worst_torques(robot, node.geometry.posture, touches(path, s, friction, lag), friction, weight, support);
     }
     return out;
 }

@@ -55,6 +55,8 @@ Objective objective(const RefineProblem& problem, const NodeSpacing& spacing, do
     o.trunk_room = {kTrunkClearance * size, room};
     o.links_room = {calf_end_clearance(problem.robot), room};
     o.torque_weight = kTorqueWeight * root * std::sqrt(w.torque);
+    o.torque_room = {0.2, 8.0 * root};
+    o.torque_hard = 100.0;
     o.hard = kHardWeight;
     o.legs = {0.011, 150.0 * root};
     o.joints = {0.05, 30.0 * root};
@@ -84,7 +86,7 @@ PathCost path_cost(const RefineProblem& problem, std::span<const Node> path) {
     }
     const double share = u.back() / static_cast<double>(count - 1) / kUsualSpacing;
     const Objective o = objective(problem, spacing, share);
-    const SmoothingProblem at{problem.terrain, problem.robot, wheels, contacts, intervals, {}, o};
+    const SmoothingProblem at{problem.terrain, problem.robot, wheels, contacts, intervals, {}, {}, o};
     std::vector<Residuals> rows;
     PathCost out;
     for (std::size_t k = 0; k < count; ++k) {

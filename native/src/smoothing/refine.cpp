@@ -104,14 +104,18 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
         contacts.push_back({problem.path.contact(s.front), problem.path.contact(s.rear)});
         bodies.push_back(body);
     }
-    const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, intervals, fixed,
+    std::vector<WheelLoads> loads;
+    if (problem.torques)
+        for (std::size_t k = 0; k < n; ++k)
+            loads.emplace_back(problem.path, nodes[k].s, problem.friction, problem.lag, intervals[k].full, problem.robot.mass * kGravity);
+    const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, intervals, loads, fixed,
                                      objective(problem, spacing, hop / kUsualSpacing)};
     smooth(smoothing, bodies, kIterations);
     for (std::size_t k = 0; k < n; ++k) nodes[k].body = bodies[k];
 
     RefinedPath out;
     out.nodes = densify(problem.path, problem.robot, nodes, changes);
-    out.margins = node_margins(problem.terrain, problem.path, problem.robot, out.nodes, problem.friction);
+    out.margins = node_margins(problem.terrain, problem.path, problem.robot, out.nodes, problem.friction, problem.lag);
     return out;
 }
 

@@ -9,6 +9,7 @@ namespace stairwright::smoothing {
 enum Residual {
     kComLow, kComHigh, kReserveLow, kReserveHigh, kLaggedLow, kLaggedHigh,
     kTrunk, kLinks, kLegs, kJoints, kReach, kTrunkRoom, kLinksRoom,
+    kFrontThighLimit, kFrontCalfLimit, kFrontWheelLimit, kRearThighLimit, kRearCalfLimit, kRearWheelLimit,
     kPitch, kHeight, kFrontThigh, kFrontCalf, kRearThigh, kRearCalf, kResiduals,
 };
 inline constexpr int kHinges = kPitch;

@@ -21,7 +21,7 @@ def stop_and_go(margin: float, speed: float = 0.3):
     centres = s + np.array([0.1235, -0.1235])
     wheels = np.stack([centres, np.full_like(s, ROBOT.wheel.radius)], axis=-1)
     q = kinematics.inverse(ROBOT, body[:, 0], body[:, 1], body[:, 2], wheels)
-    return pose_times(ROBOT, s, body, q, np.full(300, margin), speed), x
+    return pose_times(ROBOT, s, body, q, np.full(300, margin), np.full(300, 0.3), speed), x
 
 
 def test_accelerations_stay_within_the_margin() -> None:
@@ -39,7 +39,9 @@ def test_a_straight_drive_keeps_its_speed() -> None:
     n = 200
     s = np.repeat(np.linspace(0.0, 1.0, n)[:, None], 2, axis=1)
     body = np.column_stack([s[:, 0], np.full(n, ROBOT.nominal_height), np.zeros(n)])
-    times = pose_times(ROBOT, s, body, np.tile(STANDING, (n, 1)), np.full(n, 0.1), 0.2)
+    times = pose_times(
+        ROBOT, s, body, np.tile(STANDING, (n, 1)), np.full(n, 0.1), np.full(n, 0.3), 0.2
+    )
     assert (np.diff(times) > 0).all()
     middle = slice(n // 3, 2 * n // 3)
     assert np.diff(s[:, 0])[middle] / np.diff(times)[middle] == pytest.approx(0.2, rel=0.02)

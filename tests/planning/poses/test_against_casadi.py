@@ -16,11 +16,13 @@ from stairwright.terrain.wheel_path import wheel_path
 from tests.planning.drawn import random_profile
 from tests.shapely_checker import check
 
+A1S = ("a1_wheeled", "a1_wheeled_x")
+
 
 def both(seed, links, count=6):
     """Pairs of solutions (ours: x, cost, violation; CasADi's) of random problems."""
     random = np.random.default_rng(seed)
-    robot = sw.load_robot(sw.robots()[seed % 2])
+    robot = sw.load_robot(A1S[seed % 2])
     path = wheel_path(random_profile(seed), robot.wheel.radius)
     search = CasadiSearch(robot, path, 0.6, CriticalWeights())
     points = robot.collision_points

@@ -7,6 +7,7 @@ import time as clock
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.planning.binding import binding_of
 from stairwright.planning.plan import Margins, Plan, Pose, Problem, Timing, plan_id
 from stairwright.planning.weights import PathWeights
 from stairwright.robot import kinematics as kin
@@ -27,7 +28,7 @@ def make_poses(
     """Poses, indices of the key poses, and the duration [s]."""
     s, body, m = found.s, found.body, found.margins
     q = m.q
-    time = pose_times(robot, s, body, q, m.firm_com_margin, weights.speed)
+    time = pose_times(robot, s, body, q, m.firm_com_margin, m.torque_shares("leg"), weights.speed)
     progress = path_parameter(s, body)
     wheels = np.stack([path.centres(s[:, k]) for k in range(2)], axis=1)
     contacts = np.stack([path.contacts(s[:, k]) for k in range(2)], axis=1)
@@ -125,4 +126,6 @@ def make_plan(
         timing=Timing(total=total),
         solve_time=clock.perf_counter() - begun,
         certificate=None,
+        knees=None,
+        binding=binding_of(robot, friction, poses or []),
     )

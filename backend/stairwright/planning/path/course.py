@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from stairwright import _core
 from stairwright.arguments import MOST_FRICTION
 from stairwright.planning.plan import Limit
+from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath
@@ -22,6 +23,7 @@ Ints = NDArray[np.int64]
 End = Literal["start", "goal"]
 
 CORNER = 0.15  # rad; concave corners with a smaller kink need no samples of their own
+_EASY = 0.003  # m; more than the legs' least distance, where the robot stands
 _APART = 5e-5  # m; samples are no closer
 _MOST_CORNERS = 60  # of one lattice; memory grows with the square of its samples
 _LEVEL = 0.01  # m; a stretch whose wheel centre stays within this height is level
@@ -124,6 +126,23 @@ def stand_height(robot: Robot) -> float:
     return min(max(robot.nominal_height - robot.wheel.radius, low), max(high, low))
 
 
+def stance(robot: Robot) -> float:
+    """Distance of the wheels that stand on the level [m]: that of the hips, or more where front and
+    rear legs, knees towards each other, would touch so.
+    """
+    hips = robot.hips.front[0] - robot.hips.rear[0]
+    height = stand_height(robot)
+    level = np.zeros(())
+    for more in np.linspace(0.0, 1.2 * min(leg.reach for leg in robot.legs), 49):
+        x = 0.5 * (hips + float(more))
+        q = kinematics.inverse(robot, level, level, level, np.array([[x, -height], [-x, -height]]))
+        if np.isnan(q).any():
+            break
+        if _core.legs_distance(robot.native, np.zeros(3), q) >= _core.LEGS_GAP + _EASY:
+            return hips + float(more)
+    return hips
+
+
 def stand(path: WheelPath, robot: Robot, front: float, rear: float) -> Stand:
     """The nominal pose over wheels at arc lengths `front`, `rear`: trunk along their line."""
     a, b = path.centres(np.array([front, rear]))
@@ -142,7 +161,7 @@ def find_stands(terrain: Terrain, robot: Robot, path: WheelPath) -> tuple[Stand,
         NoStand: If a stretch is too short for the robot, or the goal is not ahead of the start.
     """
     (low, first), (last, high) = stretches(path)
-    gap = robot.hips.front[0] - robot.hips.rear[0]
+    gap = stance(robot)
     behind, ahead = _edge(path, robot, low), _edge(path, robot, high)
     flat = first >= high - 1e-6
 
@@ -196,7 +215,7 @@ def _settle(
     s, which = (stretch[1], "first") if kind == "start" else (stretch[0], "last")
     room = stretch[1] - stretch[0]
     lead = (0.25 if kind == "start" else 0.15) * scale(robot)
-    gap = robot.hips.front[0] - robot.hips.rear[0]
+    gap = stance(robot)
     least = max(2 * robot.wheel.radius + 0.01, 0.6 * gap)
     if gap < least:
         message = "the wheels would touch each other below hips that are so close"
@@ -228,7 +247,8 @@ def _too_short(
 
 def _at(path: WheelPath, robot: Robot, x: float, kind: End) -> Stand:
     """The stand whose trunk is at `x`."""
-    ahead, behind = x + robot.hips.front[0], x + robot.hips.rear[0]
+    apart = 0.5 * stance(robot)
+    ahead, behind = x + apart, x - apart
     x0, x1 = path.centres(np.array([0.0, path.length]))[:, 0]
     if behind < x0 - 1e-9 or ahead > x1 + 1e-9:
         side = x0 - behind if behind < x0 else ahead - x1
@@ -239,7 +259,7 @@ def _at(path: WheelPath, robot: Robot, x: float, kind: End) -> Stand:
     found = _resting(path, robot, x)
     if found is None:
         tries = (x + side * k * _TRY for k in range(1, _TRIES) for side in (-1.0, 1.0))
-        on = (one for one in tries if x0 - robot.hips.rear[0] < one < x1 - robot.hips.front[0])
+        on = (one for one in tries if x0 + apart < one < x1 - apart)
         near = next((one for one in on if _resting(path, robot, one) is not None), None)
         message = "the robot cannot stand with its trunk there: the ground is too steep or uneven"
         raise NoStand(kind, path.at_x(x), near, x, message, "x of the trunk")
@@ -250,9 +270,9 @@ def _resting(path: WheelPath, robot: Robot, x: float) -> Stand | None:
     """The stand whose trunk is at `x`, wheels on the profile, if it is found."""
     x0, x1 = path.centres(np.array([0.0, path.length]))[:, 0]
     # On a slope the trunk leans off the wheels' middle: move the wheels until it is where asked.
-    shift = 0.0
+    shift, apart = 0.0, 0.5 * stance(robot)
     for _ in range(_SHIFTS):
-        ahead, behind = x + robot.hips.front[0] + shift, x + robot.hips.rear[0] + shift
+        ahead, behind = x + apart + shift, x - apart + shift
         s = np.clip([ahead, behind], x0, x1)
         found = stand(path, robot, path.at_x(s[0]), path.at_x(s[1]))
         missing = x - float(found.body[0])

@@ -53,6 +53,7 @@ class Bounds(NamedTuple):
     reach: float  # slack of the hip-wheel distance; negative widens the calf's range [m]
     thigh: float  # slack of the thigh joints; negative widens their range [rad]
     com: float  # least CoM margin [m]
+    torque: float  # largest static torque, as a share of the motors'; where the search looks at it
 
     @property
     def tolerances(self) -> _core.Tolerances:
@@ -65,11 +66,19 @@ class Bounds(NamedTuple):
 # much less that a search without success settles the matter (hope; the polish repairs many of its
 # finds, and sooner than a finer lattice would spare it the work); or what lies between (keen).
 # Where bare bounds of lattice poses (plain) leave a way, 19 of 20 become plans.
-STRICT = Bounds(trunk=0.006, links=0.006, legs=_core.LEGS_GAP, reach=0.003, thigh=0.0, com=0.005)
-PLAIN = Bounds(trunk=0.0, links=0.0, legs=0.0, reach=0.0, thigh=0.0, com=0.0)
-BOLD = Bounds(trunk=-0.003, links=-0.003, legs=-0.003, reach=0.0, thigh=-0.02, com=-0.01)
-KEEN = Bounds(trunk=-0.006, links=-0.006, legs=-0.006, reach=-0.003, thigh=-0.04, com=-0.015)
-HOPE = Bounds(trunk=-0.009, links=-0.009, legs=-0.009, reach=-0.006, thigh=-0.06, com=-0.02)
+STRICT = Bounds(
+    trunk=0.006, links=0.006, legs=_core.LEGS_GAP, reach=0.003, thigh=0.0, com=0.005, torque=0.95
+)
+PLAIN = Bounds(0.0, 0.0, 0.0, 0.0, 0.0, com=0.0, torque=1.0)
+BOLD = Bounds(
+    trunk=-0.003, links=-0.003, legs=-0.003, reach=0.0, thigh=-0.02, com=-0.01, torque=1.1
+)
+KEEN = Bounds(
+    trunk=-0.006, links=-0.006, legs=-0.006, reach=-0.003, thigh=-0.04, com=-0.015, torque=1.2
+)
+HOPE = Bounds(
+    trunk=-0.009, links=-0.009, legs=-0.009, reach=-0.006, thigh=-0.06, com=-0.02, torque=1.3
+)
 
 
 @dataclass(frozen=True)

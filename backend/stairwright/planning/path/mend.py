@@ -101,7 +101,7 @@ def _way(
         return None
     search = Search(q, found.stand(a), found.stand(b), make_lattice(q.robot, fine), BOLD)
     still_wanted()
-    new = search.find(q.friction, q.reserve, BOLD.com)
+    new = search.find(q.friction, q.reserve, BOLD.com, torque=q.torque_share(BOLD))
     if new.s is None or new.body is None:
         return None
     return (

@@ -25,6 +25,8 @@ LEAST_COM = 0.001  # m; no robot's centre of mass is known better
 # Where the CoM has less room than this [m], that share of the friction must be left: else a wheel
 # that slides a little tips the robot.
 THIN_COM, FIRM_GRIP = 0.006, 0.08
+FIRM_TORQUE = 0.9  # of the motors' torques that standing may take: the rest moves and corrects
+BEYOND_REPAIR = 0.15  # of a motor's torque; where more is lacking somewhere another path is needed
 _SPARE = 5e-4  # m
 JOINTS: dict[Motor, slice] = {"leg": slice(0, 2), "wheel": slice(2, 3)}
 
@@ -79,9 +81,11 @@ class NodeMargins:
         least: Floats = spare[:, :, JOINTS[motor]].min(axis=(1, 2))
         return least
 
-    def torque_share(self, motor: Motor) -> float:
-        """Largest static torque of such motors anywhere, over their limit."""
-        return float((np.abs(self.torques) / self.torque_limits)[:, :, JOINTS[motor]].max())
+    def torque_shares(self, motor: Motor) -> Floats:
+        """(n,) largest static torque of such motors, over their limit."""
+        shares: Floats = (np.abs(self.torques) / self.torque_limits)[:, :, JOINTS[motor]]
+        most: Floats = shares.max(axis=(1, 2))
+        return most
 
     @cached_property
     def _slacks(self) -> Floats:
@@ -94,8 +98,7 @@ class NodeMargins:
                 0.2 * self.joint_slack,
                 self.firm_com_margin - LEAST_COM,
                 np.maximum(self.firm_com_margin - THIN_COM, 0.2 * spare_friction),
-                self.torque_margin("wheel") * 0.01,
-                self.torque_margin("leg") * 0.01,
+                *(0.3 * (FIRM_TORQUE - self.torque_shares(motor)) for motor in JOINTS),
             ]
         )
         return slacks
@@ -107,11 +110,16 @@ class NodeMargins:
         return least
 
     @property
+    def torque_excess(self) -> float:
+        """Largest share of a motor's torque that standing takes beyond what it may."""
+        return max(float(self.torque_shares(motor).max()) for motor in JOINTS) - FIRM_TORQUE
+
+    @property
     def overloaded(self) -> Motor | None:
         """The motors whose torque is violated most, if that of any is."""
-        shares = {motor: self.torque_share(motor) for motor in JOINTS}
+        shares = {motor: float(self.torque_shares(motor).max()) for motor in JOINTS}
         worst = max(shares, key=lambda motor: shares[motor])
-        return worst if shares[worst] > 1.0 else None
+        return worst if shares[worst] > FIRM_TORQUE else None
 
     @property
     def worst(self) -> float:

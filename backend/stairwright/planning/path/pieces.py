@@ -82,8 +82,9 @@ def passes(
     else:
         search = search_between(q, *_ends(q, piece), bounds, fine, searches)
         found = search.find(
-            q.friction, q.reserve, bounds.com, False, roll_back, piece.open_start, piece.open_end
-        )
+            q.friction, q.reserve, bounds.com, False, roll_back, piece.open_start, piece.open_end,
+            torque=q.torque_share(bounds),
+        )  # fmt: skip
     return found.quality > 0
 
 
@@ -102,7 +103,7 @@ def stops(
     open_end = high < end.wheels[0]
     piece = piece._replace(high=high if open_end else end.wheels[0], open_end=open_end)
     search = search_between(q, *_ends(q, piece), bounds, fine, searches)
-    return tuple(search.stops(q.friction, bounds.com, open_end))
+    return tuple(search.stops(q.friction, bounds.com, open_end, q.torque_share(bounds)))
 
 
 def _round(q: Question, place: Place) -> Piece:

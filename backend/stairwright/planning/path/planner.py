@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import time as clock
+from collections.abc import Sequence
+
+import numpy as np
 
 from stairwright.errors import InputError
 from stairwright.planning.diagnosis import no_stand
@@ -14,10 +17,12 @@ from stairwright.terrain.profile import Terrain
 
 from .assemble import make_plan
 from .course import NoStand
-from .solve import Solved, pose_course
+from .solve import THIN, Blocked, Course, Solved, pose_course
 
 
-def plan_path(terrain: Terrain, robot: Robot, friction: float, weights: PathWeights) -> Plan:
+def plan_path(
+    terrain: Terrain, robots: Sequence[Robot], friction: float, weights: PathWeights
+) -> Plan:
     """Plan a dense path of poses from the first flat stretch to the last.
 
     Wheels keep rolling contact; trunk, links and legs stay clear; joints, torques and speeds keep
@@ -26,7 +31,8 @@ def plan_path(terrain: Terrain, robot: Robot, friction: float, weights: PathWeig
 
     Args:
         terrain: The profile.
-        robot: The robot.
+        robots: The robot, in every configuration of its knees. The first is taken that has a path
+            with some CoM margin, else the one with the most, else the one that comes farthest.
         friction: Coulomb friction between wheels and terrain.
         weights: What to trade off.
 
@@ -34,8 +40,9 @@ def plan_path(terrain: Terrain, robot: Robot, friction: float, weights: PathWeig
         The plan; on impossible terrain one with a `problem`, and the poses up to there.
     """
     begun = clock.perf_counter()
+    robot = robots[0]
     try:
-        course = pose_course(terrain, robot, friction, weights)
+        courses = [pose_course(terrain, one, friction, weights) for one in robots]
     except NoStand as error:
         problem = no_stand(terrain, robot, error)
         return make_plan(terrain, robot, friction, weights, begun, problem=problem)
@@ -43,7 +50,8 @@ def plan_path(terrain: Terrain, robot: Robot, friction: float, weights: PathWeig
         at = terrain.points[0]
         problem = Problem(kind="start", at=at, progress=0.0, message=str(error))
         return make_plan(terrain, robot, friction, weights, begun, problem=problem)
-    found = course.solve(search_threads())
+    course, found = _best(courses)
+    robot = course.robot
     if isinstance(found, Solved):
         plan = make_plan(terrain, robot, friction, weights, begun, *course.way(found.nodes))
         return plan.model_copy(update={"certificate": found.certificate})
@@ -51,3 +59,21 @@ def plan_path(terrain: Terrain, robot: Robot, friction: float, weights: PathWeig
 
     problem, way = explain(course, found)
     return make_plan(terrain, robot, friction, weights, begun, *way, problem)
+
+
+def _best(courses: Sequence[Course]) -> tuple[Course, Solved | Blocked]:
+    """The first course that has a path with some margin; else the path with most, else the way."""
+    tried: list[tuple[Course, Solved | Blocked]] = []
+    for course in courses:
+        found = course.solve(search_threads())
+        tried.append((course, found))
+        if isinstance(found, Solved) and found.margin > THIN:
+            break
+
+    def worth(one: tuple[Course, Solved | Blocked]) -> tuple[float, float]:
+        found = one[1]
+        if isinstance(found, Solved):
+            return np.inf, found.margin
+        return sum(found.reached or (0.0, 0.0)), 0.0
+
+    return max(tried[::-1], key=worth) if len(tried) > 1 else tried[0]

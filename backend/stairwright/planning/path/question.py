@@ -12,6 +12,7 @@ from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath
 
 from .course import Stand, stand_height
+from .lattice import Bounds
 
 _RESERVE = 0.1  # friction that a plan does without where the terrain allows it
 LAG = 0.02  # m; how late a wheel may arrive at a corner
@@ -28,11 +29,16 @@ class Question:
     stands: tuple[Stand, Stand]
     friction: float
     weights: PathWeights
+    torques: bool = False  # whether the search asks that motors hold every pose
 
     @property
     def reserve(self) -> float:
         """The lower friction at which poses shall still hold where that is possible."""
         return self.friction - min(_RESERVE, 0.25 * self.friction)
+
+    def torque_share(self, bounds: Bounds) -> float | None:
+        """Largest share of the motors' torques that lattice poses may take; None: any."""
+        return bounds.torque if self.torques else None
 
     @cached_property
     def refine_problem(self) -> _core.RefineProblem:
@@ -47,6 +53,7 @@ class Question:
             LAG,
             stand_height(self.robot),
             _core.PathWeights(w.com_margin, w.clearance, w.torque, w.smoothness, w.pitch),
+            self.torques,
         )
 
     @cached_property

@@ -89,6 +89,7 @@ class Search:
         open_start: bool = False,
         open_end: bool = False,
         partial: bool = False,
+        torque: float | None = None,
     ) -> Finding:
         """The way from start to goal at `friction`, wide at the `reserve` friction if possible.
 
@@ -102,6 +103,7 @@ class Search:
             open_start: Any pose with the rear wheels at the first sample will do; not with `cheap`.
             open_end: Any pose with the front wheels at the last sample will do.
             partial: Where there is no way to the goal, trace the one that gets farthest.
+            torque: Largest share of the motors' torques that a pose may take; any by default.
         """
         lat = self.lattice
         cells = self._cells(friction, reserve if cheap or partial else 0.0, com)
@@ -115,7 +117,7 @@ class Search:
         seed = pose_in(lat, cells, source, self.begin)
         first = anywhere(lat) if open_start else near(lat, seed)
         windows = _windows(problem, cells)
-        widest = _core.WidestPaths(problem, windows, cells.spans)
+        widest = self._widest(problem, windows, cells, friction, torque)
         moves = FORWARD
         widest.sweep(entries, first, moves)
         best, goal, pose = arrival(lat, widest, goals, target)
@@ -153,7 +155,9 @@ class Search:
         )
         return Finding(s, body, best, (float(s[-1, 0]), float(s[-1, 1])), moves > FORWARD)
 
-    def stops(self, friction: float, com: float, open_end: bool) -> list[Place]:
+    def stops(
+        self, friction: float, com: float, open_end: bool, torque: float | None = None
+    ) -> list[Place]:
         """Where ways end that begin at any pose with the rear wheels at the first sample, and so on
         from where the front wheels ended; see `find`.
 
@@ -166,7 +170,7 @@ class Search:
         out: list[Place] = []
         row = 0
         while len(goals) and row <= cells.rear[goals].max():
-            widest = _core.WidestPaths(problem, windows, cells.spans)
+            widest = self._widest(problem, windows, cells, friction, torque)
             widest.sweep(cells.rear == row, anywhere(self.lattice), FORWARD)
             end = self._farthest(cells, widest)
             if end is None:
@@ -177,6 +181,15 @@ class Search:
             out.append(end)
             row = self._index(Stand(end, self.end.body))[0]
         return out
+
+    def _widest(
+        self, problem: _core.LatticeProblem, windows: _core.LatticeCells, cells: Cells,
+        friction: float, torque: float | None,
+    ) -> _core.WidestPaths:  # fmt: skip
+        widest = _core.WidestPaths(problem, windows, cells.spans)
+        if torque is not None:
+            widest.limit_torques(self.path.native, friction, LAG, torque)
+        return widest
 
     def _goals(self, cells: Cells, open_end: bool) -> tuple[Longs, Ints | None]:
         """Cells in which ways end, and their pose unless any will do."""

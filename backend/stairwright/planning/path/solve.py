@@ -23,7 +23,7 @@ from .assemble import make_poses
 from .course import Stand, find_stands
 from .lattice import BOLD, HOPE, KEEN, STRICT, Bounds, Finding
 from .mend import STAGES, mend
-from .node_margins import Motor
+from .node_margins import BEYOND_REPAIR, Motor
 from .pieces import Piece, passes, pieces, stops
 from .question import Question
 from .refine import Refined, refine
@@ -56,7 +56,7 @@ LADDER = (  # rungs of one step are tried together; the first path is taken
     (Rung(1.7, HOPE), Rung(1.4, KEEN), BACK),
 )
 _COARSE = 2  # steps of the ladder that are compared where a path is thin
-_THIN = 0.01  # m; CoM margin
+THIN = 0.01  # m; CoM margin
 
 
 @dataclass(frozen=True)
@@ -137,14 +137,18 @@ class Course(Question):
         """Climb the ladder until a path passes the certificate and is not needlessly thin.
 
         Weights say which path, never whether: where they find none the default ones are tried.
+        Where motors are too weak for what was found, the search asks for what they hold.
 
         Args:
             pool: Who tries the rungs of one step.
         """
         found = self._climb(pool)
-        if isinstance(found, Solved) or self.unweighted is None:
+        if isinstance(found, Solved):
             return found
-        return self.unweighted.solve(pool)
+        if found.weak and not self.torques:
+            held = self.within_torques.solve(pool)
+            return held if isinstance(held, Solved) else replace(held, weak=held.weak or found.weak)
+        return self.unweighted.solve(pool) if self.unweighted else found
 
     def _climb(self, pool: Executor) -> Solved | Blocked:
         best: Solved | None = None
@@ -162,8 +166,11 @@ class Course(Question):
                         best = answer
                     if best is not None and height > _COARSE:
                         break
-            if best is not None and (height >= _COARSE or best.margin > _THIN):
+            if best is not None and (height >= _COARSE or best.margin > THIN):
                 return best
+            weak = next((one for one in blocked if one.weak), None)
+            if weak is not None and best is None and not self.torques:
+                return weak  # the search has to look at torques first
             if height == 1 and best is None:
                 ends, hopeless = self._ahead(blocked[0], pool)
                 if hopeless:
@@ -208,6 +215,8 @@ class Course(Question):
         Where a search comes through and no path follows, a more forgiving one seldom does better.
         """
         bold = self.attempt(Rung(1.7, BOLD))
+        if isinstance(bold, Blocked) and bold.weak and not self.torques:
+            return self.within_torques.quick()
         if isinstance(bold, Solved) or bold.opened:
             return bold
         hope = self.attempt(Rung(1.7, HOPE))
@@ -247,6 +256,11 @@ class Course(Question):
         return self.refine_problem.cost(np.hstack([nodes.s, nodes.body]))
 
     @cached_property
+    def within_torques(self) -> Course:
+        """The same question, asked so that every pose of the search is held by the motors."""
+        return replace(self, torques=True)
+
+    @cached_property
     def unweighted(self) -> Course | None:
         """The same question with default weights, if these are others."""
         usual = PathWeights(speed=self.weights.speed)
@@ -274,7 +288,9 @@ class Course(Question):
         still_wanted()
         found = refine(self, self.stands, finding.s, finding.body)
         judged: Refined | None = None
-        for stage in (*STAGES, None):
+        # No local repair makes motors hold much more: another way does.
+        stages = () if found.margins.torque_excess > BEYOND_REPAIR else STAGES
+        for stage in (*stages, None):
             still_wanted()
             if found is not judged:
                 judged, bad = found, found.margins.bad

@@ -26,6 +26,7 @@ _LEAST_SWAY = 0.01  # m; what they may take where there is hardly any margin
 _TICK = 0.02  # s between samples of the accelerations
 _WINDOW = 0.08  # s; standard deviation of the window that they are averaged over
 _ROUNDS = 6
+_LEAST_SPARE = 0.02  # of a motor's torque, for moving, that counts where there is hardly any
 
 
 def path_parameter(s: Floats, body: Floats) -> Floats:
@@ -39,7 +40,7 @@ def path_parameter(s: Floats, body: Floats) -> Floats:
 
 
 def pose_times(
-    robot: Robot, s: Floats, body: Floats, q: Floats, margin: Floats, speed: float
+    robot: Robot, s: Floats, body: Floats, q: Floats, margin: Floats, effort: Floats, speed: float
 ) -> Floats:
     """Times (n,) [s] of the nodes.
 
@@ -49,10 +50,13 @@ def pose_times(
         body: (n, 3) trunk poses.
         q: (n, 4) joints.
         margin: (n,) CoM margin [m]; thin margins slow the robot down.
+        effort: (n,) largest share of a leg motor's torque that standing takes; the faster a motor
+            turns the less torque it has.
         speed: Wished mean wheel speed [m/s].
     """
     wheel_cap = 0.5 * robot.wheel_speed * robot.wheel.radius
-    joint_cap = min(JOINT_RATE, 0.3 * robot.leg_speed)
+    spare = np.maximum(1.0 - np.maximum(effort[:-1], effort[1:]), _LEAST_SPARE)
+    joint_cap = np.minimum(JOINT_RATE, robot.leg_speed * np.minimum(0.3, 0.5 * spare))
     ds = np.abs(np.diff(s, axis=0))
     length = np.diff(path_parameter(s, body))
     thin = np.clip(np.minimum(margin[:-1], margin[1:]) / _THIN, _SLOWEST, 1.0)
@@ -86,7 +90,10 @@ def retimed(plan: Plan, speed: float) -> Plan:
     com_x = np.array([pose.com[0] for pose in plan.poses])
     path = wheel_path(plan.terrain, plan.robot_description.wheel.radius)
     margin = _core.firm_com_margins(path.native, s, com_x, plan.friction)
-    times = pose_times(plan.robot_description, s, body, q, margin, speed).tolist()
+    robot = plan.robot_description
+    limit = float(robot.torque_limits[:, :2].min())
+    effort = 1.0 - np.array([pose.margins.torque for pose in plan.poses]) / limit
+    times = pose_times(robot, s, body, q, margin, effort, speed).tolist()
     poses = [
         pose.model_copy(update={"time": time}) for pose, time in zip(plan.poses, times, strict=True)
     ]

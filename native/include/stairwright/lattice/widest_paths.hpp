@@ -9,6 +9,7 @@
 
 #include "stairwright/lattice/memory.hpp"
 #include "stairwright/lattice/problem.hpp"
+#include "stairwright/lattice/torque_limits.hpp"
 #include "stairwright/lattice/volume_kernels.hpp"
 
 namespace stairwright::lattice {
@@ -25,6 +26,9 @@ struct SweepHistory {
 class WidestPaths {
 public:
     WidestPaths(const Lattice& lattice, std::size_t cells);
+
+    // Also ask that motors hold every pose; before the first sweep.
+    void limit_torques(TorqueLimits limits) { torques_ = std::move(limits); }
 
     // One sweep over all cells; true if any changed. Ways begin in cells that `entry` marks, in poses of `begin`;
     // `moves` of kMoves are allowed.
@@ -57,6 +61,7 @@ private:
 
     std::size_t size_ = 0, used_ = 0;
     Reused<std::uint8_t> widths_;
+    std::optional<TorqueLimits> torques_;
 };
 
 }  // namespace stairwright::lattice

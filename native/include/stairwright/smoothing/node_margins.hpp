@@ -34,6 +34,6 @@ struct NodeMargins {
 };
 
 std::vector<NodeMargins> node_margins(const Terrain& terrain, const WheelPath& path, const RobotModel& robot,
-                                      std::span<const Node> nodes, double friction);
+                                      std::span<const Node> nodes, double friction, double lag);
 
 }  // namespace stairwright::smoothing

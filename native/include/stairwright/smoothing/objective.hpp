@@ -19,6 +19,7 @@ struct RefineProblem {
     double lag = 0.0;              // how late a wheel may be at a corner [m]
     double standing_height = 0.0;  // of the trunk above the wheels [m]
     PathWeights weights;
+    bool torques = false;          // whether motors are weak: their limits shape the path
 };
 
 // How nodes are laid for the smoothing.

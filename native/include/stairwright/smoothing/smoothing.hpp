@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "stairwright/gentlest_support.hpp"
 #include "stairwright/smoothing/banded.hpp"
 #include "stairwright/smoothing/node_margins.hpp"
 
@@ -27,6 +28,8 @@ struct Objective {
     MarginTerm reach;               // hip-wheel distances [m]
     MarginTerm trunk_room, links_room;  // clearances beyond what is safe [m]
     double torque_weight = 0.0;     // of each leg joint's torque over its limit
+    MarginTerm torque_room;         // of each motor, as a share of its torque; where loads are known
+    double torque_hard = 0.0;       // of motors that are all but overloaded
     double hard = 600.0;            // of what must not be violated
     double pitch_weight = 0.0;      // of pitch + slope_share * slope [1/rad]
     double slope_share = 0.8;       // of the slope between the wheels that the pitch follows
@@ -41,6 +44,7 @@ struct SmoothingProblem {
     std::span<const WheelCentres> wheels;
     std::span<const WheelCentres> contacts;  // where the wheels touch
     std::span<const NodeIntervals> intervals;
+    std::span<const WheelLoads> loads;  // by node, where motors are weak; else empty
     std::vector<bool> fixed;  // nodes that must not move
     Objective objective;
 };

@@ -1,0 +1,124 @@
+#include "stairwright/gentlest_support.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stairwright {
+
+namespace {
+
+constexpr double kPinched = 1.6;      // weights; wheels that press harder pinch something between them
+// Shares of the friction that forces may take without harm, tried in turn.
+constexpr std::array<double, 2> kAmple = {0.75, 0.98};
+
+WheelLoad load_on_one(const Contact& contact, const ContactForce& f, Vec2 centre, double weight) {
+    const Vec2 force = 0.5 * weight * world_force(contact, f), r = contact.point - centre;
+    return {force, r.z * force.x - r.x * force.z};
+}
+
+}  // namespace
+
+Faces with_bisector(const WheelContacts& contacts, Vec2 centre, double radius) {
+    Faces out;
+    for (const Contact& contact : contacts.span()) out.at[out.count++] = contact;
+    if (out.count < 2) return out;
+    const Vec2 sum = out.at[0].normal + out.at[1].normal;
+    const double length = norm(sum);
+    if (length < 0.2) return out;  // opposite walls: no direction between them
+    const Vec2 normal = {sum.x / length, sum.z / length};
+    out.at[out.count++] = {centre - radius * normal, normal, contacts.at[0].friction};
+    return out;
+}
+
+// The gentlest pair of faces that holds the robot.
+Support gentlest_support(const Faces& front, const Faces& rear, double com_x, double friction) {
+    Support out;
+    double least = std::numeric_limits<double>::infinity();
+    for (const double share : kAmple) {
+        // Wheels that pinch a curb between them press hard at low friction: use more of it.
+        if (share != kAmple.front() && least < kPinched) break;
+        const double ample = share * friction;
+        for (int i = front.count - 1; i >= 0; --i) {
+            for (int j = rear.count - 1; j >= 0; --j) {
+                std::array<ContactForce, 2> forces;
+                const std::array<Contact, 2> faces = {front.at[i], rear.at[j]};
+                const double needed = least_friction(faces, com_x, ample, forces);
+                const double score = needed <= ample ? forces[0].normal + forces[1].normal : 100.0 + needed;
+                if (score >= least - 1e-9) continue;
+                least = score;
+                out = {forces, faces, true};
+            }
+        }
+    }
+    return out;
+}
+
+Support resting_support(const Faces& front, const Faces& rear, double com_x, double friction) {
+    Support out;
+    double least = std::numeric_limits<double>::infinity();
+    for (const double share : kAmple) {
+        const double ample = share * friction;
+        for (int i = 0; i < std::min(front.count, 2); ++i) {
+            for (int j = 0; j < std::min(rear.count, 2); ++j) {
+                std::array<ContactForce, 2> forces;
+                const std::array<Contact, 2> faces = {front.at[i], rear.at[j]};
+                if (least_friction(faces, com_x, ample, forces) > ample) continue;
+                double size = 0.0;
+                for (const ContactForce& f : forces) size += f.tangential * f.tangential + f.normal * f.normal;
+                if (size >= least - 1e-9) continue;
+                least = size;
+                out = {forces, faces, true};
+            }
+        }
+        if (out.found) return out;
+    }
+    return gentlest_support(front, rear, com_x, friction);
+}
+
+Touches touches(const WheelPath& path, WheelPlaces s, double friction, double lag) {
+    Touches out;
+    std::array<Faces, 2> in_time;
+    for (const int pair : {kFront, kRear})
+        in_time[pair] = with_bisector(wheel_contacts(path, s[pair], friction), path.centre(s[pair]), path.radius());
+    out.ways[out.count++] = in_time;
+    for (const int pair : {kFront, kRear}) {
+        const std::size_t k = path.corner_from(s[pair]);
+        if (k == 0 || s[pair] - path.corners()[k - 1] > lag || in_time[pair].count > 1) continue;
+        const Vec2 centre = path.centre(s[pair]), normal = path.normal(path.corners()[k - 1] - 1e-7);
+        out.ways[out.count] = in_time;
+        out.ways[out.count][pair] = {{Contact{centre - path.radius() * normal, normal, friction}}, 1};
+        ++out.count;
+    }
+    return out;
+}
+
+WheelLoads::WheelLoads(const WheelPath& path, WheelPlaces s, double friction, double lag, Interval com, double weight)
+    : first_(com.lower), step_((com.upper - com.lower) / (kSamples - 1)) {
+    const Touches at = touches(path, s, friction, lag);
+    const std::array<Vec2, 2> centres = {path.centre(s.front), path.centre(s.rear)};
+    count_ = at.count;
+    for (int way = 0; way < count_; ++way) {
+        for (int k = 0; k < kSamples; ++k) {
+            const Support support = resting_support(at.ways[way][kFront], at.ways[way][kRear], first_ + k * step_, friction);
+            Sample& sample = samples_[way][k];
+            sample.held = support.found;
+            for (const int pair : {kFront, kRear})
+                if (support.found) sample.loads[pair] = load_on_one(support.faces[pair], support.forces[pair], centres[pair], weight);
+        }
+    }
+}
+
+std::optional<std::array<WheelLoad, 2>> WheelLoads::at(int way, double com_x) const {
+    const double u = step_ > 0.0 ? std::clamp((com_x - first_) / step_, 0.0, kSamples - 1.0) : 0.0;
+    const int k = std::min(static_cast<int>(u), kSamples - 2);
+    const double share = u - k;
+    const Sample &a = samples_[way][k], &b = samples_[way][k + 1];
+    if (!a.held || !b.held) return std::nullopt;
+    std::array<WheelLoad, 2> out;
+    for (const int pair : {kFront, kRear})
+        out[pair] = {a.loads[pair].force + share * (b.loads[pair].force - a.loads[pair].force),
+                     a.loads[pair].moment + share * (b.loads[pair].moment - a.loads[pair].moment)};
+    return out;
+}
+
+}  // namespace stairwright

@@ -1,0 +1,58 @@
+"""Motors that are weak for the robot's weight: the search looks for poses that they hold."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import stairwright as sw
+from stairwright.export.static_torques import static_torques
+
+STEP = {"points": [[-2.0, 0.0], [0.0, 0.0], [0.0, 0.1], [2.5, 0.1]]}
+
+
+@pytest.mark.parametrize("friction", [0.6, 0.9])
+def test_a_heavy_robot_climbs_where_its_legs_are_not_level(friction):
+    """A static search by brute force finds postures under 31 Nm here; level ones need 123 Nm."""
+    plan = sw.plan(STEP, "anymal_wheels", friction)
+    assert plan.feasible
+    robot = plan.robot_description
+    trunk = np.array([(pose.x_c, pose.z_c, pose.pitch) for pose in plan.poses])
+    q, contacts, forces = (
+        np.array([getattr(pose, name) for pose in plan.poses])
+        for name in ("q", "contacts", "forces")
+    )
+    torques = np.abs(static_torques(robot, trunk, q, contacts, forces)).reshape(-1, 4, 3)
+    assert torques[:, :, :2].max() < 80.0
+    assert min(pose.margins.torque for pose in plan.poses) > 0.05 * 80.0
+    assert sw.rollout(plan).outcome == "success"
+
+
+def test_a_path_under_a_looser_limit_is_not_lost_under_a_tighter_one_that_it_keeps():
+    data = sw.load_robot("anymal_wheels").model_dump()
+    feasible = []
+    for torque in (200.0, 130.0, 100.0, 80.0):
+        for part in ("thigh", "calf"):
+            data["actuators"][part]["torque"] = torque
+        feasible.append(sw.plan(STEP, data, 0.9).feasible)
+    assert feasible == [True] * 4
+
+
+@pytest.mark.parametrize(("motor", "part"), [("leg", "calf"), ("wheel", "wheel")])
+def test_the_torque_that_is_named_is_enough_and_little_less_is_not(motor, part):
+    data = sw.load_robot("b2w").model_dump()
+    weak = 0.15 if motor == "leg" else 0.3
+    names = ("thigh", "calf") if motor == "leg" else ("wheel",)
+    for name in names:
+        data["actuators"][name]["torque"] *= weak
+    limit = sw.plan("single-stair-036", data).problem.limit
+    assert limit.quantity == f"{motor} torque"
+    ratio = limit.needed / limit.available
+    feasible = []
+    for share in (1.02, 0.85):
+        changed = sw.load_robot("b2w").model_dump()
+        for name in names:
+            changed["actuators"][name]["torque"] *= weak * ratio * share
+        feasible.append(sw.plan("single-stair-036", changed).feasible)
+    assert feasible == [True, False]
+    assert data["actuators"][part]["torque"] < limit.needed

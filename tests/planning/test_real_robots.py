@@ -1,0 +1,77 @@
+"""The robots that people own: they plan, roll out, and say what binds and how their knees bend."""
+
+from __future__ import annotations
+
+import pytest
+
+import stairwright as sw
+from stairwright.planning.knees import configurations
+
+REAL = ("go2w", "b2w", "m20", "d1", "anymal_wheels")
+
+
+@pytest.mark.parametrize("robot", REAL)
+def test_a_stair_is_climbed(robot):
+    plan = sw.plan("single-stair-030", robot)
+    assert plan.feasible
+    assert plan.certificate.passed
+    run = sw.rollout(plan)
+    assert run.outcome == "success"
+    assert run.metrics.link_contacts == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("terrain", sw.terrains())
+@pytest.mark.parametrize("robot", REAL)
+def test_every_preset_is_planned_or_refused_with_a_reason(terrain, robot):
+    plan = sw.plan(terrain, robot)
+    if plan.feasible:
+        assert sw.rollout(plan).outcome == "success"
+    else:
+        assert plan.problem.limit is not None
+
+
+@pytest.mark.parametrize("method", ["path", "critical"])
+def test_a_plan_says_which_way_free_knees_bend(method):
+    plan = sw.plan("curb-015", "m20", method=method)
+    assert plan.feasible
+    joints = plan.robot_description.joints
+    for name, bend in (("front", plan.knees.front), ("rear", plan.knees.rear)):
+        low, high = getattr(joints, name).calf
+        assert (low > 0.0) == (bend == "forward")
+        assert (high < 0.0) == (bend == "back")
+    again = sw.plan("curb-015", "m20", method=method)
+    assert again.id == plan.id
+    assert sw.plan("curb-015", "go2w", method=method).knees is None
+
+
+def test_configurations_are_all_ways_the_knees_bend():
+    m20 = sw.load_robot("m20")
+    found = {tuple(leg.knee for leg in one.legs) for one in configurations(m20)}
+    assert found == {(a, b) for a in (-1.0, 1.0) for b in (-1.0, 1.0)}
+    a1 = sw.load_robot("a1_wheeled")
+    assert list(configurations(a1)) == [a1]
+
+
+@pytest.mark.parametrize("method", ["path", "critical", "nominal"])
+def test_the_margin_that_binds_is_the_least_of_its_kind(method):
+    plan = sw.plan("ramp-30deg-025", "go2w", method=method)
+    if plan.binding is None:
+        assert not plan.poses
+        return
+    assert any(pose.progress == plan.binding.progress for pose in plan.poses)
+    named = {"clearance": "clearance", "com": "com", "friction": "friction", "torque": "torque"}
+    if plan.binding.quantity in named:
+        least = min(getattr(p.margins, named[plan.binding.quantity]) for p in plan.poses)
+        assert plan.binding.value == pytest.approx(least)
+
+
+def test_knees_towards_each_other_stand_apart():
+    """Below hips this close the knees would cross: the wheels stand farther apart."""
+    data = sw.load_robot("go2w").model_dump()
+    data["joints"]["rear"] = {"thigh": [-3.491, 1.571], "calf": [0.838, 2.723]}
+    data["hips"] |= {"front": [0.13, 0.0], "rear": [-0.13, 0.0]}
+    plan = sw.plan("curb-015", data)
+    assert plan.feasible
+    first = plan.poses[0]
+    assert first.wheels[0][0] - first.wheels[1][0] > 0.28
