@@ -58,6 +58,9 @@ def parser() -> argparse.ArgumentParser:
     rollout.add_argument(
         "--workers", type=int, metavar="N", help="share trials among so many; default: all cores"
     )
+    rollout.add_argument(
+        "--model", metavar="FILE", help="simulate the robot's own MJCF or URDF, not our model of it"
+    )
     rollout.add_argument("-o", "--output", metavar="FILE", help=names("rollout"))
 
     export = commands.add_parser("export", help="write a plan, rollout or robot in another format")

@@ -94,7 +94,7 @@ class Client:
         return parse(Imported, self._json("POST", "/robots/import", files=files, data=fields))
 
     def export_robot(self, name: str, file_format: str) -> bytes:
-        """A robot as a file: urdf or mjcf."""
+        """A robot as a file: yaml, json, urdf or mjcf."""
         return self._export("robots", name, file_format)
 
     def terrains(self) -> list[Terrain]:

@@ -42,6 +42,8 @@ def rollout_command(given: Arguments) -> str | None:
     if given.seed < 0:
         raise InputError("must be a whole number from 0", ("seed",))
     if given.trials is not None:
+        if given.model:
+            raise InputError("trials simulate our own model", ("model",))
         return _trials(given)
     if given.output:
         from .export.table import ROLLOUT_FORMATS, by_ending
@@ -53,7 +55,13 @@ def rollout_command(given: Arguments) -> str | None:
     from .simulation.rollout import rollout
 
     controller = _settings(given.controller, "controller")
-    run = rollout(plan, friction=given.friction, controller=controller, seed=given.seed)
+    run = rollout(
+        plan,
+        friction=given.friction,
+        controller=controller,
+        seed=given.seed,
+        model=given.model,
+    )
     if given.output:
         run.save(given.output)
     else:

@@ -58,11 +58,12 @@ def _show(robot: Robot, given: argparse.Namespace) -> None:
 def _summary(made: Imported) -> str:
     robot = made.robot
     front, rear = robot.legs
-    lines = [
-        f"{robot.name}: {robot.mass:.4g} kg, wheels {2e3 * robot.wheel.radius:.4g} mm across, "
+    measures = (
+        f"{robot.mass:.4g} kg, wheels {2e3 * robot.wheel.radius:.4g} mm across, "
         f"thigh {front.thigh.length:.4g} m, calf {front.calf.length:.4g} m, "
         f"hips {front.hip[0] - rear.hip[0]:.4g} m apart"
-    ]
+    )
+    lines = [f"{robot.name}: {measures}"]
     lines += [f"assumed: {each}" for each in made.assumed]
     lines += [f"warning: {each}" for each in made.warnings]
     return "\n".join(lines)

@@ -85,6 +85,7 @@ def of_rollout(run: Rollout) -> str:
         [
             ("terrain", f"{run.terrain.name}, friction {run.friction:g}"),
             ("robot", run.robot),
+            *([("simulated", run.model.partition(":")[0])] if run.model else []),
             ("outcome", f"{run.outcome}. {run.reason}"),
             (
                 "pitch error",

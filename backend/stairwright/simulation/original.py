@@ -118,7 +118,7 @@ def build_original(
         geom.name = ""
     labels = _labels(reading, bodies)
     _remove_others(spec, bodies, source.model, base)
-    _set_free(reading, bodies[source.model.body_rootid[base]])
+    _set_free(bodies[source.model.body_rootid[base]])
     set_physics(spec)
     add_terrain(spec, terrain, friction, _HALF_WIDTH)
     for mesh in spec.meshes:
@@ -132,9 +132,7 @@ def build_original(
         labels[bodies[wheel].name] = f"{leg}_wheel"
     chosen = [leg.chain for leg in (reading.legs[name] for name in LEGS)]
     driven = [joints[j] for chain in chosen for j in (chain.thigh, chain.calf, chain.wheel)]
-    _add_motors(
-        spec, robot, driven, {joints[j].name: at for j, at in reading.held.items()}, reading
-    )
+    _add_motors(spec, robot, driven, [joints[j].name for j in reading.held])
     add_contact_sensors(spec, [bodies[wheel].name for wheel in wheels], bodies[base].name)
     model = spec.compile()
     at = [model.joint(joint.name) for joint in driven]
@@ -215,7 +213,7 @@ def _remove_others(spec: Any, bodies: list[Any], model: Any, base: int) -> None:
             spec.delete(body)
 
 
-def _set_free(reading: Reading, root: Any) -> None:
+def _set_free(root: Any) -> None:
     """The whole robot moves freely."""
     own = list(root.joints)
     if not own:
@@ -245,9 +243,7 @@ def _add_ball(wheel: Any, place: Floats, radius: float) -> None:
     )  # fmt: skip
 
 
-def _add_motors(
-    spec: Any, robot: Robot, driven: list[Any], held: dict[str, float], reading: Reading
-) -> None:
+def _add_motors(spec: Any, robot: Robot, driven: list[Any], held: list[str]) -> None:
     """Torque on our 12 joints, first; then a servo on each joint that is held."""
     for joint, motor in zip(driven, robot.motors, strict=True):
         actuator = _actuator(spec, joint.name)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from sqlalchemy import Engine
 
+from stairwright.documents import Model
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
@@ -17,7 +18,10 @@ from .tables import Base, SavedRobot, SavedTerrain
 
 SET_ASIDE = ".damaged-"
 _SUFFIXES = ("", "-wal", "-shm")
-_MODELS = {SavedTerrain.__tablename__: Terrain, SavedRobot.__tablename__: Robot}
+_MODELS: dict[str, type[Model]] = {
+    SavedTerrain.__tablename__: Terrain,
+    SavedRobot.__tablename__: Robot,
+}
 _JSON = frozenset({"document", "summary", "error"})  # columns
 
 

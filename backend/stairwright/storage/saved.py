@@ -21,7 +21,9 @@ class Saved(Generic[D]):
     """Documents of one kind by name."""
 
     def __init__(self, sessions: sessionmaker[Session], table: Any, model: type[D]) -> None:
-        self._sessions, self._table, self._model = sessions, table, model
+        self._sessions = sessions
+        self._table = table
+        self._model: type[D] = model
 
     def all(self) -> list[D]:
         """All of them, by name."""

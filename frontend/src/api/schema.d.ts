@@ -1707,6 +1707,12 @@ export interface components {
             /** Robot Hash */
             robot_hash: string;
             robot_description: components["schemas"]["Robot"];
+            /**
+             * Model
+             * @description the file whose model was simulated, if not ours
+             * @default
+             */
+            model: string;
             /** Friction */
             friction: number;
             /** Seed */

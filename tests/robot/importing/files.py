@@ -119,11 +119,12 @@ def parts(design: Design, leg: str) -> list[dict]:
                 "about": "x" if k == 0 else "y",
             }
         )
+    half = design.thigh / 2
     own = {
         "hip": (0.6, (-0.005 * fore, out * 0.02, 0.0), (0.0005, 0.0009, 0.0006), 0.0,
                 [("cylinder", (0.045, 0.02), (0, out * 0.05, 0), (math.pi / 2, 0))]),
         "thigh": (1.1, (-0.004, -out * 0.02, -0.04), (0.0058, 0.0057, 0.001), a,
-                  [("box", (0.02, 0.015, design.thigh / 2), (0.005, 0, -design.thigh / 2), (0, 0))]),
+                  [("box", (0.02, 0.015, half), (0.005, 0, -half), (0, 0))]),
         "calf": (0.35, (0.012, 0.0, -0.12), (0.0012, 0.0011, 0.0002), b,
                  [("cylinder", (0.012, 0.06), (0.02, 0, -0.07), (0, -0.3)),
                   ("sphere", (0.015,), (0.055, 0, -0.16), (0, 0))]),
@@ -134,7 +135,10 @@ def parts(design: Design, leg: str) -> list[dict]:
         mass, com, moments, frame, shapes = own[body["part"]]
         body |= {
             "mass": mass, "com": turn_y(com, frame), "moments": moments, "frame": frame,
-            "shapes": [(kind, size, turn_y(at, frame), (roll, pitch + frame)) for kind, size, at, (roll, pitch) in shapes],
+            "shapes": [
+                (kind, size, turn_y(at, frame), (roll, pitch + frame))
+                for kind, size, at, (roll, pitch) in shapes
+            ],
         }  # fmt: skip
     return bodies
 

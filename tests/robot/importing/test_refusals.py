@@ -99,6 +99,19 @@ def test_closed_chains() -> None:
     assert "'FL_calf_joint' follows 'FL_thigh_joint'" in refused(mimic)
 
 
+def test_what_is_tied_on_the_trunk_alone_does_not_matter() -> None:
+    """A gripper's fingers follow each other; the legs are open chains."""
+    finger = (
+        '<link name="{0}"><inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4" '
+        'ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="{0}_joint" type="revolute">'
+        '<parent link="base"/><child link="{0}"/><axis xyz="0 0 1"/>{1}'
+        '<limit lower="-1" upper="1" effort="9" velocity="9"/></joint>'
+    )
+    pair = finger.format("a", "") + finger.format("b", '<mimic joint="a_joint"/>')
+    made = imported(urdf(Design(), extra=pair))
+    assert made.locked["b_joint"] == 0.0
+
+
 def test_links_that_hang_on_nothing() -> None:
     assert "orphan" in refused(urdf(Design(), extra='<link name="orphan"/>'))
     lost = '<joint name="odd" type="fixed"><parent link="base"/><child link="nowhere"/></joint>'
@@ -107,10 +120,13 @@ def test_links_that_hang_on_nothing() -> None:
 
 def test_one_joint_too_many() -> None:
     text = one(URDF, "FL_hip_joint", '<parent link="base"/>', '<parent link="turret"/>')
-    text = text.replace("</robot>", '<link name="turret"><inertial><mass value="1"/><inertia ixx=".01" '
-        'iyy=".01" izz=".01" ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="steer" '
-        'type="revolute"><parent link="base"/><child link="turret"/><axis xyz="0 0 1"/>'
-        '<limit lower="-1" upper="1" effort="9" velocity="9"/></joint></robot>')  # fmt: skip
+    turret = (
+        '<link name="turret"><inertial><mass value="1"/><inertia ixx=".01" iyy=".01" izz=".01" '
+        'ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="steer" type="revolute">'
+        '<parent link="base"/><child link="turret"/><axis xyz="0 0 1"/>'
+        '<limit lower="-1" upper="1" effort="9" velocity="9"/></joint>'
+    )
+    text = text.replace("</robot>", f"{turret}</robot>")
     message = refused(text)
     assert "'steer'" in message
     assert "one joint too many" in message

@@ -45,7 +45,8 @@ def test_a_torque_limit_in_two_places() -> None:
 
 def test_position_servos_limit_by_force_not_by_angle() -> None:
     servos = "".join(
-        f'<position joint="{leg}_{part}_joint" kp="50" ctrlrange="-3 3" forcerange="-20 20" gear="2"/>'
+        f'<position joint="{leg}_{part}_joint" kp="50" ctrlrange="-3 3" forcerange="-20 20" '
+        'gear="2"/>'
         for leg in LEGS for part in ("thigh", "calf", "wheel")
     )  # fmt: skip
     made = imported(mjcf(Design(), motors=servos))
@@ -65,6 +66,14 @@ def test_ranges_beyond_whole_turns() -> None:
     assert made.robot.joints.front.calf == pytest.approx((-9.42, 9.42))
     assert said(made.warnings, "exceeds a whole turn")
     assert said(made.warnings, "front knees bend both ways")
+
+
+def test_a_range_that_is_a_slip() -> None:
+    """As the -94 in a maker's xacro, which was to be -0.94."""
+    text = urdf(Design()).replace('lower="-1.2"', 'lower="-94"', 1)
+    made = imported(text)
+    assert made.robot.joints.front.thigh == pytest.approx((-1.2, 2.9))  # what both sides can
+    assert said(made.warnings, "FL_thigh_joint", "-94", "slip")
 
 
 def test_wheel_meshes_that_were_not_sent() -> None:
@@ -95,8 +104,9 @@ def test_gaps_are_filled_from_a_known_robot_with_the_same_legs() -> None:
 
 def test_shapes_without_mass_weigh_as_in_mujoco_and_it_is_said() -> None:
     fixed = (
-        '<link name="guard"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>'
-        '<joint name="guard_joint" type="fixed"><parent link="base"/><child link="guard"/></joint>'
+        '<link name="guard"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
+        '</link><joint name="guard_joint" type="fixed"><parent link="base"/><child link="guard"/>'
+        "</joint>"
     )
     made = imported(urdf(Design(), extra=fixed))
     assert made.robot.mass == pytest.approx(imported(urdf(Design())).robot.mass + 1.0)

@@ -7,6 +7,12 @@ from xml.sax.saxutils import quoteattr
 
 from tests.robot.importing.files import LEGS, Design, parts
 
+# A frame that an exporter wrote as a body.
+_NOTHING = (
+    '<link name="imu"><inertial><mass value="4e-15"/><inertia ixx="1e-27" ixy="0" ixz="0" '
+    'iyy="1e-27" iyz="0" izz="1e-27"/></inertial></link>'
+)
+
 
 def n(*values: float) -> str:
     """Numbers as XML has them."""
@@ -42,9 +48,11 @@ def mjcf(design: Design, *, free: bool = True, extra: str = "", motors: str | No
 <asset><mesh name="body" file="body.obj"/><mesh name="tyre" file="tyre.stl"/></asset>
 <worldbody><light pos="0 0 3"/><geom name="floor" type="plane" size="5 5 .1"/>
 <body name="base" pos="0 0 0.6">{'<freejoint name="root"/>' if free else ""}
-<inertial mass="{n(design.base_mass)}" pos="{n(*design.base_com)}" fullinertia="0.03 0.1 0.11 0.0002 0.001 -0.0003"/>
+<inertial mass="{n(design.base_mass)}" pos="{n(*design.base_com)}"
+ fullinertia="0.03 0.1 0.11 0.0002 0.001 -0.0003"/>
 <geom class="shown" mesh="body"/>
-<geom class="touch" type="box" size="{n(0.19, 0.05, 0.06)}" pos="{n(x, 0, z)}"/>{head}{legs}</body></worldbody>
+<geom class="touch" type="box" size="{n(0.19, 0.05, 0.06)}" pos="{n(x, 0, z)}"/>
+{head}{legs}</body></worldbody>
 <actuator>{actuators}</actuator>{extra}{key}</mujoco>"""
 
 
@@ -101,21 +109,25 @@ def _key(design: Design) -> str:
 
 def urdf(design: Design, *, extra: str = "") -> str:
     """As URDF: fixed links, a head, visual meshes that are not there."""
+    x, z = design.trunk_off
+    hull = [("box", (0.19, 0.05, 0.06), (x, 0, z), (0, 0))]
+    mesh = "package://maker/meshes/body.dae"
+    moments = (0.03, 0.1, 0.11)
     text = [
         f'<?xml version="1.0" encoding="utf-8"?><robot name={quoteattr(design.name)}>',
-        _link("base", design.base_mass, design.base_com, 0.0,
-              (0.03, 0.1, 0.11), [("box", (0.19, 0.05, 0.06), (design.trunk_off[0], 0, design.trunk_off[1]), (0, 0))],
-              mesh="package://maker/meshes/body.dae"),
-    ]  # fmt: skip
+        _link("base", design.base_mass, design.base_com, 0.0, moments, hull, mesh=mesh),
+    ]
     if design.head:
-        x, z = design.trunk_off
+        nose = [
+            ("cylinder", (0.05, 0.045), (0, 0, 0), (0, 0)),
+            ("sphere", (0.05,), (0.01, 0, -0.07), (0, 0)),
+        ]
         text += [
-            _link("head", 0.4, (0.01, 0, 0), 0.0, (0.001, 0.001, 0.001),
-                  [("cylinder", (0.05, 0.045), (0, 0, 0), (0, 0)), ("sphere", (0.05,), (0.01, 0, -0.07), (0, 0))]),
+            _link("head", 0.4, (0.01, 0, 0), 0.0, (0.001, 0.001, 0.001), nose),
             _fixed("base", "head", (x + 0.3, 0, z + 0.01)),
-            '<link name="imu"><inertial><mass value="4e-15"/><inertia ixx="1e-27" ixy="0" ixz="0" '
-            'iyy="1e-27" iyz="0" izz="1e-27"/></inertial></link>', _fixed("head", "imu", (0, 0, 0.03)),
-        ]  # fmt: skip
+            _NOTHING,
+            _fixed("head", "imu", (0, 0, 0.03)),
+        ]
     for leg in LEGS:
         parent = "base"
         for body in parts(design, leg):

@@ -50,7 +50,7 @@ class Frame:
 def find_frame(source: Source, tree: Tree, notes: Notes) -> Frame:
     """Forward is along the abduction axes, or across the wheels' where there are none.
 
-    Up is along the trunk's z where that lies across; a robot looks along a positive axis.
+    A robot looks along a positive axis of its trunk.
 
     Raises:
         InputError: If these axes lie along none of the trunk's.
@@ -62,12 +62,13 @@ def find_frame(source: Source, tree: Tree, notes: Notes) -> Frame:
     tilting = all(joint is not None for joint in given)
     joints = given if tilting else [leg.wheel for leg in tree.legs]
     taken = _along(source, trunk, [j for j in joints if j is not None], source.body(body))
-    # Up: against gravity where that is clear, else z; but not along the axis that is taken.
-    gravity = trunk @ np.array([0.0, 0.0, 1.0])
-    steepest = int(np.abs(gravity).argmax())
-    clear = abs(gravity[steepest]) > _STRAIGHT and steepest != taken
-    up = steepest if clear else (2 if taken != 2 else 1)
-    rise = math.copysign(1.0, gravity[up]) if clear else 1.0
+    # The hips spread over a rectangle: up is across it, and against gravity where that is clear.
+    hips = (data.xanchor[[leg.thigh for leg in tree.legs]] - data.xpos[body]) @ trunk.T
+    spread = np.ptp(hips, axis=0)
+    spread[taken] = np.inf
+    up = int(spread.argmin())
+    against = float((trunk @ np.array([0.0, 0.0, 1.0]))[up])
+    rise = math.copysign(1.0, against) if abs(against) > 0.5 else 1.0
     z, other = rise * np.eye(3)[up], np.eye(3)[taken]
     x = other if tilting else np.cross(other, z)
     x = x * math.copysign(1.0, x.sum())

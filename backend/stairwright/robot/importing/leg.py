@@ -116,9 +116,15 @@ def _range(
     ends = sorted(sign * value + offset for value in model.jnt_range[joint].tolist())
     if ends[0] >= ends[1]:
         raise InputError(f"{name!r}: its range {ends} is empty", ("file",))
-    turns = 2 * math.pi * round(sum(ends) / (4 * math.pi))
+    # Angles that differ by whole turns are the same posture: a range is told near 0, or where it
+    # holds every posture the zero is.
+    whole = ends[1] - ends[0] >= 2 * math.pi
+    turns = 2 * math.pi * round((offset if whole else sum(ends) / 2) / (2 * math.pi))
     low, high = (_tidy(end - turns) for end in ends)
-    if high - low > 4 * math.pi + 1e-9 or max(-low, high) > 2 * math.pi:
+    if max(-low, high) > _LIMIT:
+        notes.warn(f"{name!r}: its range {low:.4g}..{high:.4g} rad looks like a slip; cut to two "
+                   "turns each way")  # fmt: skip
+    elif max(-low, high) > 2 * math.pi:
         notes.warn(f"{name!r}: its range {low:.4g}..{high:.4g} rad exceeds a whole turn each way")
     low, high = max(low, -_LIMIT), min(high, _LIMIT)
     return low, high, _tidy(offset - turns)

@@ -40,7 +40,8 @@ def gather(path: str | os.PathLike[str]) -> tuple[str, bytes, dict[str, bytes]]:
 def _companions(file: Path, content: bytes) -> dict[str, bytes]:
     """Files below the folder of `file` whose name it, or what it includes, mentions."""
     folder = file.parent
-    wanted, queue = set(), [content]
+    wanted: set[str] = set()
+    queue = [content]
     found: dict[str, bytes] = {}
     places = _places(folder) if _REFERENCE.search(content) else {}
     room = MOST_BYTES - len(content)

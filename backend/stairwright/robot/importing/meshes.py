@@ -10,6 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.errors import InputError
+
+from .collada import corners
 from .upload import Upload
 
 Floats = NDArray[np.float64]
@@ -44,7 +47,7 @@ def provide(spec: Any, upload: Upload) -> dict[str, str]:
 
 
 def _is_text_stl(content: bytes, suffix: str) -> bool:
-    if suffix != ".stl" or not content[:5].lower() == b"solid":
+    if suffix != ".stl" or content[:5].lower() != b"solid":
         return False
     count = int.from_bytes(content[80:84], "little")
     return len(content) != 84 + 50 * count
@@ -52,17 +55,30 @@ def _is_text_stl(content: bytes, suffix: str) -> bool:
 
 def _convert(mesh: Any, content: bytes, suffix: str) -> bool:
     """Read what MuJoCo cannot; False if nothing comes of it."""
-    if suffix not in (".stl", *_CONVERTED):
-        return False
-    read = read_mesh(content, suffix.removeprefix("."))
+    read = None
+    if suffix == ".dae":
+        read = _read_collada(content)
+    elif suffix in (".stl", *_CONVERTED):
+        read = read_mesh(content, suffix.removeprefix("."))
     if read is None:
         return False
     vertices, faces = read
-    if not (4 <= len(vertices) <= _MOST_VERTICES and len(faces) and np.isfinite(vertices).all()):
+    if not (4 <= len(vertices) <= _MOST_VERTICES and np.isfinite(vertices).all()):
         return False
     mesh.file = ""
-    mesh.uservert, mesh.userface = vertices.ravel(), faces.ravel()
+    mesh.uservert = vertices.ravel()
+    if len(faces):  # else MuJoCo takes the hull
+        mesh.userface = faces.ravel()
     return True
+
+
+def _read_collada(content: bytes) -> tuple[Floats, NDArray[np.int64]] | None:
+    """Corners of the hull, without triangles; None if it cannot be read."""
+    try:
+        points = corners(content, "the mesh")
+    except InputError:
+        return None
+    return None if points is None else (points, np.zeros((0, 3), np.int64))
 
 
 def read_mesh(content: bytes, kind: str) -> tuple[Floats, NDArray[np.int64]] | None:

@@ -12,11 +12,15 @@ from .xml import parse
 
 _MULTIPLIES = ("replicate", "composite", "flexcomp", "flex", "attach", "model")
 _REFUSED = (*_MULTIPLIES, "plugin", "extension")
-_KEPT = ("compiler", "default", "asset", "worldbody", "actuator", "equality", "keyframe", "tendon",
-         "option", "contact")  # fmt: skip
+_KEPT = (
+    "compiler", "default", "asset", "worldbody", "actuator", "equality", "keyframe", "tendon",
+    "option", "contact",
+)  # fmt: skip
 _ASSETS = ("mesh",)
-_DEFAULTS = ("default", "joint", "geom", "mesh", "general", "motor", "position", "velocity",
-             "intvelocity", "damper", "cylinder", "muscle", "adhesion", "tendon", "equality")  # fmt: skip
+_DEFAULTS = (
+    "default", "joint", "geom", "mesh", "general", "motor", "position", "velocity", "intvelocity",
+    "damper", "cylinder", "muscle", "adhesion", "tendon", "equality",
+)  # fmt: skip
 _BODY = ("body", "frame", "joint", "freejoint", "geom", "inertial", "site")
 _LOOKS = ("material", "hfield")  # attributes of geoms
 _DEEPEST_INCLUDE = 5

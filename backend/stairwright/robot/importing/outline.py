@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -43,7 +45,7 @@ def outer(points: Floats, corners: int = MOST_CORNERS) -> Floats:
             meeting = _meeting(a, b, c, d)
             if meeting is None:
                 continue
-            added = abs(_turn(b, meeting, c)) / 2
+            added = abs(_turn(b.tolist(), meeting.tolist(), c.tolist())) / 2
             if best is None or added < best[0]:
                 best = added, k, meeting
         if best is None:
@@ -95,6 +97,6 @@ def _meeting(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats | None:
     return point
 
 
-def _turn(a: object, b: object, c: object) -> float:
-    (ax, az), (bx, bz), (cx, cz) = a, b, c  # type: ignore[misc,attr-defined]
-    return float((bx - ax) * (cz - bz) - (bz - az) * (cx - bx))
+def _turn(a: Sequence[float], b: Sequence[float], c: Sequence[float]) -> float:
+    """Twice the area of a triangle, counter-clockwise positive."""
+    return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -65,7 +66,7 @@ def _solid(source: Source, frame: Frame, geom: int, label: str) -> Solid:
     return Solid(centre + own @ axes.T, int(kind), centre, axes[:, 2], radius, label)
 
 
-def _cloud(model: object, geom: int, kind: _GEOM, size: Floats) -> tuple[Floats, float]:
+def _cloud(model: Any, geom: int, kind: Any, size: Floats) -> tuple[Floats, float]:
     """Points in the shape's own frame, and its radius."""
     a, b, c = size.tolist()
     if kind == _GEOM.mjGEOM_BOX:
@@ -76,15 +77,16 @@ def _cloud(model: object, geom: int, kind: _GEOM, size: Floats) -> tuple[Floats,
         return np.array([(x, y, z) for z in (-b, b) for x, y in ring]), a
     if kind == _GEOM.mjGEOM_CAPSULE:
         ball = _ball() * a
-        return np.concatenate([ball + [0, 0, b], ball - [0, 0, b]]), a
+        end = np.array([0.0, 0.0, b])
+        return np.concatenate([ball + end, ball - end]), a
     if kind == _GEOM.mjGEOM_SPHERE:
         return _ball() * a, a
     if kind == _GEOM.mjGEOM_ELLIPSOID:
         return _ball() * size, max(a, b, c)
-    mesh = int(model.geom_dataid[geom])  # type: ignore[attr-defined]
-    first = int(model.mesh_vertadr[mesh])  # type: ignore[attr-defined]
-    count = int(model.mesh_vertnum[mesh])  # type: ignore[attr-defined]
-    points: Floats = np.array(model.mesh_vert[first : first + count], float)  # type: ignore[attr-defined]
+    mesh = int(model.geom_dataid[geom])
+    first = int(model.mesh_vertadr[mesh])
+    count = int(model.mesh_vertnum[mesh])
+    points: Floats = np.array(model.mesh_vert[first : first + count], np.float64)
     return points, 0.0
 
 

@@ -23,6 +23,10 @@ Floats = NDArray[np.float64]
 _MOST_BODIES, _MOST_GEOMS = 500, 5000
 _LARGEST = 100.0  # m
 _HEAVIEST = 2000.0  # kg
+_FINITE = (
+    "body_quat", "body_iquat", "jnt_pos", "jnt_axis", "jnt_range", "geom_pos", "geom_quat",
+    "geom_size", "dof_damping", "dof_armature", "qpos0", "mesh_vert",
+)  # fmt: skip
 _MESH, _PLANE = int(mujoco.mjtGeom.mjGEOM_MESH), int(mujoco.mjtGeom.mjGEOM_PLANE)
 _SHAPES = tuple(
     int(getattr(mujoco.mjtGeom, f"mjGEOM_{name}"))
@@ -69,11 +73,11 @@ class Source:
         mujoco.mj_comPos(self.model, self.data)
 
 
-def read_spec(upload: Upload, notes: Notes) -> tuple[Any, urdf.Urdf | None, list[int]]:
+def read_spec(upload: Upload, notes: Notes) -> tuple[Any, urdf.Urdf | None, list[Any]]:
     """An editable MuJoCo specification of a robot file that needs no file.
 
     Returns:
-        The specification, URDF's own facts, and the bodies' ids of colliding shapes left out.
+        The specification, URDF's own facts, and the body of each colliding shape left out.
 
     Raises:
         InputError: If it is no robot file.
@@ -121,8 +125,8 @@ def _drop_unseen(spec: Any, upload: Upload, notes: Notes) -> list[Any]:
             spec.delete(mesh)
     if files:
         notes.warn(
-            f"collision meshes that were not sent or cannot be read (STL, OBJ, PLY and OFF can): "
-            f"{listed(sorted(set(files)))}"
+            "collision meshes that were not sent or cannot be read (STL, OBJ, DAE, PLY and OFF "
+            f"can): {listed(sorted(set(files)))}"
         )
     if weightless:
         notes.warn(f"{listed(weightless)}: the mass of a mesh that was not sent is missing")
@@ -175,8 +179,7 @@ def _check_numbers(model: Any) -> None:
         if bad.any():
             body = model.body(int(np.argwhere(bad)[0][0])).name
             raise InputError(f"body {body!r}: {name} must be finite and below {most:g}", ("file",))
-    for name in ("body_quat", "body_iquat", "jnt_pos", "jnt_axis", "jnt_range", "geom_pos",
-                 "geom_quat", "geom_size", "dof_damping", "dof_armature", "qpos0", "mesh_vert"):  # fmt: skip
+    for name in _FINITE:
         if not np.isfinite(getattr(model, name)).all():
             raise InputError(f"a number is not finite ({name})", ("file",))
 

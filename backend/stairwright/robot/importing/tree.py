@@ -10,6 +10,7 @@ import numpy as np
 
 from stairwright.errors import InputError
 
+from .loops import find_loops
 from .report import listed
 from .source import Source
 
@@ -59,8 +60,22 @@ def find_legs(source: Source) -> Tree:
     Raises:
         InputError: If they are not there; names the joint or body that does not fit.
     """
+    loops = find_loops(source)
+    try:
+        tree = _open_tree(source)
+    except InputError:
+        if loops:
+            raise loops[0].error() from None  # which explains what is odd about the tree
+        raise
+    trunk = set(tree.trunk)
+    for loop in loops:
+        if not loop.bodies <= trunk:
+            raise loop.error()
+    return tree
+
+
+def _open_tree(source: Source) -> Tree:
     model = source.model
-    _refuse_loops(source)
     own = _own_joints(source)
     above = _above(source, own)
     paths = _paths(source, above)
@@ -107,7 +122,8 @@ def _nearest(source: Source, own: list[int | None], body: int) -> int | None:
 
 def _above(source: Source, own: list[int | None]) -> list[int | None]:
     """For each joint the next one towards the world."""
-    model, found = source.model, []
+    model = source.model
+    found: list[int | None] = []
     for joint in range(model.njnt):
         body = int(model.jnt_bodyid[joint])
         if joint > model.body_jntadr[body]:
@@ -120,11 +136,12 @@ def _above(source: Source, own: list[int | None]) -> list[int | None]:
 def _paths(source: Source, above: list[int | None]) -> list[list[int]]:
     """From the outermost joint of every branch, the joints that lead to it."""
     paths = []
-    for leaf in sorted(set(range(source.model.njnt)) - set(above)):  # type: ignore[arg-type]
-        path, joint = [], leaf
+    for leaf in sorted(set(range(source.model.njnt)) - {j for j in above if j is not None}):
+        path: list[int] = []
+        joint: int | None = leaf
         while joint is not None:
             path.insert(0, joint)
-            joint = above[joint]  # type: ignore[assignment]
+            joint = above[joint]
         paths.append(path)
     return paths
 
@@ -204,28 +221,3 @@ def _not_four(source: Source, paths: list[list[int]], wheels: list[list[int]]) -
         return f"no leg with thigh, calf and wheel: {what}"
     what = "leg ends" if len(wheels) == 1 else "legs end"
     return f"{len(wheels)} {what} in a wheel ({listed(ends)}); there must be four"
-
-
-def _refuse_loops(source: Source) -> None:
-    """Constraints that close a chain of bodies, or tie a joint to another."""
-    model = source.model
-    for k in range(model.neq):
-        if not model.eq_active0[k]:
-            continue
-        kind = mujoco.mjtEq(int(model.eq_type[k]))
-        name = model.equality(k).name or kind.name.removeprefix("mjEQ_").lower()
-        first = int(model.eq_obj1id[k])
-        if kind in (mujoco.mjtEq.mjEQ_CONNECT, mujoco.mjtEq.mjEQ_WELD):
-            where = (
-                source.body(first)
-                if int(model.eq_objtype[k]) == int(mujoco.mjtObj.mjOBJ_BODY)
-                else name
-            )
-        elif kind == mujoco.mjtEq.mjEQ_JOINT:
-            where = source.joint(first)
-        else:
-            where = name
-        raise InputError(f"{where!r}: equality {name!r} closes a chain; legs must be open chains",
-                         ("file",))  # fmt: skip
-    for joint, other in source.mimics.items():
-        raise InputError(f"{joint!r} follows {other!r}: closed chains cannot be read", ("file",))

@@ -15,7 +15,7 @@ MOST_BYTES = 64 * 2**20  # of everything, unpacked
 MOST_XML = 4 * 2**20
 _MOST_FILES = 2000
 XML_ENDINGS = (".urdf", ".xml", ".mjcf")
-_MESHES = (".stl", ".obj", ".msh", ".ply", ".off")
+_MESHES = (".stl", ".obj", ".msh", ".dae", ".ply", ".off")
 
 
 @dataclass(frozen=True)

@@ -73,14 +73,13 @@ def verify(reading: Reading, notes: Notes) -> Errors:
     found = compare(reading, _POSTURES)
     reach = min(leg.reach for leg in reading.robot.legs)
     if found.wheels > _MOST * reach:
+        off = f"{1e3 * found.wheels:.3g} mm"
         raise InputError(
-            f"the legs do not move in the side view: their wheels are up to {1e3 * found.wheels:.3g}"
-            " mm off",
-            ("file",),
+            f"the legs do not move in the side view: their wheels are up to {off} off", ("file",)
         )
     if found.wheels > 1e-7:
-        notes.warn(f"the robot's wheels are up to {1e3 * found.wheels:.2g} mm off the file's in the "
-                   "side view")  # fmt: skip
+        off = f"{1e3 * found.wheels:.2g} mm"
+        notes.warn(f"the robot's wheels are up to {off} off the file's in the side view")
     if found.com > 1e-6:
         notes.warn(f"its mass centre is up to {1e3 * found.com:.2g} mm off the file's")
     return found

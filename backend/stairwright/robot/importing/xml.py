@@ -14,14 +14,14 @@ _DEEPEST = 60
 _LONGEST = 2**20  # characters of one attribute
 
 
-def parse(content: bytes, name: str) -> ET.Element:
+def parse(content: bytes, name: str, most: int = MOST_XML) -> ET.Element:
     """The root element of an XML file.
 
     Raises:
         InputError: If it is no XML, too large or too deep, or declares a document type.
     """
-    if len(content) > MOST_XML:
-        raise InputError(f"{name} is larger than {MOST_XML >> 20} MiB", ("file",))
+    if len(content) > most:
+        raise InputError(f"{name} is larger than {most >> 20} MiB", ("file",))
     try:
         content.decode("utf-8")
     except UnicodeDecodeError:

@@ -1,0 +1,123 @@
+"""The maker's own model under our controller."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import stairwright as sw
+from stairwright.errors import InputError
+from stairwright.robot import kinematics
+from stairwright.robot.importing.read import read
+from stairwright.robot.importing.upload import Upload
+from stairwright.simulation.original import build_original, read_original
+from stairwright.simulation.original_run import Mirror
+from tests.robot.importing.files import LEGS, Design, LegQuirks
+from tests.robot.importing.written import mjcf, urdf
+
+CURB = {"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
+# Signs, zero angles and link frames of another maker; the base's frame is not the hips' middle.
+ODD = replace(
+    Design(),
+    quirks={leg: LegQuirks((-1, -1, 1, -1), (0.2, 0.4, -0.7, 1.0)) for leg in LEGS},
+    frames=(0.5, -0.3),
+    keyframe=False,
+)
+
+
+@cache
+def robot(design_is_odd: bool, form: str) -> tuple[str, sw.Robot]:
+    write = mjcf if form == "mjcf" else urdf
+    text = write(ODD if design_is_odd else Design())
+    return text, read(Upload("a.xml", text.encode()), {}).robot
+
+
+def mirror(odd: bool, form: str) -> tuple[Mirror, sw.Robot]:
+    text, machine = robot(odd, form)
+    upload, reading = read_original(text, machine)
+    terrain = sw.load_terrain(CURB)
+    return Mirror(build_original(upload, reading, machine, terrain, 0.6)), machine
+
+
+@pytest.mark.parametrize("form", ["mjcf", "urdf"])
+@pytest.mark.parametrize("odd", [False, True])
+def test_a_state_reads_in_our_layout_as_it_was_placed(odd: bool, form: str) -> None:
+    seen, machine = mirror(odd, form)
+    rng = np.random.default_rng(3)
+    limits = machine.joints.front
+    pitch = -0.4
+    q = np.array([rng.uniform(*pair) for pair in (limits.thigh, limits.calf) * 2])
+    seen.qpos[:3] = 0.3, 0.0, 2.0
+    seen.qpos[3:7] = np.cos(pitch / 2), 0.0, np.sin(pitch / 2), 0.0
+    seen.qpos[7:] = [*q[:2], 0.0, *q[:2], 0.0, *q[2:], 0.0, *q[2:], 0.0]
+    wanted = seen.qpos.copy()
+    seen.place()
+    np.testing.assert_allclose(seen.qpos, wanted, atol=1e-9)
+    frames = kinematics.forward(machine, *map(np.asarray, (0.3, 2.0, pitch)), q)
+    own, data = seen.original, seen.data
+    for k, (body, plane) in enumerate(zip(own.wheels, own.planes, strict=True)):
+        place = data.xpos[body] + data.xmat[body].reshape(3, 3) @ plane
+        np.testing.assert_allclose(place[[0, 2]], frames.wheels[k // 2], atol=1e-9)
+
+
+@pytest.mark.parametrize("odd", [False, True])
+def test_speeds_are_those_of_the_positions(odd: bool) -> None:
+    """Velocities read so are the differences of positions read so."""
+    import mujoco
+
+    seen, machine = mirror(odd, "mjcf")
+    seen.qpos[2], seen.qpos[3] = 2.0, 1.0
+    middle = [sum(pair) / 2 for pair in (machine.joints.front.thigh, machine.joints.front.calf)]
+    seen.qpos[7:] = [*middle, 0.0] * 4
+    seen.place()
+    rng = np.random.default_rng(1)
+    seen.data.qvel[:] = rng.normal(size=seen.original.model.nv)
+    mujoco.mj_forward(seen.original.model, seen.data)
+    seen.read()
+    before, speed, dt = seen.qpos.copy(), seen.qvel.copy(), 1e-6
+    mujoco.mj_integratePos(seen.original.model, seen.data.qpos, seen.data.qvel, dt)
+    mujoco.mj_forward(seen.original.model, seen.data)
+    seen.read()
+    np.testing.assert_allclose((seen.qpos - before)[:3] / dt, speed[:3], atol=1e-4)
+    np.testing.assert_allclose((seen.qpos - before)[7:] / dt, speed[6:], atol=1e-4)
+    spin = np.zeros(3)
+    mujoco.mju_subQuat(spin, seen.qpos[3:7], before[3:7])
+    np.testing.assert_allclose(spin / dt, speed[3:6], atol=1e-4)
+
+
+def test_masses_and_shapes_are_the_files() -> None:
+    seen, machine = mirror(True, "mjcf")
+    assert seen.original.model.body_mass.sum() == pytest.approx(machine.mass)
+    assert {"trunk", "FL_thigh", "RR_wheel", "terrain_0"} <= set(seen.original.labels)
+    assert seen.original.model.nu == 12 + 4
+
+
+def test_what_does_not_fit_is_refused() -> None:
+    text, _ = robot(False, "mjcf")
+    plan = sw.plan(CURB, "a1_wheeled")
+    with pytest.raises(InputError, match="model: is another robot"):
+        sw.rollout(plan, model=text)
+    with pytest.raises(InputError, match="model: "):
+        sw.rollout(plan, model="<mujoco/>")
+    with pytest.raises(InputError, match="cannot read"):
+        sw.rollout(plan, model="nowhere.xml")
+    text, machine = robot(False, "mjcf")
+    with pytest.raises(InputError, match=r"disturbance\.mass"):
+        sw.rollout(sw.plan(CURB, machine), model=text, disturbance={"mass": 0.1})
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("odd", "form"), [(False, "mjcf"), (True, "mjcf"), (True, "urdf")])
+def test_a_flight_is_climbed_by_the_original(odd: bool, form: str) -> None:
+    text, machine = robot(odd, form)
+    plan = sw.plan("single-stair-030", machine)
+    ours, theirs = sw.rollout(plan), sw.rollout(plan, model=text)
+    assert ours.success
+    assert theirs.success, theirs.reason
+    assert theirs.metrics.link_contacts == 0
+    assert theirs.id != ours.id
+    assert "FL_calf <- FL_calf_joint" in theirs.model
+    assert theirs.metrics.duration == pytest.approx(ours.metrics.duration, rel=0.1)
