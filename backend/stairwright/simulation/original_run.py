@@ -23,7 +23,8 @@ from .run import CONTROL_STEPS, Run
 Floats = NDArray[np.float64]
 # Deviations that change our own model of the robot or of the world round it.
 _OUR_MODEL = (
-    "mass", "com_x", "com_z", "payload", "friction_front", "friction_rear", "heading", "cross_slope",
+    "mass", "com_x", "com_z", "payload", "friction_front", "friction_rear", "heading",
+    "cross_slope",
 )  # fmt: skip
 
 
