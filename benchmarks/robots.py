@@ -142,7 +142,8 @@ def main() -> None:
         "knees",
     ]
     text = (
-        "# What each robot climbs\n\nMade by `python benchmarks/robots.py --write docs/robots.md`.\n\n"
+        "# What each robot climbs\n\n"
+        "Made by `python benchmarks/robots.py --write docs/robots.md`.\n\n"
         + (__doc__ or "").split("\n\n", 2)[2] + "\n" + table(head, rows) + "\n"
     )  # fmt: skip
     if options.write:
