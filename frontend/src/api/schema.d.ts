@@ -547,6 +547,27 @@ export interface components {
             calf?: components["schemas"]["Actuator"] | null;
             wheel: components["schemas"]["Actuator"];
         };
+        /**
+         * Binding
+         * @description The least margin, each taken against what it is a margin of, and where it is.
+         */
+        Binding: {
+            /**
+             * Quantity
+             * @enum {string}
+             */
+            quantity: "clearance" | "com" | "friction" | "torque" | "wheel_torque" | "joint_limit";
+            /**
+             * Value
+             * @description m, Nm, rad, or of the friction
+             */
+            value: number;
+            /**
+             * Progress
+             * @description [m]
+             */
+            progress: number;
+        };
         /** Body_import_robot */
         Body_import_robot: {
             /**
@@ -1015,6 +1036,22 @@ export interface components {
             rear: components["schemas"]["LegLimits"];
         };
         /**
+         * Knees
+         * @description Which way the knees bend in the plan of a robot whose knees bend both ways.
+         */
+        Knees: {
+            /**
+             * Front
+             * @enum {string}
+             */
+            front: "back" | "forward";
+            /**
+             * Rear
+             * @enum {string}
+             */
+            rear: "back" | "forward";
+        };
+        /**
          * LegLimits
          * @description Joint ranges of one leg pair [rad]. The sign of the calf's range says how the knee bends.
          */
@@ -1301,6 +1338,10 @@ export interface components {
              */
             solve_time: number;
             certificate?: components["schemas"]["Certificate"] | null;
+            /** @description where the robot's knees bend both ways */
+            knees?: components["schemas"]["Knees"] | null;
+            /** @description which margin is least */
+            binding?: components["schemas"]["Binding"] | null;
         };
         /**
          * PlanRequest
