@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from stairwright.robot.description import Robot
+from stairwright.robot.legs import Leg
 
 from .pair import Pair
 from .report import Notes
@@ -56,24 +57,43 @@ def note_differences(robot: Robot, known: Sequence[Robot], notes: Notes) -> None
         hips = [float(np.abs(np.subtract(a.hip, b.hip)).max()) for a, b in pairs]
         if max(*lengths, *hips) >= _SAME:
             continue
-        values = {}
-        for where, (a, b) in zip(("front", "rear"), pairs, strict=True):
-            for part in ("thigh", "calf", "wheel"):
-                mine, theirs = getattr(a, f"{part}_motor"), getattr(b, f"{part}_motor")
-                values[f"{where} {part} torque [Nm]"] = mine.torque, theirs.torque
-                values[f"{where} {part} speed [rad/s]"] = mine.speed, theirs.speed
-                values[f"{where} {part} mass [kg]"] = getattr(a, part).mass, getattr(b, part).mass
-        values["wheel radius [m]"] = robot.wheel.radius, other.wheel.radius
-        values["total mass [kg]"] = robot.mass, other.mass
-        for name, (mine, theirs) in values.items():
-            if abs(mine - theirs) > _DIFFERS * max(abs(mine), abs(theirs)):
+        remarks = [_contradictions(a, b, other.name) for a, b in pairs]
+        alike = [remark for remark in remarks[0] if remark in remarks[1]]
+        for remark in alike:
+            notes.warn(remark)
+        for where, own in zip(("front", "rear"), remarks, strict=True):
+            for remark in own:
+                if remark not in alike:
+                    notes.warn(f"{where} {remark}")
+        for name, mine, theirs in (
+            ("wheel radius [m]", robot.wheel.radius, other.wheel.radius),
+            ("total mass [kg]", robot.mass, other.mass),
+        ):
+            if _differ(mine, theirs):
                 notes.warn(f"{name}: {mine:.4g} here, {theirs:.4g} in the preset {other.name}")
-        for where, (a, b) in zip(("front", "rear"), pairs, strict=True):
-            for part in ("thigh", "calf"):
-                mine, theirs = getattr(a.limits, part), getattr(b.limits, part)
-                if np.abs(np.subtract(mine, theirs)).max() > _DIFFERS:
-                    notes.warn(f"{where} {part} range [rad]: {_range(mine)} here, {_range(theirs)} "
-                               f"in the preset {other.name}")  # fmt: skip
+
+
+def _contradictions(own: Leg, other: Leg, name: str) -> list[str]:
+    """What two sources tell unlike of a leg."""
+    found = []
+    for part in ("thigh", "calf", "wheel"):
+        mine, theirs = getattr(own, f"{part}_motor"), getattr(other, f"{part}_motor")
+        for what, a, b in (
+            ("torque [Nm]", mine.torque, theirs.torque),
+            ("speed [rad/s]", mine.speed, theirs.speed),
+            ("mass [kg]", getattr(own, part).mass, getattr(other, part).mass),
+        ):
+            if _differ(a, b):
+                found.append(f"{part} {what}: {a:.4g} here, {b:.4g} in the preset {name}")
+    for part in ("thigh", "calf"):
+        a, b = getattr(own.limits, part), getattr(other.limits, part)
+        if np.abs(np.subtract(a, b)).max() > _DIFFERS:
+            found.append(f"{part} range [rad]: {_range(a)} here, {_range(b)} in the preset {name}")
+    return found
+
+
+def _differ(mine: float, theirs: float) -> bool:
+    return abs(mine - theirs) > _DIFFERS * max(abs(mine), abs(theirs))
 
 
 def _range(ends: tuple[float, float]) -> str:
