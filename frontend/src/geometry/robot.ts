@@ -32,6 +32,8 @@ export interface Skeleton {
 const pair = (v: readonly number[]): Vec2 => [v[0]!, v[1]!];
 
 export function robotShape(file: RobotDocument): RobotShape {
+  const { leg, thigh, calf, wheel } = file.actuators;
+  const motors = [thigh ?? leg, calf ?? leg].flatMap((motor) => (motor ? [motor.torque] : []));
   return {
     name: file.name,
     trunk: { length: file.trunk.size[0]!, height: file.trunk.size[2]! },
@@ -39,11 +41,11 @@ export function robotShape(file: RobotDocument): RobotShape {
     thigh: file.thigh.length,
     calf: file.calf.length,
     wheel: file.wheel.radius,
-    limit: { leg: file.actuators.leg.torque, wheel: file.actuators.wheel.torque },
+    limit: { leg: Math.min(...motors), wheel: wheel.torque },
     collisionPoints: {
-      trunk: file.collision_points.trunk.map(pair),
-      thigh: file.collision_points.thigh,
-      calf: file.collision_points.calf,
+      trunk: file.collision_points?.trunk.map(pair) ?? [],
+      thigh: file.collision_points?.thigh ?? [],
+      calf: file.collision_points?.calf ?? [],
     },
   };
 }
