@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
+import socket
+import subprocess
+import sys
+import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import stairwright as sw
 from stairwright.errors import InputError
 from stairwright.studies import worker
-from stairwright.studies.batches import FIRST, MOST, TARGET, BatchSizes
+from stairwright.studies.batches import FIRST, LONGEST, MOST, TARGET, BatchSizes
 from stairwright.studies.cluster import ClusterEngine
 from stairwright.studies.dataset import grid_dataset
 from stairwright.studies.fill import fill_grid
+from stairwright.studies.keys import dask_settings, write_keys
 from stairwright.studies.serial import SerialEngine
 from stairwright.studies.store import ResultStore
 from stairwright.studies.study import prepared
@@ -100,13 +107,59 @@ def _deadly(document: bytes, engine: str, cells: list[int]) -> worker.Batch:
     return evaluate_batch(document, engine, cells)
 
 
+@pytest.mark.slow
+def test_a_cluster_of_ones_own_with_keys(
+    serial: ResultStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Dask's own programs, as docs/scale.md starts them; whoever has no keys stays out."""
+    write_keys(tmp_path)
+    settings = dask_settings(tmp_path)
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        address = f"tls://127.0.0.1:{probe.getsockname()[1]}"
+    dask = [sys.executable, "-m", "dask"]
+    port = address.rpartition(":")[2]
+    listening = ["--protocol", "tls", "--host", "127.0.0.1", "--port", port, "--no-dashboard"]
+    working = [address, "--nthreads", "1", "--nworkers", "2", "--no-dashboard"]
+    options: dict[str, Any] = {"env": os.environ | settings, "stderr": subprocess.DEVNULL}
+    commands = ([*dask, "scheduler", *listening], [*dask, "worker", *working])
+    programs = [subprocess.Popen(each, **options) for each in commands]
+    try:
+        give_up = time.monotonic() + 60
+        while _refused(int(port)) and time.monotonic() < give_up:
+            time.sleep(0.2)
+        with pytest.raises(InputError, match="cannot reach"):
+            sw.study(MAP, scheduler=address, store=tmp_path / "n.zarr")
+        code = (
+            "import json, sys, stairwright as sw\n"
+            "sw.study(json.loads(sys.argv[1]), scheduler=sys.argv[2], store=sys.argv[3])"
+        )
+        place = tmp_path / "k.zarr"
+        command = [sys.executable, "-c", code, json.dumps(MAP), address, str(place)]
+        subprocess.run(command, env=os.environ | settings, check=True, timeout=120)
+        assert identical(grid_dataset(serial), grid_dataset(ResultStore(place)))
+    finally:
+        for program in reversed(programs):  # workers whose scheduler is gone wait for it
+            program.terminate()
+            try:
+                program.wait(20)
+            except subprocess.TimeoutExpired:
+                program.kill()
+
+
+def _refused(port: int) -> bool:
+    with socket.socket() as probe:
+        return probe.connect_ex(("127.0.0.1", port)) != 0
+
+
 def test_batches_take_about_two_seconds() -> None:
     sizes = BatchSizes()
     assert sizes.next(1000, 2) == 1  # nothing is known yet
     sizes.learn(1, 0.05)
     assert sizes.next(10_000, 2) == round(FIRST / 0.05)
     sizes._begun -= 100
-    assert sizes.next(10_000, 2) == round(TARGET / 0.05)
+    assert sizes.next(10_000, 1) == round(TARGET / 0.05)
+    assert sizes.next(10**6, 1000) == round(LONGEST / 0.05)
     assert sizes.next(20, 2) == 5  # all end together
     sizes.typical = 1e-9
     assert sizes.next(10**6, 2) == MOST

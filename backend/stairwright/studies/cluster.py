@@ -110,7 +110,7 @@ class ClusterEngine:
                 where, how = self._address, configured_security()
             self._client = Client(where, security=how, timeout=CONNECT_LIMIT)
             self._client.register_plugin(dask_plugin())
-        except (OSError, RuntimeError, ValueError) as error:
+        except (OSError, RuntimeError, TypeError, ValueError) as error:
             why = str(error).split("\n")[0] or "no answer"
             if self._address is not None:
                 raise InputError(f"cannot reach {self._address}: {why}", ("scheduler",)) from error

@@ -99,6 +99,8 @@ def main() -> None:
         {
             "distributed.scheduler.allowed-failures": DEATHS,
             "distributed.worker.daemon": True,
+            "distributed.scheduler.http.routes": [],  # nobody looks at pages of ours
+            "distributed.worker.http.routes": [],
             "distributed.nanny.pre-spawn-environ.OPENBLAS_NUM_THREADS": 1,
         }
     )
@@ -113,7 +115,7 @@ def main() -> None:
         processes=True,
         host="127.0.0.1",
         security=security,
-        dashboard_address=None,
+        dashboard_address="127.0.0.1:0",
         silence_logs=50,
     ) as cluster:
         print(json.dumps({"address": cluster.scheduler_address, **told}), flush=True)

@@ -14,7 +14,7 @@ from .variables import Record
 
 Finished = Mapping[int, Record]  # cells by number
 Stopped = Callable[[], bool]
-BATCH = 1.0  # s between two batches
+FIRST, BATCH = 0.5, 2.0  # s between two batches: the first ones, the others
 
 
 class Engine(Protocol):
@@ -34,12 +34,13 @@ class SerialEngine:
         """See `Engine`."""
         questions = Questions(study)
         done: dict[int, Record] = {}
-        since = time.monotonic()
+        begun = since = time.monotonic()
         for cell in cells:
             if stopped():
                 break
             done[cell] = evaluate(questions, point(study, cell))
-            if time.monotonic() - since >= BATCH:
+            now = time.monotonic()
+            if now - since >= min(BATCH, max(FIRST, (now - begun) / 4)):
                 yield done
                 done, since = {}, time.monotonic()
         if done:

@@ -33,6 +33,8 @@ _MOST_CHUNKS = 64
 _SCHEMA = "stairwright/study-results/1"
 SUFFIX = ".zarr"
 
+_STATE_LAST = (*(name for name in VARIABLES if name != "state"), "state")
+
 Places = tuple[NDArray[np.intp], ...]
 
 
@@ -101,13 +103,14 @@ class ResultStore:
         return states
 
     def write(self, records: Mapping[int, Record]) -> None:
-        """Write down cells, by their numbers."""
+        """Write down cells that are pending, by their numbers."""
         if not records:
             return
         places = np.unravel_index(np.fromiter(records, np.int64), self.study.shape)
-        for name in (*(name for name in VARIABLES if name != "state"), "state"):
+        for name in _STATE_LAST:
             values = [record[name] for record in records.values()]
-            self._put(name, places, values)
+            if not all(VARIABLES[name].is_missing(value) for value in values):  # it is so already
+                self._put(name, places, values)
 
     def _put(self, name: str, places: Places, values: Sequence[Any]) -> None:
         dtype: Any = VARIABLES[name].dtype
@@ -141,9 +144,11 @@ class ResultStore:
         """Let failed cells be tried again; how many there were."""
         states = self.states
         failed = np.nonzero(states == FAILED)
-        if len(failed[0]):
-            self._arrays["state"].vindex[failed] = np.zeros(len(failed[0]), np.int32)
-        return len(failed[0])
+        count = len(failed[0])
+        if count:
+            for name in reversed(_STATE_LAST):
+                self._put(name, failed, [VARIABLES[name].missing] * count)
+        return count
 
     def adopt(self, other: ResultStore) -> int:
         """Take over the cells that another study of the family shares; how many they are."""
@@ -159,7 +164,7 @@ class ResultStore:
             return 0
         source = tuple(index[keep] for index in theirs)
         goal = tuple(index[keep] for index in ours)
-        for name in (*(name for name in VARIABLES if name != "state"), "state"):
+        for name in _STATE_LAST:
             self._arrays[name].vindex[goal] = other.read(name, source)
         return int(keep.sum())
 

@@ -43,6 +43,10 @@ class Variable:
         """The value of cells that have none."""
         return {"number": np.nan, "flag": False, "count": 0, "word": ""}[self.kind]
 
+    def is_missing(self, value: Any) -> bool:
+        """Whether this is how none is stored."""
+        return bool(value != value or value == self.missing)  # NaN differs from itself
+
     def fitted(self, value: Any) -> Any:
         """`value` as it is stored; None for none."""
         if value is None:
