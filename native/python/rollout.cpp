@@ -148,8 +148,11 @@ void bind_rollout(nb::module_& m) {
         }, nb::arg("first"), nb::arg("last"), nb::arg("looked"), nb::arg("loaded"), nb::arg("moving"), nb::arg("begun"), nb::arg("noise"),
            "Control steps; returns where it stopped to have contacts looked at, or `last`.")
         .def("diverged", &Rollout::diverged)
+        .def_prop_ro("stop", [](const Rollout& r) { return static_cast<int>(r.stop()); },
+                     "Why the robot has given up: 0 it has not, 1 no progress, 2 tilted.")
+        .def_prop_ro("stopped_at", &Rollout::stopped_at, "Since when [s].")
         .def_prop_ro("way", [](const Rollout& r) { return r.follower().way(); })
-        .def_prop_ro("target", [](const Rollout& r) { return row(r.follower().target()); }, nb::rv_policy::automatic)
+        .def_prop_ro("target", [](const Rollout& r) { return row(r.target()); }, nb::rv_policy::automatic)
         .def_prop_ro("score", [](const Rollout& r) { return r.score(); })
         .def_prop_ro("judged", &judged, nb::rv_policy::automatic,
                      "Rows (n, 15) of the estimator against the truth: time, errors of attitude, velocity, place x and z; NEES;\n"

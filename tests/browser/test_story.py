@@ -32,7 +32,7 @@ WATCH = """() => {
   };
   new MutationObserver(note).observe(app, { subtree: true, childList: true, attributes: true });
 }"""
-OUTCOMES = {"success", "fell", "stuck", "collided", "diverged", "timeout"}
+OUTCOMES = {"success", "fell", "stuck", "collided", "diverged", "timeout", "stopped"}
 
 
 def _rows(text: str) -> list[dict[str, str]]:

@@ -44,7 +44,7 @@ def _link(link: LinkForm) -> _core.Link:
 
 
 def _motor(actuator: Actuator) -> _core.Motor:
-    return _core.Motor(actuator.torque, actuator.speed)
+    return _core.Motor(actuator.torque, actuator.speed, actuator.armature)
 
 
 def _anticlockwise(points: list[tuple[float, float]]) -> NDArray[np.float64]:

@@ -18,7 +18,7 @@ from stairwright.robot.parts import optional
 from stairwright.terrain.profile import Terrain
 
 Floats = NDArray[np.float64]
-Outcome = Literal["success", "fell", "stuck", "collided", "diverged", "timeout"]
+Outcome = Literal["success", "fell", "stuck", "collided", "diverged", "timeout", "stopped"]
 
 
 def _as_array(value: Any) -> Floats:

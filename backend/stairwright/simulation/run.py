@@ -37,6 +37,11 @@ Floats = NDArray[np.float64]
 
 CONTROL_STEPS = 2  # physics steps per control step: 500 Hz
 SETTLE = 0.4  # s at rest before the plan starts and after it ends
+STANDS = 1.0  # s that a robot which gave up must stand
+STOPS = {  # why it gives up, see control/safe_stop.hpp
+    1: "the wheels did not follow the plan for 3 s",
+    2: "the trunk leant too far from the plan",
+}
 CHUNK = 125  # control steps between reports of progress
 _HUGE = 1e6  # stands for what is not finite, or overflowed on the way there
 _DIVERGED = (
@@ -185,8 +190,12 @@ class Run:
                 if settled * self.dt > SETTLE and (self._at_rest() or settled * self.dt > 2.0):
                     cause = ("arrived", "")
                     break
-            elif watch.stuck(now, self.way):
+            elif not self._stopping() and watch.stuck(now, self.way):
                 cause = ("stuck", "")
+                break
+            why = self._gave_up(now)
+            if why:
+                cause = ("stopped", why)
                 break
             if now > self.limit:
                 cause = ("timeout", "")
@@ -210,6 +219,15 @@ class Run:
         pitch_error, tilt = self.score[score.LAST_PITCH_ERROR], self.score[score.TILT]
         why = fallen(pitch_error, tilt, data.qpos[2], self.floor)
         return ("fell", why) if why else None
+
+    def _stopping(self) -> bool:
+        return self.native is not None and self.native.stop != 0
+
+    def _gave_up(self, now: float) -> str:
+        """Why the robot has stopped by itself, once it stands; empty before."""
+        if self.native is None or self.native.stop == 0 or now - self.native.stopped_at < STANDS:
+            return ""
+        return STOPS[self.native.stop] if self._at_rest() else ""
 
     def _native_steps(self, native: _core.Rollout, moving: bool) -> None:
         noise, at, looked = self.sensors.draws(CHUNK), 0, False

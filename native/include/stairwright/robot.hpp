@@ -26,6 +26,7 @@ struct Range {
 struct Motor {
     double torque = 0.0;  // Nm
     double speed = 0.0;   // rad/s
+    double armature = 0.0;  // rotor inertia, as the joint feels it [kg m^2]
 };
 
 struct Capsule {

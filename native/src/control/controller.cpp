@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "measurement.hpp"
+#include "stairwright/control/static_forces.hpp"
 
 #include "stairwright/whole.hpp"
 
@@ -151,6 +152,23 @@ Torques Controller::step(const RobotState& state, const Reference& target, doubl
         const double rolled = state.joint_rates[j] + state.joint_rates[j + 1] + state.joint_rates[j + 2] + m.pitch_rate;
         out[j + 2] = leg.wheel.radius * s.traction(force) + g.wheel_damping * (rate - rolled);
     }
+    return out;
+}
+
+Reference Controller::standing(const RobotState& state, const std::array<double, 4>& places) const {
+    const Measurement m = measure(robot_, mass_, state);
+    Reference out;
+    for (int pair = 0; pair < 2; ++pair) {
+        const int left = 2 * pair, right = left + 1;
+        out.value.wheels[pair] = 0.5 * (places[left] + places[right]);
+        for (int k = 0; k < 2; ++k)
+            out.value.joints[2 * pair + k] = 0.5 * (state.joints[3 * left + k] + state.joints[3 * right + k]);
+    }
+    out.value.pitch = m.pitch, out.value.com = m.com;
+    out.value.trunk = {state.position[0], state.position[2]};
+    const StaticForces rest = static_forces(path_, mass_ * kGravity, friction_, out.value.wheels, m.com);
+    out.forces = rest.force, out.friction_share = rest.friction_share;
+    for (int pair = 0; pair < 2; ++pair) out.lean[pair] = static_cast<double>(rest.lean[pair]);
     return out;
 }
 

@@ -136,7 +136,7 @@ void Estimator::see_legs(const Readings& readings, double dt) {
         const double rate = readings.joint_rates[3 * i] + readings.joint_rates[3 * i + 1] + readings.joint_rates[3 * i + 2] + rate_[1];
         w.rolled = leg.wheel.radius * rate * dt;
         // What spins the wheel up does not reach the ground.
-        const double spin_up = started_ ? leg.wheel.inertia * (rate - w.rate_now) / dt / leg.wheel.radius : 0.0;
+        const double spin_up = started_ ? (leg.wheel.inertia + leg.wheel_motor.armature) * (rate - w.rate_now) / dt / leg.wheel.radius : 0.0;
         w.traction += share * (f.traction - spin_up - w.traction);
         w.rate_now = rate;
         w.cruise += dt / (kCruiseTime + dt) * (leg.wheel.radius * rate - w.cruise);

@@ -47,9 +47,25 @@ Perceived Rollout::perceive(std::span<const double> noise) {
     return std::get<RobotSense>(perception_).perceive(truth(), torques_, dt_);
 }
 
+const control::Reference& Rollout::target(const Perceived& seen, bool moving, double time) {
+    if (safe_stop_.why() != control::Stop::none) return stand_;
+    const control::Reference& next = follower_.advance(controller_.places(), moving, dt_);
+    if (!seen.places) return next;
+    const auto [w, x, y, z] = seen.state.quaternion;
+    const double pitch = std::atan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y));
+    const double error = std::remainder(pitch - next.value.pitch, 2 * std::numbers::pi);
+    if (safe_stop_.watch(follower_.way(), moving && !follower_.arrived(), error, std::asin(std::clamp(2 * (y * z + w * x), -1.0, 1.0)), dt_) ==
+        control::Stop::none)
+        return next;
+    stopped_at_ = time;
+    stand_ = controller_.standing(seen.state, *seen.places);
+    stand_.progress = next.progress;
+    return stand_;
+}
+
 void Rollout::control(const Perceived& seen, bool moving, double time) {
     const RobotState state = truth();
-    const control::Reference& target = follower_.advance(controller_.places(), moving, dt_);
+    const control::Reference& target = this->target(seen, moving, time);
     const control::Torques wanted = controller_.step(seen.state, target, 0.0, seen.places);
     for (std::size_t i = 0; i < torques_.size(); ++i) torques_[i] += lag_ * (wanted[i] - torques_[i]);
     const control::Torques torques = control::limit_torques(controller_.robot(), std::span<const double, 12>(state.joint_rates), torques_);

@@ -77,6 +77,9 @@ class Controller {
     Torques step(const RobotState& state, const Reference& target, double yaw_rate = 0.0,
                  const std::optional<std::array<double, 4>>& places = {});
 
+    // To stand as the robot does at `state`, its wheels at `places`: still, with the forces that hold it there.
+    Reference standing(const RobotState& state, const std::array<double, 4>& places) const;
+
     const Robot& robot() const { return robot_; }
     const Forces& forces() const { return forces_; }
     // Arc length of each wheel on the wheel-centre curve, NaN before the first step [m].

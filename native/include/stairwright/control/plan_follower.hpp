@@ -22,6 +22,7 @@ class PlanFollower {
     const Reference& advance(const std::array<double, 4>& places, bool moving, double dt);
 
     double way() const { return way_; }    // m
+    bool arrived() const { return way_ >= start_ + step_ * static_cast<double>(rows_.size() - 1) - 1e-9; }
     double rate() const { return rate_; }  // m/s
     double lag() const { return lag_; }    // of the wheels behind the plan [m]
     const Reference& target() const { return target_; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stairwright/control/plan_follower.hpp"
+#include "stairwright/control/safe_stop.hpp"
 #include "stairwright/rollout/log.hpp"
 #include "stairwright/rollout/score.hpp"
 #include "stairwright/rollout/perception.hpp"
@@ -48,7 +49,15 @@ class Rollout {
     // Whether the state is not one to compute anything from: not finite, or beyond all reason.
     bool diverged() const;
 
+    // Why the robot has given up, and since when [s]; only one that senses by itself does.
+    control::Stop stop() const { return safe_stop_.why(); }
+    double stopped_at() const { return stopped_at_; }
+
     const control::PlanFollower& follower() const { return follower_; }
+    // What is asked for now.
+    const control::Reference& target() const {
+        return safe_stop_.why() == control::Stop::none ? follower_.target() : stand_;
+    }
     const Score& score() const { return score_; }
     const Log& log() const { return log_; }
     // Empty unless the robot senses by itself; as often as the log's samples.
@@ -58,6 +67,8 @@ class Rollout {
     RobotState truth() const;
     Perceived perceive(std::span<const double> noise);
     void control(const Perceived& seen, bool moving, double time);
+    // What to do now: go on with the plan, or stand where the robot gave up.
+    const control::Reference& target(const Perceived& seen, bool moving, double time);
 
     const mjModel_* model_;
     mjData_* data_;
@@ -67,6 +78,9 @@ class Rollout {
     double lag_;  // share of the wanted torque that acts after a control step
     control::Torques torques_{};
     std::vector<Judged> judged_;
+    control::SafeStop safe_stop_;
+    control::Reference stand_{};  // what is asked for after the stop
+    double stopped_at_ = 0.0;
     Log log_;
     Score score_;
     int substeps_;

@@ -1,0 +1,27 @@
+// When to give up: a robot that cannot go on shall stand where it is and say why, rather than fall.
+#pragma once
+
+#include "stairwright/control/controller.hpp"
+
+namespace stairwright::control {
+
+enum class Stop {
+    none = 0,
+    no_progress = 1,  // the plan has waited for the wheels for too long
+    tilted = 2,       // the trunk is far off its planned pitch, or leans sideways
+};
+
+class SafeStop {
+  public:
+    // One control step: the plan's way [m] and whether it is to advance, pitch against the plan's and roll [rad].
+    // Returns why to stop; once given, an answer stays.
+    Stop watch(double way, bool advancing, double pitch_error, double roll, double dt);
+
+    Stop why() const { return why_; }
+
+  private:
+    Stop why_ = Stop::none;
+    double best_ = -1e9, waited_ = 0.0;
+};
+
+}  // namespace stairwright::control
