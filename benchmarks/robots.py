@@ -16,8 +16,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from report import table
-
 import stairwright as sw
 from stairwright.terrain.stairs import ramp, stair
 
@@ -133,19 +131,14 @@ def main() -> None:
         for case, terrain, loaded in (*cases(robot), *searched(robot)):
             rows.append(tried(terrain, loaded, options.trials).row(name, case))
             print(rows[-1], flush=True)
-    head = [
-        "robot",
-        "case",
-        "planned, rollout",
-        "trials",
-        "least margin, or what stops it",
-        "knees",
-    ]
-    text = (
-        "# What each robot climbs\n\n"
-        "Made by `python benchmarks/robots.py --write docs/robots.md`.\n\n"
-        + (__doc__ or "").split("\n\n", 2)[2] + "\n" + table(head, rows) + "\n"
-    )  # fmt: skip
+    text = "\n".join([
+        "# What each robot climbs", "",
+        "Made by `python benchmarks/robots.py --write docs/robots.md`.", "",
+        (__doc__ or "").split("\n\n", 2)[2],
+        "| robot | case | planned, rollout | trials | least margin, or what stops it | knees |",
+        "|---|---|---|---|---|---|",
+        *(f"| {' | '.join(row)} |" for row in rows), "",
+    ])  # fmt: skip
     if options.write:
         options.write.write_text(text)
     else:
