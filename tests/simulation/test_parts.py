@@ -21,15 +21,9 @@ from stairwright.simulation.disturbance import Disturbance
 from stairwright.simulation.drive import drive
 from stairwright.simulation.governor import follower, track
 from stairwright.simulation.outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
+from stairwright.simulation.ranges import Ranges, draw, parse_ranges
 from stairwright.simulation.sensors import Sensors
-from stairwright.simulation.trials import (
-    Ranges,
-    clopper_pearson,
-    draw,
-    parse_ranges,
-    trials,
-    wilson,
-)
+from stairwright.simulation.trials import clopper_pearson, trials, wilson
 from stairwright.simulation.world import disturb_trunk, real_terrain
 from stairwright.terrain.wheel_path import wheel_path
 

@@ -5,58 +5,32 @@ from __future__ import annotations
 import math
 import os
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from multiprocessing import get_context
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from stairwright.arguments import MOST_SEED, as_friction, as_model, as_whole
 from stairwright.control.settings import ControllerSettings, parse_settings
 from stairwright.documents import Model, parse
-from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
 
 from .disturbance import Disturbance
+from .ranges import Ranges, draw, parse_ranges
 from .result import Outcome
 from .rollout import rollout
 from .run import runs_natively
 
-Bound = Annotated[float, Field(ge=-5.0, le=5.0)]
-Range = tuple[Bound, Bound]
 Job = tuple[int, Disturbance]  # seed and deviations
 
 MOST_TRIALS = 100_000
 MOST_WORKERS = 1024
+SUSPECT = 0.6  # of pairs of a failed and a good trial
 CONFIDENCE_Z = 1.959964  # two-sided 95 %
-
-
-class Ranges(Model):
-    """Ranges (low, high) from which each trial draws its deviations; see `Disturbance`."""
-
-    friction: Range = Field((-0.1, 0.1), description="added to the true friction")
-    mass: Range = Field((-0.1, 0.1), description="share of the robot's mass, on the trunk")
-    com_x: Range = Field((-0.02, 0.02), description="CoM forward [m]")
-    com_z: Range = Field((-0.02, 0.02), description="CoM up [m]")
-    height: Range = Field((-0.01, 0.01), description="added to the terrain's rise [m]")
-    noise: Range = Field((1.0, 1.0), description="sensor noise, in units of the sensors' own")
-    delay: Range = Field((0.004, 0.004), description="from sensing to torque [s]")
-
-    @model_validator(mode="after")
-    def _check_order(self) -> Ranges:
-        for name in type(self).model_fields:
-            low, high = getattr(self, name)
-            if low > high:
-                raise InputError(f"the low end {low:g} lies above the high end {high:g}", (name,))
-            for end in (low, high):
-                try:
-                    parse(Disturbance, {name: end})
-                except InputError as error:
-                    raise InputError(error.message, (name,)) from None
-        return self
 
 
 class Trial(Model):
@@ -87,6 +61,11 @@ class Trials(Model):
     wilson: tuple[float, float] = Field(description="95 % confidence interval of the rate")
     clopper_pearson: tuple[float, float] = Field(description="95 % interval, exact")
     outcomes: dict[str, int]
+    suspects: dict[str, float] = Field(
+        {},
+        description="deviations that are larger where trials failed: how often a failed one had "
+        "more of it than one that succeeded",
+    )
     trials: list[Trial]
 
 
@@ -94,7 +73,7 @@ def trials(
     plan: Plan | Mapping[str, Any],
     n: int = 100,
     seed: int = 0,
-    ranges: Mapping[str, Any] | Ranges | None = None,
+    ranges: str | Mapping[str, Any] | Ranges | None = None,
     workers: int | None = None,
     friction: float | None = None,
     controller: Mapping[str, Any] | ControllerSettings | None = None,
@@ -108,7 +87,8 @@ def trials(
         plan: What to carry out.
         n: Number of rollouts, 1..100,000.
         seed: Of the deviations and of each rollout's sensor noise.
-        ranges: Where the deviations come from, see `Ranges`.
+        ranges: Where the deviations come from, see `Ranges`; or a bundle by its name: usual,
+            laboratory, field.
         workers: How many share the work; as many as there are cores by default.
         friction: Nominal true friction; the plan's by default.
         controller: Settings by name, see `ControllerSettings`.
@@ -147,26 +127,28 @@ def trials(
         wilson=wilson(successes, n),
         clopper_pearson=clopper_pearson(successes, n),
         outcomes=dict(Counter(result.outcome for result in results)),
+        suspects=suspects(results),
         trials=results,
     )
 
 
-def parse_ranges(ranges: Mapping[str, Any] | Ranges | None) -> Ranges:
-    """Ranges with defaults filled in.
+def suspects(results: Sequence[Trial]) -> dict[str, float]:
+    """By deviation: how often a failed trial had more of it than one that succeeded.
 
-    Raises:
-        InputError: For an unknown name or a bad range.
+    The Mann-Whitney statistic over the product of the numbers, of sizes without sign; only what
+    stands out (above `SUSPECT`), the most striking first.
     """
-    return as_model(Ranges, ranges, "ranges")
-
-
-def draw(ranges: Ranges, n: int, seed: int) -> list[Disturbance]:
-    """`n` deviations, each uniform in its range."""
-    random = np.random.default_rng(seed)
-    names = list(Ranges.model_fields)
-    low, high = np.array([getattr(ranges, name) for name in names]).T
-    rows = random.uniform(low, high, (n, len(names)))
-    return [Disturbance(**dict(zip(names, map(float, row), strict=True))) for row in rows]
+    good = [trial.disturbance for trial in results if trial.outcome == "success"]
+    bad = [trial.disturbance for trial in results if trial.outcome != "success"]
+    found: dict[str, float] = {}
+    if not good or not bad:
+        return found
+    for name in Disturbance.model_fields:
+        a, b = (np.abs([getattr(one, name) for one in group]) for group in (bad, good))
+        more = np.mean(np.sign(a[:, None] - b[None, :]) / 2 + 0.5)
+        if more > SUSPECT:
+            found[name] = round(float(more), 3)
+    return dict(sorted(found.items(), key=lambda item: -item[1]))
 
 
 def wilson(successes: int, n: int) -> tuple[float, float]:

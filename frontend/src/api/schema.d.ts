@@ -503,13 +503,20 @@ export interface components {
              * @description viscous friction [Nm s/rad]
              */
             damping: number;
+            /**
+             * Continuous
+             * @description torque that it holds without end [Nm]
+             */
+            continuous?: number | null;
         };
         /**
          * Actuators
-         * @description Motors of the leg joints (thigh, calf) and of the wheels.
+         * @description Motors of the leg joints (`leg`, or `thigh` and `calf` where they differ) and the wheels.
          */
         Actuators: {
-            leg: components["schemas"]["Actuator"];
+            leg?: components["schemas"]["Actuator"] | null;
+            thigh?: components["schemas"]["Actuator"] | null;
+            calf?: components["schemas"]["Actuator"] | null;
             wheel: components["schemas"]["Actuator"];
         };
         /** Body_import_terrain */
@@ -633,6 +640,13 @@ export interface components {
              * @enum {string}
              */
             solver: "native" | "clarabel";
+            /**
+             * Sensing
+             * @description What the controller knows of its state. ideal: all of it, as the simulation has it. robot: what encoders, motor currents and an inertial sensor tell, by an estimator that knows the map (form contact, native solver)
+             * @default ideal
+             * @enum {string}
+             */
+            sensing: "ideal" | "robot";
             /**
              * Speed
              * @description Along the course; the plan's own timing if empty
@@ -760,6 +774,120 @@ export interface components {
              * @description Largest normal force of a wheel (eq 12); 1.3 times the robot's weight if empty
              */
             force_limit?: number | null;
+        };
+        /**
+         * Disturbance
+         * @description Deviations of one rollout from what the plan and the controller believe.
+         */
+        Disturbance: {
+            /**
+             * Friction
+             * @description added to the true friction
+             * @default 0
+             */
+            friction: number;
+            /**
+             * Friction Front
+             * @description added to that, at the front wheels
+             * @default 0
+             */
+            friction_front: number;
+            /**
+             * Friction Rear
+             * @description added to that, at the rear wheels
+             * @default 0
+             */
+            friction_rear: number;
+            /**
+             * Mass
+             * @description share of the robot's mass, on the trunk
+             * @default 0
+             */
+            mass: number;
+            /**
+             * Payload
+             * @description on top of the trunk's middle [kg]
+             * @default 0
+             */
+            payload: number;
+            /**
+             * Com X
+             * @description the robot's CoM moves forward [m]
+             * @default 0
+             */
+            com_x: number;
+            /**
+             * Com Z
+             * @description the robot's CoM moves up [m]
+             * @default 0
+             */
+            com_z: number;
+            /**
+             * Height
+             * @description added to the terrain's rise [m]
+             * @default 0
+             */
+            height: number;
+            /**
+             * Steps
+             * @description each rise or descent is off by at most this, at random [m]
+             * @default 0
+             */
+            steps: number;
+            /**
+             * Faces
+             * @description each face is moved along by at most this, at random [m]
+             * @default 0
+             */
+            faces: number;
+            /**
+             * Heading
+             * @description the robot starts turned to the left of the course [rad]
+             * @default 0
+             */
+            heading: number;
+            /**
+             * Cross Slope
+             * @description the terrain rises to the left [rad]
+             * @default 0
+             */
+            cross_slope: number;
+            /**
+             * Start X
+             * @description the robot believes to start farther ahead than it does [m]
+             * @default 0
+             */
+            start_x: number;
+            /**
+             * Odometry
+             * @description share by which a way seems longer than it is
+             * @default 0
+             */
+            odometry: number;
+            /**
+             * Pitch Bias
+             * @description added to the pitch: the IMU is mounted pitched [rad]
+             * @default 0
+             */
+            pitch_bias: number;
+            /**
+             * Noise
+             * @description sensor noise, in units of the sensors' own
+             * @default 0
+             */
+            noise: number;
+            /**
+             * Delay
+             * @description from sensing to torque [s]
+             * @default 0
+             */
+            delay: number;
+            /**
+             * Motor Bandwidth
+             * @description of the torques [Hz]; 0: they act at once
+             * @default 0
+             */
+            motor_bandwidth: number;
         };
         /**
          * ExportFormat
@@ -943,12 +1071,14 @@ export interface components {
         };
         /**
          * Link
-         * @description A thigh or a calf: a capsule from its upper joint to its lower one.
+         * @description A thigh or a calf: its frame sits in its upper joint; at angle 0 the lower one is below it.
+         *
+         *     A bent shank is one whose capsules leave that line.
          */
         Link: {
             /**
              * Length
-             * @description [m]
+             * @description from joint to joint [m]
              */
             length: number;
             /**
@@ -963,14 +1093,41 @@ export interface components {
             mass: number;
             /**
              * Com
-             * @description mass centre as a fraction of the length
+             * @description mass centre: a fraction of the length, or (x, z) in the link's frame [m]
              */
-            com: number;
+            com: number | number[];
             /**
              * Inertia
              * @description Ixx, Iyy, Izz about the mass centre [kg m^2]
              */
             inertia: number[];
+            /**
+             * Shape
+             * @description capsules; one from joint to joint if empty
+             * @default []
+             */
+            shape: components["schemas"]["LinkShape"][];
+        };
+        /**
+         * LinkShape
+         * @description A capsule of a link that is not one straight capsule from joint to joint.
+         */
+        LinkShape: {
+            /**
+             * Start
+             * @description (x, z) in the link's frame [m]
+             */
+            start: number[];
+            /**
+             * End
+             * @description (x, z) in the link's frame [m]
+             */
+            end: number[];
+            /**
+             * Radius
+             * @description [m]
+             */
+            radius: number;
         };
         /**
          * Margins
@@ -1073,6 +1230,42 @@ export interface components {
              * @description simulated time per wall-clock time
              */
             real_time_factor: number;
+        };
+        /**
+         * Outline
+         * @description A convex piece of the trunk, seen from the side and extruded along y.
+         */
+        Outline: {
+            /**
+             * Points
+             * @description convex, (x, z) in the trunk frame [m]
+             */
+            points: number[][];
+            /**
+             * Width
+             * @description along y [m]
+             */
+            width: number;
+        };
+        /**
+         * Payload
+         * @description A load that is fixed to the trunk.
+         */
+        Payload: {
+            /**
+             * Mass
+             * @description [kg]
+             */
+            mass: number;
+            /**
+             * Place
+             * @description (x, z) in the trunk frame [m]
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            place: number[];
         };
         /**
          * Plan
@@ -1367,16 +1560,26 @@ export interface components {
             slope: number;
         };
         /**
+         * RearLegs
+         * @description What the rear legs have unlike the front ones.
+         */
+        RearLegs: {
+            thigh?: components["schemas"]["Link"] | null;
+            calf?: components["schemas"]["Link"] | null;
+            wheel?: components["schemas"]["Wheel"] | null;
+            actuators?: components["schemas"]["Actuators"] | null;
+        };
+        /**
          * Robot
-         * @description A wheel-legged robot (``stairwright/robot/1``).
+         * @description A wheel-legged robot (``stairwright/robot/2``; ``/1`` has fewer fields, see `_NEW_IN_2`).
          */
         Robot: {
             /**
              * Schema
-             * @default stairwright/robot/1
-             * @constant
+             * @default stairwright/robot/2
+             * @enum {string}
              */
-            schema: "stairwright/robot/1";
+            schema: "stairwright/robot/1" | "stairwright/robot/2";
             /** Name */
             name: string;
             /**
@@ -1385,19 +1588,42 @@ export interface components {
              */
             description: string;
             /**
+             * Source
+             * @description where the numbers are from
+             * @default
+             */
+            source: string;
+            /**
+             * Assumed
+             * @description numbers that nobody publishes, and what was taken
+             * @default []
+             */
+            assumed: string[];
+            /**
              * Nominal Height
              * @description trunk centre above the ground, standing [m]
              */
             nominal_height: number;
             trunk: components["schemas"]["Trunk"];
+            payload?: components["schemas"]["Payload"] | null;
             hips: components["schemas"]["Hips"];
             thigh: components["schemas"]["Link"];
             calf: components["schemas"]["Link"];
             wheel: components["schemas"]["Wheel"];
+            /** @description where the rear legs differ */
+            rear?: components["schemas"]["RearLegs"] | null;
             joints: components["schemas"]["Joints"];
+            /**
+             * Abduction
+             * @description angle at which the abduction joints are locked [rad]
+             * @default 0
+             */
+            abduction: number;
             actuators: components["schemas"]["Actuators"];
-            gains: components["schemas"]["Gains"];
-            collision_points: components["schemas"]["CollisionPoints"];
+            /** @description from masses and motors if empty */
+            gains?: components["schemas"]["Gains"] | null;
+            /** @description 25 and more if empty */
+            collision_points?: components["schemas"]["CollisionPoints"] | null;
             /**
              * Joint Names
              * @description what the robot's own software calls its joints, by our names (FL_thigh ... RR_wheel); used in ROS messages and URDF
@@ -1448,7 +1674,7 @@ export interface components {
              * Outcome
              * @enum {string}
              */
-            outcome: "success" | "fell" | "stuck" | "collided" | "diverged" | "timeout";
+            outcome: "success" | "fell" | "stuck" | "collided" | "diverged" | "timeout" | "stopped";
             /**
              * Reason
              * @description one sentence: what happened, where and when
@@ -1517,6 +1743,8 @@ export interface components {
             controller?: {
                 [key: string]: boolean | string | (number | null);
             } | null;
+            /** @description how the real world differs from what plan and controller believe */
+            disturbance?: components["schemas"]["Disturbance"] | null;
             /**
              * Seed
              * @default 0
@@ -1856,9 +2084,25 @@ export interface components {
             mass: number;
             /**
              * Inertia
-             * @description Ixx, Iyy, Izz about the centre [kg m^2]
+             * @description Ixx, Iyy, Izz about the mass centre [kg m^2]
              */
             inertia: number[];
+            /**
+             * Com
+             * @description mass centre from the trunk point [m]
+             * @default [
+             *       0,
+             *       0,
+             *       0
+             *     ]
+             */
+            com: number[];
+            /**
+             * Outline
+             * @description what may touch the terrain; the box if empty
+             * @default []
+             */
+            outline: components["schemas"]["Outline"][];
         };
         /**
          * Wheel
@@ -1885,6 +2129,17 @@ export interface components {
              * @description Ixx, Iyy, Izz about the centre [kg m^2]
              */
             inertia: number[];
+            /**
+             * Friction
+             * @description most that the tyre gives on any terrain
+             */
+            friction?: number | null;
+            /**
+             * Rolling Resistance
+             * @description share of the load that opposes rolling
+             * @default 0
+             */
+            rolling_resistance: number;
         };
         /**
          * FieldError
