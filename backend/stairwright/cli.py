@@ -53,6 +53,16 @@ def parser() -> argparse.ArgumentParser:
         "--controller", action="append", default=[], metavar="NAME=VALUE", help="a setting"
     )
     rollout.add_argument(
+        "--disturbance",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="how the real world differs from what is believed",
+    )
+    rollout.add_argument(
+        "--world", metavar="NAME", help="what trials deviate by: usual, laboratory or field"
+    )
+    rollout.add_argument(
         "--trials", type=int, metavar="N", help="N times in slightly different worlds"
     )
     rollout.add_argument(

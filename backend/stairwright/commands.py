@@ -54,13 +54,15 @@ def rollout_command(given: Arguments) -> str | None:
         return _obstacle(plan) or "the plan has no poses to carry out"
     from .simulation.rollout import rollout
 
-    controller = _settings(given.controller, "controller")
+    if given.world is not None:
+        raise InputError("is for trials; use --disturbance for one rollout", ("world",))
     run = rollout(
         plan,
         friction=given.friction,
-        controller=controller,
+        controller=_settings(given.controller, "controller"),
         seed=given.seed,
         model=given.model,
+        disturbance=_settings(given.disturbance, "disturbance"),
     )
     if given.output:
         run.save(given.output)
@@ -78,12 +80,15 @@ def _trials(given: Arguments) -> str | None:
     plan = _plan_or_file(given)
     if not plan.executable:
         return _obstacle(plan) or "the plan has no poses to carry out"
+    if given.disturbance:
+        raise InputError("is for one rollout; use --world for trials", ("disturbance",))
     from .simulation.trials import trials
 
     made = trials(
         plan,
         n=given.trials,
         seed=given.seed,
+        bundle=given.world,
         workers=given.workers,
         friction=given.friction,
         controller=_settings(given.controller, "controller"),

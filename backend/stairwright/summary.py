@@ -66,13 +66,15 @@ def _margins(plan: Plan) -> str:
 
 def of_trials(made: Trials) -> str:
     """How many succeeded, how sure that is, and what became of the others."""
-    low, high = made.wilson
+    low, high = made.clopper_pearson
+    suspects = ", ".join(f"{name} {share:.0%}" for name, share in made.suspects.items())
     outcomes = ", ".join(f"{count} {name}" for name, count in sorted(made.outcomes.items()))
     return columns(
         [
             ("trials", f"{made.successes} of {made.count} succeeded ({made.rate:.1%})"),
-            ("95 % interval", f"{low:.1%} to {high:.1%} (Wilson)"),
+            ("95 % interval", f"{low:.1%} to {high:.1%} (Clopper-Pearson)"),
             ("outcomes", outcomes),
+            *([("suspects", suspects)] if suspects else []),
             ("worst pitch", _degrees(max(trial.pitch_error_max for trial in made.trials))),
         ]
     )

@@ -14,6 +14,7 @@ NB_MODULE(_core, m) {
     bind_smoothing(m);
     bind_poses(m);
     bind_control(m);
+    bind_estimation(m);
     bind_rollout(m);
     bind_lattice(m);
     bind_lattice_sweeps(m);

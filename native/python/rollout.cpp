@@ -75,32 +75,6 @@ auto judged(const Rollout& run) {
     return give(std::move(out), {count, kJudgedWidth});
 }
 
-void bind_noise(nb::module_& m) {
-    using estimation::Noise;
-    nb::class_<Noise>(m, "EstimatorNoise", "Standard deviations that the estimator counts on, see estimation/estimator.hpp.")
-        .def(nb::init<>())
-        .def_rw("start_place", &Noise::start_place)
-        .def_rw("start_height", &Noise::start_height)
-        .def_rw("start_tilt", &Noise::start_tilt)
-        .def_rw("start_heading", &Noise::start_heading)
-        .def_rw("start_gyro_bias", &Noise::start_gyro_bias)
-        .def_rw("start_force_bias", &Noise::start_force_bias)
-        .def_rw("scale", &Noise::scale)
-        .def_rw("gyro", &Noise::gyro)
-        .def_rw("specific_force", &Noise::specific_force)
-        .def_rw("gyro_bias", &Noise::gyro_bias)
-        .def_rw("force_bias", &Noise::force_bias)
-        .def_rw("map_along", &Noise::map_along)
-        .def_rw("map_height", &Noise::map_height)
-        .def_rw("place", &Noise::place)
-        .def_rw("rolling", &Noise::rolling)
-        .def_rw("aside", &Noise::aside)
-        .def_rw("off_face", &Noise::off_face)
-        .def_rw("place_lasts", &Noise::place_lasts)
-        .def_rw("rolling_lasts", &Noise::rolling_lasts)
-        .def_rw("force", &Noise::force);
-}
-
 void bind_perception(nb::module_& m) {
     nb::class_<SensorModel>(m, "IdealSense", "The whole state, with noise and late; what is believed may be wrong all the time.")
         .def("__init__", [](SensorModel* self, std::size_t delay_steps, double start, double offset, double scale, double pitch) {
@@ -121,7 +95,6 @@ void bind_perception(nb::module_& m) {
 
 void bind_rollout(nb::module_& m) {
     bind_follower(m);
-    bind_noise(m);
     bind_perception(m);
     nb::class_<Score>(m, "Score")
         .def_ro("pitch_error_max", &Score::pitch_error_max)

@@ -21,15 +21,9 @@ from stairwright.simulation.disturbance import Disturbance
 from stairwright.simulation.drive import drive
 from stairwright.simulation.governor import follower, track
 from stairwright.simulation.outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
+from stairwright.simulation.ranges import Ranges, chosen_ranges, draw
 from stairwright.simulation.sensors import Sensors
-from stairwright.simulation.trials import (
-    Ranges,
-    clopper_pearson,
-    draw,
-    parse_ranges,
-    trials,
-    wilson,
-)
+from stairwright.simulation.trials import clopper_pearson, trials, wilson
 from stairwright.simulation.world import disturb_trunk, real_terrain
 from stairwright.terrain.wheel_path import wheel_path
 
@@ -229,7 +223,7 @@ def test_draws_are_seeded_and_in_range() -> None:
     assert first != draw(ranges, 50, 2)
     assert all(-0.05 <= d.friction <= 0.0 and d.delay == 0.004 for d in first)
     with pytest.raises(InputError):
-        parse_ranges({"friction": (0.1, -0.1)})
+        chosen_ranges({"friction": (0.1, -0.1)})
 
 
 def test_trials_report() -> None:

@@ -11,6 +11,7 @@ from stairwright.documents import Model
 from stairwright.export.table import Kind as Exported
 from stairwright.planning.plan import Method, Plan
 from stairwright.robot.description import Robot
+from stairwright.simulation.disturbance import Disturbance
 from stairwright.terrain.generation import Friction, Name
 from stairwright.terrain.profile import Terrain
 
@@ -114,6 +115,9 @@ class RolloutRequest(Model):
     )
     controller: Controller = Field(
         None, description="controller settings by name, see GET /settings"
+    )
+    disturbance: Disturbance | None = Field(
+        None, description="how the real world differs from what plan and controller believe"
     )
     seed: int = Field(0, strict=True, ge=0, le=MOST_SEED)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -79,6 +79,7 @@ class RolloutQuestion:
     friction: float | None
     controller: Mapping[str, Any]
     seed: int
+    disturbance: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def restored(cls, data: Mapping[str, Any]) -> RolloutQuestion:
@@ -93,18 +94,21 @@ class RolloutQuestion:
                 source = PlanQuestion.restored(data["ask"])
             else:
                 source = parse(Plan, data["plan"]) if "plan" in data else data["plan_digest"]
-            return cls(source, data["friction"], data["controller"], data["seed"])
+            deviations = data.get("disturbance", {})
+            return cls(source, data["friction"], data["controller"], data["seed"], deviations)
         except KeyError as error:
             raise InputError("is missing", (str(error.args[0]),)) from None
 
     @cached_property
     def data(self) -> dict[str, Any]:
         """As plain data, for a worker."""
-        data = {
+        data: dict[str, Any] = {
             "friction": self.friction,
             "controller": dict(self.controller),
             "seed": self.seed,
         }
+        if self.disturbance:
+            data["disturbance"] = dict(self.disturbance)
         if isinstance(self.source, PlanQuestion):
             return {**data, "ask": self.source.data}
         if isinstance(self.source, Plan):

@@ -94,9 +94,9 @@ def _keep_plan(plan: Plan, artefacts: str | None) -> Product:
 def simulate(question: Question, artefacts: str, gauge_path: str, live_path: str) -> Product:
     """Roll a plan out.
 
-    `question` has friction, controller and seed, and either the plan's digest as ``plan_digest``,
-    or the whole ``plan``, or what `solve` takes as ``ask``. The series goes to the file at
-    `live_path` while it grows.
+    `question` has friction, controller, seed and perhaps a disturbance, and the plan's digest
+    as ``plan_digest``, the whole ``plan``, or what `solve` takes as ``ask``. The series goes to
+    the file at `live_path` while it grows.
 
     Raises:
         InputError: If a value is bad or the plan has nothing that could be carried out.
@@ -117,6 +117,7 @@ def simulate(question: Question, artefacts: str, gauge_path: str, live_path: str
         friction=question["friction"],
         controller=question["controller"] or None,
         seed=question["seed"],
+        disturbance=question.get("disturbance"),
         progress=progress,
         observe=Broadcast(live_path),
     )

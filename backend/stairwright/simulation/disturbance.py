@@ -26,16 +26,22 @@ class Disturbance(Model):
     com_x: float = _field(-0.2, 0.2, "the robot's CoM moves forward [m]")
     com_z: float = _field(-0.2, 0.2, "the robot's CoM moves up [m]")
     height: float = _field(-0.2, 0.2, "added to the terrain's rise [m]")
-    steps: float = _field(0.0, 0.1, "each rise or descent is off by at most this, at random [m]")
-    faces: float = _field(0.0, 0.1, "each face is moved along by at most this, at random [m]")
+    step_height_error: float = _field(
+        0.0, 0.1, "each rise or descent is off by at most this, at random [m]"
+    )
+    face_place_error: float = _field(
+        0.0, 0.1, "each face is moved along by at most this, at random [m]"
+    )
     heading: float = _field(-0.5, 0.5, "the robot starts turned to the left of the course [rad]")
     cross_slope: float = _field(-0.3, 0.3, "the terrain rises to the left [rad]")
-    start_x: float = _field(-0.2, 0.2, "the robot believes to start farther ahead than it does [m]")
-    odometry: float = _field(-0.2, 0.2, "share by which a way seems longer than it is")
+    x_offset: float = _field(
+        -0.2, 0.2, "the robot believes to start farther ahead than it does [m]"
+    )
+    odometry_scale: float = _field(-0.2, 0.2, "share by which a way seems longer than it is")
     pitch_bias: float = _field(-0.2, 0.2, "added to the pitch: the IMU is mounted pitched [rad]")
     noise: float = _field(0.0, 20.0, "sensor noise, in units of the sensors' own")
     delay: float = _field(0.0, 0.1, "from sensing to torque [s]")
-    motor_bandwidth: float = _field(0.0, 500.0, "of the torques [Hz]; 0: they act at once")
+    bandwidth: float = _field(0.0, 500.0, "of the torques [Hz]; 0: they act at once")
 
 
 def parse_disturbance(value: Mapping[str, Any] | Disturbance | None) -> Disturbance:

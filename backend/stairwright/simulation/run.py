@@ -124,7 +124,7 @@ class Run:
         controller = native_controller(self.robot, self.path, self.plan.friction, self.settings)
         model, data = int(self.model._address), int(self.data._address)  # noqa: SLF001
         line = follower(self.track, self.settings.leash)
-        bandwidth = self.disturbance.motor_bandwidth
+        bandwidth = self.disturbance.bandwidth
         perception = self._perception()
         return _core.Rollout(
             model, data, controller, line, perception, bandwidth, every, CONTROL_STEPS
@@ -136,7 +136,7 @@ class Run:
         late = len(self.sensors.history) - 1
         if self.settings.sensing == "ideal":
             return _core.IdealSense(
-                late, start.x_c, deviation.start_x, deviation.odometry, deviation.pitch_bias
+                late, start.x_c, deviation.x_offset, deviation.odometry_scale, deviation.pitch_bias
             )
         return _core.RobotSense(
             self.robot.native,
@@ -144,7 +144,7 @@ class Run:
             start=(start.x_c, start.z_c),
             pitch=start.pitch,
             noise=max(1.0, deviation.noise),  # real sensors have it anyway
-            wheel_scale=deviation.odometry,
+            wheel_scale=deviation.odometry_scale,
             tilt=deviation.pitch_bias,
             delay_steps=late,
             seed=self.seed,
@@ -155,7 +155,7 @@ class Run:
         pose = self.plan.poses[0]
         front, rear = list(pose.q[:2]), list(pose.q[2:])
         qpos = self.data.qpos
-        qpos[:3] = pose.x_c - self.disturbance.start_x, 0.0, pose.z_c
+        qpos[:3] = pose.x_c - self.disturbance.x_offset, 0.0, pose.z_c
         qpos[3:7] = math.cos(pose.pitch / 2), 0.0, math.sin(pose.pitch / 2), 0.0
         qpos[7:] = [*front, 0.0, *front, 0.0, *rear, 0.0, *rear, 0.0]
         mujoco.mj_forward(self.model, self.data)
@@ -312,7 +312,11 @@ class Run:
         end = np.array(self.plan.poses[-1].wheels)[[0, 0, 1, 1]]
         start = np.array(self.plan.poses[0].wheels)[[0, 0, 1, 1]]
         way = np.abs(end[:, 0] - start[:, 0])
-        lost = abs(deviation.start_x) + deviation.faces + abs(deviation.odometry) * way
+        lost = (
+            abs(deviation.x_offset)
+            + deviation.face_place_error
+            + abs(deviation.odometry_scale) * way
+        )
         off = np.maximum(0.0, np.abs(x - end[:, 0]) - lost)
         real = wheel_path(self.terrain, self.robot.wheel.radius)
         places = np.column_stack([x, z])

@@ -55,8 +55,8 @@ class Sensors:
         """Measured `qpos` (19,) and `qvel` (18,)."""
         out, wrong = (np.empty(19), np.empty(18)), self.disturbance
         qpos = qpos.copy()
-        qpos[0] += wrong.start_x
-        qpos[0] += wrong.odometry * (qpos[0] - self.start)
+        qpos[0] += wrong.x_offset
+        qpos[0] += wrong.odometry_scale * (qpos[0] - self.start)
         w, x, y, z = qpos[3:7]
         c, s = math.cos(wrong.pitch_bias / 2), math.sin(wrong.pitch_bias / 2)
         qpos[3:7] = w * c - y * s, x * c - z * s, y * c + w * s, z * c + x * s

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from multiprocessing import get_context
@@ -20,7 +20,7 @@ from stairwright.planning.plan import Plan
 from stairwright.resources import all_cores
 
 from .disturbance import Disturbance
-from .ranges import Ranges, parse_ranges
+from .ranges import Ranges, chosen_ranges, draw
 from .result import Outcome
 from .rollout import rollout
 from .run import runs_natively
@@ -29,6 +29,7 @@ Job = tuple[int, Disturbance]  # seed and deviations
 
 MOST_TRIALS = 100_000
 MOST_WORKERS = 1024
+SUSPECT = 0.6  # of pairs of a failed and a good trial
 CONFIDENCE_Z = 1.959964  # two-sided 95 %
 
 
@@ -60,6 +61,11 @@ class Trials(Model):
     wilson: tuple[float, float] = Field(description="95 % confidence interval of the rate")
     clopper_pearson: tuple[float, float] = Field(description="95 % interval, exact")
     outcomes: dict[str, int]
+    suspects: dict[str, float] = Field(
+        {},
+        description="deviations that are larger where trials failed: how often a failed one had "
+        "more of it than one that succeeded",
+    )
     trials: list[Trial]
 
 
@@ -72,6 +78,7 @@ def trials(
     friction: float | None = None,
     controller: Mapping[str, Any] | ControllerSettings | None = None,
     progress: Callable[[float], None] | None = None,
+    bundle: str | None = None,
 ) -> Trials:
     """Roll `plan` out `n` times under random deviations.
 
@@ -86,6 +93,7 @@ def trials(
         friction: Nominal true friction; the plan's by default.
         controller: Settings by name, see `ControllerSettings`.
         progress: Called with the share done, 0..1; may raise `Cancelled`.
+        bundle: Instead of `ranges` the name of some: usual, laboratory or field.
 
     Raises:
         InputError: If an argument is bad.
@@ -96,7 +104,7 @@ def trials(
         as_whole(seed, 0, MOST_SEED - MOST_TRIALS, "seed"),
     )
     workers = all_cores() if workers is None else as_whole(workers, 1, MOST_WORKERS, "workers")
-    settings, limits = parse_settings(controller), parse_ranges(ranges)
+    settings, limits = parse_settings(controller), chosen_ranges(ranges, bundle)
     nominal = plan.friction if friction is None else as_friction(friction)
     draws = draw(limits, n, seed)
     jobs = [(seed + i, deviation) for i, deviation in enumerate(draws)]
@@ -120,17 +128,28 @@ def trials(
         wilson=wilson(successes, n),
         clopper_pearson=clopper_pearson(successes, n),
         outcomes=dict(Counter(result.outcome for result in results)),
+        suspects=suspects(results),
         trials=results,
     )
 
 
-def draw(ranges: Ranges, n: int, seed: int) -> list[Disturbance]:
-    """`n` deviations, each uniform in its range."""
-    random = np.random.default_rng(seed)
-    names = list(Ranges.model_fields)
-    low, high = np.array([getattr(ranges, name) for name in names]).T
-    rows = random.uniform(low, high, (n, len(names)))
-    return [Disturbance(**dict(zip(names, map(float, row), strict=True))) for row in rows]
+def suspects(results: Sequence[Trial]) -> dict[str, float]:
+    """By deviation: how often a failed trial had more of it than one that succeeded.
+
+    The Mann-Whitney statistic over the product of the numbers, of sizes without sign; only what
+    stands out (above `SUSPECT`), the most striking first.
+    """
+    good = [trial.disturbance for trial in results if trial.outcome == "success"]
+    bad = [trial.disturbance for trial in results if trial.outcome != "success"]
+    found: dict[str, float] = {}
+    if not good or not bad:
+        return found
+    for name in Disturbance.model_fields:
+        a, b = (np.abs([getattr(one, name) for one in group]) for group in (bad, good))
+        more = np.mean(np.sign(a[:, None] - b[None, :]) / 2 + 0.5)
+        if more > SUSPECT:
+            found[name] = round(float(more), 3)
+    return dict(sorted(found.items(), key=lambda item: -item[1]))
 
 
 def wilson(successes: int, n: int) -> tuple[float, float]:

@@ -88,7 +88,7 @@ def real_terrain(terrain: Terrain, deviation: Disturbance, seed: int) -> Terrain
     rise = float(np.ptp(z))
     if deviation.height != 0.0 and rise >= 1e-6:
         z = z[0] + max(0.0, 1.0 + deviation.height / rise) * (z - z[0])
-    if deviation.steps != 0.0 or deviation.faces != 0.0:
+    if deviation.step_height_error != 0.0 or deviation.face_place_error != 0.0:
         random = np.random.default_rng([seed, _TERRAIN_STREAM])
         x, z = _with_errors(x, z, deviation, random)
     if np.array_equal(np.column_stack([x, z]), points):
@@ -122,13 +122,13 @@ def _with_errors(
             lifted[first : stretch + 1] = level
             before = x[first] + at
             continue
-        wanted = deviation.faces * random.uniform(-1.0, 1.0)
+        wanted = deviation.face_place_error * random.uniform(-1.0, 1.0)
         # A face does not reach past the ends of the treads beside it.
         following = np.flatnonzero(steep[stretch:])
         after = x[stretch + following[0]] if len(following) else x[-1]
         room = (0.4 * (x[first] - before), 0.4 * (after - x[stretch]))
         at = float(np.clip(wanted, -max(room[0], 0.0), max(room[1], 0.0)))
-        level += deviation.steps * random.uniform(-1.0, 1.0)
+        level += deviation.step_height_error * random.uniform(-1.0, 1.0)
         moved[first : stretch + 1] = at
         shares = np.linspace(0.0, 1.0, stretch + 1 - first)
         old = lifted[first]

@@ -710,6 +710,13 @@ export interface components {
              */
             solver: "native" | "clarabel";
             /**
+             * Sensing
+             * @description What the controller knows of its state. ideal: all of it, as the simulation has it. robot: what encoders, motor currents and an inertial sensor tell, by an estimator that knows the map (form contact, native solver)
+             * @default ideal
+             * @enum {string}
+             */
+            sensing: "ideal" | "robot";
+            /**
              * Speed
              * @description Along the course; the plan's own timing if empty
              */
@@ -836,6 +843,120 @@ export interface components {
              * @description Largest normal force of a wheel (eq 12); 1.3 times the robot's weight if empty
              */
             force_limit?: number | null;
+        };
+        /**
+         * Disturbance
+         * @description Deviations of one rollout from what the plan and the controller believe.
+         */
+        Disturbance: {
+            /**
+             * Friction
+             * @description added to the true friction
+             * @default 0
+             */
+            friction: number;
+            /**
+             * Friction Front
+             * @description added to that, at the front wheels
+             * @default 0
+             */
+            friction_front: number;
+            /**
+             * Friction Rear
+             * @description added to that, at the rear wheels
+             * @default 0
+             */
+            friction_rear: number;
+            /**
+             * Mass
+             * @description share of the robot's mass, on the trunk
+             * @default 0
+             */
+            mass: number;
+            /**
+             * Payload
+             * @description on top of the trunk's middle [kg]
+             * @default 0
+             */
+            payload: number;
+            /**
+             * Com X
+             * @description the robot's CoM moves forward [m]
+             * @default 0
+             */
+            com_x: number;
+            /**
+             * Com Z
+             * @description the robot's CoM moves up [m]
+             * @default 0
+             */
+            com_z: number;
+            /**
+             * Height
+             * @description added to the terrain's rise [m]
+             * @default 0
+             */
+            height: number;
+            /**
+             * Steps
+             * @description each rise or descent is off by at most this, at random [m]
+             * @default 0
+             */
+            steps: number;
+            /**
+             * Faces
+             * @description each face is moved along by at most this, at random [m]
+             * @default 0
+             */
+            faces: number;
+            /**
+             * Heading
+             * @description the robot starts turned to the left of the course [rad]
+             * @default 0
+             */
+            heading: number;
+            /**
+             * Cross Slope
+             * @description the terrain rises to the left [rad]
+             * @default 0
+             */
+            cross_slope: number;
+            /**
+             * Start X
+             * @description the robot believes to start farther ahead than it does [m]
+             * @default 0
+             */
+            start_x: number;
+            /**
+             * Odometry
+             * @description share by which a way seems longer than it is
+             * @default 0
+             */
+            odometry: number;
+            /**
+             * Pitch Bias
+             * @description added to the pitch: the IMU is mounted pitched [rad]
+             * @default 0
+             */
+            pitch_bias: number;
+            /**
+             * Noise
+             * @description sensor noise, in units of the sensors' own
+             * @default 0
+             */
+            noise: number;
+            /**
+             * Delay
+             * @description from sensing to torque [s]
+             * @default 0
+             */
+            delay: number;
+            /**
+             * Motor Bandwidth
+             * @description of the torques [Hz]; 0: they act at once
+             * @default 0
+             */
+            motor_bandwidth: number;
         };
         /**
          * ExportFormat
@@ -1770,7 +1891,7 @@ export interface components {
              * Outcome
              * @enum {string}
              */
-            outcome: "success" | "fell" | "stuck" | "collided" | "diverged" | "timeout";
+            outcome: "success" | "fell" | "stuck" | "collided" | "diverged" | "timeout" | "stopped";
             /**
              * Reason
              * @description one sentence: what happened, where and when
@@ -1839,6 +1960,8 @@ export interface components {
             controller?: {
                 [key: string]: boolean | string | (number | null);
             } | null;
+            /** @description how the real world differs from what plan and controller believe */
+            disturbance?: components["schemas"]["Disturbance"] | null;
             /**
              * Seed
              * @default 0

@@ -59,7 +59,9 @@ def _question(services: Services, body: RolloutRequest) -> RolloutQuestion:
     except InputError as error:
         raise error.within("controller") from None
     controller = settings.model_dump(mode="json")
-    return RolloutQuestion(_source(services, body), body.friction, controller, body.seed)
+    deviations = body.disturbance.model_dump(exclude_defaults=True) if body.disturbance else {}
+    source = _source(services, body)
+    return RolloutQuestion(source, body.friction, controller, body.seed, deviations)
 
 
 def _source(services: Services, body: RolloutRequest) -> PlanQuestion | Plan | str:

@@ -1,0 +1,131 @@
+"""The robot senses by itself: where its wheels are, what they feel, and how honest the filter is."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pytest
+
+import stairwright as sw
+from stairwright import _core
+from stairwright.control.settings import parse_settings
+from stairwright.errors import InputError
+from stairwright.planning.plan import Plan
+from stairwright.robot.mujoco_model import build_model
+from stairwright.simulation.disturbance import Disturbance
+from stairwright.simulation.result import Rollout
+from stairwright.simulation.rollout import rollout
+from stairwright.simulation.run import Run
+
+STAIR = {"name": "stair", "points": [[-1.2, 0], [0, 0], [0, 0.2], [1.2, 0.2]], "friction": 0.6}
+ROBOT = {"sensing": "robot"}
+RADIUS = 0.05
+NEES_95 = 12.59  # of chi squared with 6 degrees of freedom
+
+
+@pytest.fixture(scope="module", params=sw.robots())
+def plan(request: pytest.FixtureRequest) -> Plan:
+    return sw.plan(STAIR, request.param)
+
+
+def sensed(plan: Plan, seed: int = 0, **deviation: float) -> tuple[Rollout, np.ndarray]:
+    """A rollout by the robot's own sensors, and the filter's errors against the truth."""
+    settings = parse_settings(ROBOT)
+    run = Run(plan, plan.friction, settings, Disturbance(**deviation), seed, 50.0)
+    result = run.result(run.simulate(None), keep_plan=False)
+    assert run.native is not None
+    return result, np.asarray(run.native.judged)
+
+
+@pytest.mark.parametrize("start", [0.0, 0.03, -0.03])
+def test_climbs_by_its_own_sensors(plan: Plan, start: float) -> None:
+    run, judged = sensed(plan, x_offset=start)
+    assert run.outcome == "success", run.reason
+    # The stair has told it where it is.
+    assert np.abs(judged[-50:, 7]).max() < 0.02
+    assert np.abs(judged[:, 2]).max() < 0.03
+
+
+def test_ideal_knowledge_of_a_wrong_place_does_not_climb(plan: Plan) -> None:
+    assert rollout(plan, disturbance={"x_offset": 0.03}).outcome != "success"
+
+
+def test_the_filter_is_honest(plan: Plan) -> None:
+    inside = [np.mean(sensed(plan, seed)[1][:, 9] < NEES_95) for seed in range(2)]
+    assert np.mean(inside) > 0.9
+
+
+def test_a_wrong_measure_of_length_is_learnt(plan: Plan) -> None:
+    run, judged = sensed(plan, odometry_scale=0.02)
+    assert run.outcome == "success", run.reason
+    assert abs(judged[-1, 10]) < 0.04
+
+
+def test_the_same_seed_is_the_same_run(plan: Plan) -> None:
+    one, again, other = sensed(plan, 7)[1], sensed(plan, 7)[1], sensed(plan, 8)[1]
+    np.testing.assert_array_equal(one, again)
+    n = min(len(one), len(other))
+    assert not np.array_equal(one[:n], other[:n])
+
+
+def test_slippery_ground_stops_it_safely(plan: Plan) -> None:
+    run = rollout(plan, friction=0.15, controller=ROBOT)
+    assert run.outcome == "stopped", run.reason
+    assert "stands" in run.reason
+
+
+def test_robot_sensing_needs_the_native_loop() -> None:
+    with pytest.raises(InputError) as caught:
+        parse_settings({"sensing": "robot", "form": "paper"})
+    assert caught.value.field == ("controller", "sensing")
+
+
+def path() -> _core.WheelPath:
+    points = np.array([(-1.0, 0.0), (0.0, 0.0), (0.0, 0.2), (1.0, 0.2)])
+    return _core.WheelPath(points, RADIUS)
+
+
+def matched(x: float, z: float, force: tuple[float, float] = (0.0, 30.0)) -> dict[str, object]:
+    spread = (0.03**2, 0.0, 0.002**2)  # unsure along, sure of the height
+    return dict(_core.curve_match(path(), (x, z), spread, force, 0.0, 10.0, float("nan"), 0.1))
+
+
+def test_a_wheel_that_rises_is_on_the_face_although_the_tread_is_nearer() -> None:
+    found = matched(-0.09, RADIUS + 0.02, (-30.0, 0.0))
+    assert found["normal"] == pytest.approx((-1.0, 0.0))
+    corner = 1.0 - RADIUS
+    assert found["s"] == pytest.approx(corner + 0.02, abs=1e-3)
+
+
+def test_a_push_tells_that_the_face_is_reached() -> None:
+    assert not matched(-0.07, RADIUS)["corner"]
+    assert matched(-0.07, RADIUS, (-40.0, 30.0))["corner"]
+
+
+def test_a_wheel_cannot_be_beyond_a_face_that_it_does_not_feel() -> None:
+    found = matched(-0.03, RADIUS)
+    assert found["beyond"] == 1
+    assert found["blocked"]
+    assert found["s"] == pytest.approx(1.0 - RADIUS)
+
+
+def test_leg_torques_tell_the_ground_force() -> None:
+    """A robot that stands still in MuJoCo, held by stiff joints."""
+    robot = sw.load_robot("a1_wheeled")
+    ground = sw.Terrain(points=[(-2, 0), (2, 0)], friction=0.8)
+    model = build_model(robot, ground)
+    data = mujoco.MjData(model)
+    thigh, calf = 0.7, -1.4
+    data.qpos[2] = robot.nominal_height
+    data.qpos[7:] = np.tile([thigh, calf, 0.0], 4)
+    goal = data.qpos[7:].copy()
+    for _ in range(3000):
+        data.ctrl[:] = 120.0 * (goal - data.qpos[7:]) - 3.0 * data.qvel[6:]
+        mujoco.mj_step(model, data)
+    w, _, y, _ = data.qpos[3:7]
+    pitch = 2 * np.arctan2(y, w)
+    for leg in range(4):
+        q, torques = data.qpos[7 + 3 * leg :][:2], tuple(data.ctrl[3 * leg :][:3])
+        x, z, _ = _core.wheel_force(robot.native, leg // 2, pitch, q[0], q[1], torques)
+        fx, _, fz = -data.sensordata[4 * leg + 1 : 4 * leg + 4]
+        assert (x, z) == pytest.approx((fx, fz), abs=1.0)
