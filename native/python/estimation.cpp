@@ -14,7 +14,7 @@ using Pair = std::array<double, 2>;
 
 Vec2 vec(const Pair& p) { return {p[0], p[1]}; }
 
-nb::dict curve_match(const WheelPath& path, const Pair& centre, const std::array<double, 3>& spread, const Pair& force,
+nb::typed<nb::dict, nb::str, nb::object> curve_match(const WheelPath& path, const Pair& centre, const std::array<double, 3>& spread, const Pair& force,
                      double traction, double force_deviation, double last, double window) {
     const WheelBelief wheel = {vec(centre), {spread[0], spread[1], spread[2]}, {vec(force), traction, true}, force_deviation};
     const CurveMatch found = match(path, wheel, last, window);

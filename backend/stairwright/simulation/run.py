@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import time
 from collections.abc import Callable
 from typing import Any
@@ -35,6 +36,7 @@ from .world import build_world, course_frame, real_terrain
 
 Floats = NDArray[np.float64]
 
+_PIECE = re.compile(r"(?<=trunk|thigh|_calf)_\d+$")  # of a part that is several shapes
 CONTROL_STEPS = 2  # physics steps per control step: 500 Hz
 SETTLE = 0.4  # s at rest before the plan starts and after it ends
 STANDS = 1.0  # s that a robot which gave up must stand
@@ -109,7 +111,8 @@ class Run:
 
     def _geom_names(self) -> list[str]:
         """What each shape is part of."""
-        return [self.model.geom(i).name for i in range(self.model.ngeom)]
+        names = [self.model.geom(i).name for i in range(self.model.ngeom)]
+        return [_PIECE.sub("", name) for name in names]
 
     def _track(self) -> Track:
         plan, settings = self.plan, self.settings
