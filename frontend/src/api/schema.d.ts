@@ -422,6 +422,176 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/studies": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Studies
+         * @description Studies, newest first.
+         */
+        get: operations["list_studies"];
+        put?: never;
+        /**
+         * Post Study
+         * @description Start a study, or go on with it: the same document is the same study.
+         *
+         *     Its cells are followed at the link `events`; a finished one is there at once.
+         */
+        post: operations["create_study"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Study
+         * @description How far a study is, and its axes with all their values.
+         */
+        get: operations["get_study"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete Study
+         * @description Remove a study with its cells.
+         */
+        delete: operations["delete_study"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study_id}/document": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Study Document
+         * @description What was asked, names resolved: posted again it is the same study.
+         */
+        get: operations["get_study_document"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study_id}/cancel": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Cancel Study
+         * @description Stop a study; its cells so far stay, and posting it again goes on with it.
+         */
+        post: operations["cancel_study"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study_id}/cells": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Cells
+         * @description All cells that are known by now.
+         */
+        get: operations["get_cells"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study_id}/cells/{cell}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Cell
+         * @description One cell: its values, what is known of it, and the question that POST /plans takes.
+         */
+        get: operations["get_cell"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study_id}/export": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Export Study
+         * @description The dataset as a file; cells that are pending have no values yet.
+         */
+        get: operations["export_study"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study_id}/events": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Study Events
+         * @description The study now and at every change until it is finished, and its cells as they come.
+         */
+        get: operations["follow_study"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sessions": {
         parameters: {
             query?: never;
@@ -548,6 +718,61 @@ export interface components {
             wheel: components["schemas"]["Actuator"];
         };
         /**
+         * Axis
+         * @description One axis: `values`, or `from`, `to` and `count`, or `boundary` and `tolerance`.
+         *
+         *     A boundary axis is searched for where the outcome changes instead of filled: by bisection over
+         *     the values that divide its range into equal parts of at most `tolerance`.
+         */
+        Axis: {
+            /**
+             * Name
+             * @description what varies: stairs.rise, stairs.run, step.height, ramp.slope, friction, payload, speed, weights.NAME, robot, or a number of the robot's file as robot.calf.length
+             */
+            name: string;
+            /** Values */
+            values?: (string | number)[] | null;
+            /** From */
+            from?: number | null;
+            /** To */
+            to?: number | null;
+            /** Count */
+            count?: number | null;
+            /**
+             * Boundary
+             * @description range in which the outcome changes once
+             */
+            boundary?: number[] | null;
+            /**
+             * Tolerance
+             * @description of the place where it changes
+             */
+            tolerance?: number | null;
+        };
+        /**
+         * AxisDocument
+         * @description An axis of a study.
+         */
+        AxisDocument: {
+            /** Name */
+            name: string;
+            /**
+             * Unit
+             * @description of the values; 1 for ratios and words
+             */
+            unit: string;
+            /**
+             * Values
+             * @description all of them, in order
+             */
+            values: (number | string)[];
+            /**
+             * Boundary
+             * @description searched for where the outcome changes, not filled
+             */
+            boundary: boolean;
+        };
+        /**
          * Binding
          * @description The least margin, each taken against what it is a margin of, and where it is.
          */
@@ -626,6 +851,35 @@ export interface components {
              * @default 1
              */
             scale: number;
+        };
+        /**
+         * CellDocument
+         * @description One cell of a study.
+         */
+        CellDocument: {
+            /** Cell */
+            cell: number;
+            /**
+             * Values
+             * @description of the axes, by name
+             */
+            values: {
+                [key: string]: number | string;
+            };
+            /**
+             * Plan
+             * @description body of POST /plans for this cell; null where its values make no question
+             */
+            plan: {
+                [key: string]: unknown;
+            } | null;
+            /**
+             * Record
+             * @description the variables of the dataset
+             */
+            record: {
+                [key: string]: unknown;
+            };
         };
         /**
          * Certificate
@@ -898,17 +1152,17 @@ export interface components {
              */
             height: number;
             /**
-             * Steps
+             * Step Height Error
              * @description each rise or descent is off by at most this, at random [m]
              * @default 0
              */
-            steps: number;
+            step_height_error: number;
             /**
-             * Faces
+             * Face Place Error
              * @description each face is moved along by at most this, at random [m]
              * @default 0
              */
-            faces: number;
+            face_place_error: number;
             /**
              * Heading
              * @description the robot starts turned to the left of the course [rad]
@@ -922,17 +1176,17 @@ export interface components {
              */
             cross_slope: number;
             /**
-             * Start X
+             * X Offset
              * @description the robot believes to start farther ahead than it does [m]
              * @default 0
              */
-            start_x: number;
+            x_offset: number;
             /**
-             * Odometry
+             * Odometry Scale
              * @description share by which a way seems longer than it is
              * @default 0
              */
-            odometry: number;
+            odometry_scale: number;
             /**
              * Pitch Bias
              * @description added to the pitch: the IMU is mounted pitched [rad]
@@ -952,11 +1206,11 @@ export interface components {
              */
             delay: number;
             /**
-             * Motor Bandwidth
+             * Bandwidth
              * @description of the torques [Hz]; 0: they act at once
              * @default 0
              */
-            motor_bandwidth: number;
+            bandwidth: number;
         };
         /**
          * ExportFormat
@@ -1697,6 +1951,174 @@ export interface components {
             slope: number;
         };
         /**
+         * Ranges
+         * @description Ranges (low, high) from which each trial draws its deviations; see `Disturbance`.
+         */
+        Ranges: {
+            /**
+             * Friction
+             * @description added to the true friction
+             * @default [
+             *       -0.1,
+             *       0.1
+             *     ]
+             */
+            friction: number[];
+            /**
+             * Mass
+             * @description share of the robot's mass, on the trunk
+             * @default [
+             *       -0.1,
+             *       0.1
+             *     ]
+             */
+            mass: number[];
+            /**
+             * Com X
+             * @description CoM forward [m]
+             * @default [
+             *       -0.02,
+             *       0.02
+             *     ]
+             */
+            com_x: number[];
+            /**
+             * Com Z
+             * @description CoM up [m]
+             * @default [
+             *       -0.02,
+             *       0.02
+             *     ]
+             */
+            com_z: number[];
+            /**
+             * Height
+             * @description added to the terrain's rise [m]
+             * @default [
+             *       -0.01,
+             *       0.01
+             *     ]
+             */
+            height: number[];
+            /**
+             * Noise
+             * @description sensor noise, in units of the sensors' own
+             * @default [
+             *       1,
+             *       1
+             *     ]
+             */
+            noise: number[];
+            /**
+             * Delay
+             * @description from sensing to torque [s]
+             * @default [
+             *       0.004,
+             *       0.004
+             *     ]
+             */
+            delay: number[];
+            /**
+             * Friction Front
+             * @description added to that, at the front wheels
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            friction_front: number[];
+            /**
+             * Friction Rear
+             * @description added to that, at the rear wheels
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            friction_rear: number[];
+            /**
+             * Payload
+             * @description on top of the trunk's middle [kg]
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            payload: number[];
+            /**
+             * Step Height Error
+             * @description each rise or descent is off by at most this, at random [m]
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            step_height_error: number[];
+            /**
+             * Face Place Error
+             * @description each face is moved along by at most this, at random [m]
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            face_place_error: number[];
+            /**
+             * Heading
+             * @description the robot starts turned to the left of the course [rad]
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            heading: number[];
+            /**
+             * Cross Slope
+             * @description the terrain rises to the left [rad]
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            cross_slope: number[];
+            /**
+             * X Offset
+             * @description the robot believes to start farther ahead than it does [m]
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            x_offset: number[];
+            /**
+             * Odometry Scale
+             * @description share by which a way seems longer than it is
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            odometry_scale: number[];
+            /**
+             * Pitch Bias
+             * @description the IMU is mounted pitched [rad]
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            pitch_bias: number[];
+            /**
+             * Bandwidth
+             * @description of the torques [Hz]; 0: they act at once
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            bandwidth: number[];
+        };
+        /**
          * RearLegs
          * @description What the rear legs have unlike the front ones.
          */
@@ -2178,6 +2600,151 @@ export interface components {
             };
         };
         /**
+         * Study
+         * @description A study (``stairwright/study/1``): every combination of the axes' values is a cell.
+         */
+        Study: {
+            /**
+             * Schema
+             * @default stairwright/study/1
+             * @constant
+             */
+            schema: "stairwright/study/1";
+            /**
+             * Name
+             * @default
+             */
+            name: string;
+            /**
+             * Description
+             * @default
+             */
+            description: string;
+            /**
+             * Terrain
+             * @description a name, a document, or a kind with measures; by the axes if empty
+             */
+            terrain?: (string | components["schemas"]["StairParameters"] | components["schemas"]["RampParameters"] | components["schemas"]["FlatParameters"] | components["schemas"]["Terrain"]) | null;
+            /**
+             * Robot
+             * @default a1_wheeled
+             */
+            robot: string | components["schemas"]["Robot"];
+            /**
+             * Robots
+             * @description documents of the robots that an axis `robot` names
+             * @default {}
+             */
+            robots: {
+                [key: string]: components["schemas"]["Robot"];
+            };
+            /**
+             * Friction
+             * @description the terrain's own by default
+             */
+            friction?: number | null;
+            /**
+             * Method
+             * @default path
+             * @enum {string}
+             */
+            method: "path" | "critical" | "nominal";
+            /**
+             * Weights
+             * @default {}
+             */
+            weights: {
+                [key: string]: boolean | number;
+            };
+            /** Axes */
+            axes: components["schemas"]["Axis"][];
+            /**
+             * Compute
+             * @default plan
+             * @enum {string}
+             */
+            compute: "plan" | "rollout" | "trials";
+            /**
+             * Controller
+             * @description of rollouts and trials
+             * @default {}
+             */
+            controller: {
+                [key: string]: unknown;
+            };
+            /**
+             * Seed
+             * @default 0
+             */
+            seed: number;
+            /**
+             * @default {
+             *       "count": 29
+             *     }
+             */
+            trials: components["schemas"]["TrialSettings"];
+        };
+        /**
+         * StudyDocument
+         * @description A study's state. Events leave the axes out.
+         */
+        StudyDocument: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "queued" | "running" | "done" | "failed" | "cancelled";
+            /**
+             * Done
+             * @description cells that are known
+             */
+            done: number;
+            /**
+             * Total
+             * @description cells that are to be known, as far as can be told
+             */
+            total: number;
+            /** Progress */
+            progress: number;
+            /**
+             * Eta
+             * @description seconds until it is done, by its own pace so far
+             */
+            eta: number | null;
+            /**
+             * Created
+             * @description seconds since 1970
+             */
+            created: number;
+            /**
+             * Outdated
+             * @description by another version of the planner than this service's
+             */
+            outdated: boolean;
+            /**
+             * Error
+             * @description a problem document, when failed
+             */
+            error: {
+                [key: string]: unknown;
+            } | null;
+            /** Axes */
+            axes: components["schemas"]["AxisDocument"][];
+            /**
+             * Compute
+             * @enum {string}
+             */
+            compute: "plan" | "rollout" | "trials";
+            /** Links */
+            links: {
+                [key: string]: string;
+            };
+        };
+        /**
          * Terrain
          * @description A profile and its friction (``stairwright/terrain/1``). Metres, world frame.
          *
@@ -2283,6 +2850,20 @@ export interface components {
              * @enum {string}
              */
             rule: "limits" | "paper";
+        };
+        /**
+         * TrialSettings
+         * @description How many randomised rollouts a cell has, and what they draw from.
+         */
+        TrialSettings: {
+            /**
+             * Count
+             * @description 29 of 29: more than 90 % with 95 %
+             * @default 29
+             */
+            count: number;
+            /** @description of the deviations, see `sw.trials` */
+            ranges?: components["schemas"]["Ranges"] | null;
         };
         /**
          * Trunk
@@ -4738,6 +5319,906 @@ export interface operations {
              *     "base_position": [n][3], "base_quaternion": [n][4]}`, at 25 samples a simulated second, rounded to
              *     1e-5. A stream that is opened late or again begins with all samples so far. A rollout whose worker
              *     died begins anew: its job is queued again, and its series from sample 0.
+             */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/event-stream": string;
+                };
+            };
+            /** @description Nothing will change after the event that was seen last */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    list_studies: {
+        parameters: {
+            query?: {
+                /** @description at most this many */
+                limit?: number;
+                /** @description after this many */
+                offset?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    ETag: components["headers"]["ETag"];
+                    "X-Total-Count": components["headers"]["X-Total-Count"];
+                    Link: components["headers"]["Link"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StudyDocument"][];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    create_study: {
+        parameters: {
+            query?: {
+                /** @description try cells again that failed */
+                retry?: boolean;
+            };
+            header?: {
+                /** @description an open session: sessions take turns in the queues */
+                "stairwright-session"?: string | null;
+                /** @description a repeated request with the same key does its work once */
+                "idempotency-key"?: string | null;
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Study"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    Location: components["headers"]["Location"];
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StudyDocument"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unsupported Media Type: `media-type` */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Too Many Requests: `attempts`, `connections`, `queue-full`, `sessions` */
+            429: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Implemented: `missing` */
+            501: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            503: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    get_study: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                study_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StudyDocument"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    delete_study: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                study_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    get_study_document: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                study_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Study"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    cancel_study: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                study_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StudyDocument"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    get_cells: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                study_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A list for each variable, as in the events named `cells` */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": Record<string, never>;
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Too Many Requests: `attempts`, `connections`, `queue-full`, `sessions` */
+            429: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            503: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    get_cell: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                cell: number;
+                study_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CellDocument"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Too Many Requests: `attempts`, `connections`, `queue-full`, `sessions` */
+            429: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            503: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    export_study: {
+        parameters: {
+            query?: {
+                format?: "netcdf" | "zarr" | "csv" | "json";
+            };
+            header?: never;
+            path: {
+                study_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The file; its Content-Type is one of those listed, and it is bytes in any case */
+            200: {
+                headers: {
+                    ETag: components["headers"]["ETag"];
+                    "Content-Disposition": components["headers"]["Content-Disposition"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": string;
+                    "application/x-netcdf": string;
+                    "application/zip": string;
+                    "text/csv": string;
+                    "application/json": string;
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Too Many Requests: `attempts`, `connections`, `queue-full`, `sessions` */
+            429: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            503: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    follow_study: {
+        parameters: {
+            query?: never;
+            header?: {
+                "last-event-id"?: string | null;
+            };
+            path: {
+                study_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /**
+             * @description Events named `study`, each with the study's state as JSON and its revision as the
+             *     event's id; and events named `cells` without an id, each with the cells that are new since the last
+             *     one: `{"cell": [n], "state": [n], "feasible": [n], ...}`, a list for each variable of the dataset.
+             *     `cell` is the cell's number: axes in the document's order, the last one fastest. A stream that is
+             *     opened late or again begins with all cells so far; where the process that was at the study died,
+             *     they come again. Numbers that there are none of are null.
              */
             200: {
                 headers: {

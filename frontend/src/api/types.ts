@@ -39,7 +39,14 @@ export type Plan = Omit<Schemas["Plan"], "terrain" | "problem" | "certificate" |
   poses: Pose[];
 };
 
-export type Outcome = "success" | "fell" | "stuck" | "collided" | "diverged" | "timeout" | "stopped";
+export type Outcome =
+  | "success"
+  | "fell"
+  | "stuck"
+  | "collided"
+  | "diverged"
+  | "timeout"
+  | "stopped";
 
 export interface Metrics {
   duration: number;

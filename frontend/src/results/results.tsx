@@ -29,6 +29,7 @@ export const OUTCOMES: Record<Outcome, string> = {
   collided: "Collided",
   diverged: "Diverged",
   timeout: "Ran out of time",
+  stopped: "Stopped safely",
 };
 
 export function Results() {
