@@ -17,10 +17,9 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+import yaml
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
-
-from stairwright.documents import load_mapping
 
 ROOT = Path(__file__).resolve().parents[1]
 LOCKS = [ROOT / name for name in ("requirements.lock", "requirements-dev.lock")]
@@ -119,7 +118,8 @@ def test_compose_file_meets_its_schema() -> None:
 
 def test_container_has_as_many_workers_as_processors() -> None:
     """Docker refuses more processors than the machine has: hence a variable, a small default."""
-    service = load_mapping(ROOT / "docker-compose.yml")["services"]["stairwright"]
+    compose = yaml.safe_load((ROOT / "docker-compose.yml").read_text(encoding="utf-8"))
+    service = compose["services"]["stairwright"]
     share = service["deploy"]["resources"]["limits"]["cpus"]
     assert share == "${STAIRWRIGHT_CPUS:-2}"
     assert service["environment"]["STAIRWRIGHT_PLAN_WORKERS"] == share
