@@ -18,6 +18,10 @@ constexpr double kCruiseTime = 0.1;
 constexpr double kSure = 0.02;         // s that both faces of a corner must be felt before that counts
 constexpr double kMostScale = 0.04;    // of the wheels: more is slip
 constexpr double kGripUsed = 0.25;     // share of the normal force from which on traction makes slip likely
+constexpr double kAtRest = 0.015;      // m/s of rolling
+constexpr double kNearEdge = 0.015;    // m along the curve
+constexpr double kEdgeStray = 0.012;   // m that the map's edge may be off
+constexpr double kLevel = 0.95;        // cosine of the slope of a face on which the wheels' scale is learnt
 constexpr double kGate = 9.0;           // of a normalised innovation squared
 constexpr double kNearCorner = 0.006;   // m; which way a wheel rolls this near to a concave corner is open
 
@@ -230,28 +234,36 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
     const Vec3 swing = cross3(axis, speed);
     for (std::size_t k = 0; k < 3; ++k) h[kAttitude + k] = swing[k] + cross3(own, axis)[k];
     update(h, -dot3(axis, speed), noise_.aside);
-    if (on.corner) {  // at rest against both faces
-        return;
-    }
+    const double radius = robot_.legs[i / 2].wheel.radius;
     const std::size_t next = path_.corner_from(on.s - kNearCorner);
     const bool near = next < path_.corners().size() && path_.corners()[next] < on.s + kNearCorner;
-    if (near) return;
     const Vec2 n = on.point.normal;
+    const Vec3 off = {n.x, 0.0, n.z};
+    if (near || on.corner) {
+        // Either face: only a wheel that does not turn says something, that it is at rest.
+        if (std::abs(w.cruise) > kAtRest) return;
+        update(row(off), -dot3(off, speed), noise_.rolling);
+        const Vec3 along = {n.z, 0.0, -n.x};
+        update(row(along), -dot3(along, speed), noise_.rolling);
+        return;
+    }
+    // Round an edge a face is only as well known as the place on it.
+    const bool edge = path_.on_arc(on.s) || path_.on_arc(on.s - kNearEdge) || path_.on_arc(on.s + kNearEdge);
+    const double askew = edge ? std::abs(w.cruise) * std::min(1.0, kEdgeStray / radius) : 0.0;
     Vec3 t = {n.z, 0.0, -n.x};
     const double aside = dot3(t, axis);
     for (int k = 0; k < 3; ++k) t[k] -= aside * axis[k];
     const double length = std::sqrt(dot3(t, t));
     for (double& v : t) v /= length;
     const double angular = readings.joint_rates[3 * i] + readings.joint_rates[3 * i + 1] + readings.joint_rates[3 * i + 2] + rate_[1];
-    const double radius = robot_.legs[i / 2].wheel.radius, rolled = radius * angular;
+    const double rolled = radius * angular;
     h = row(t);
-    h[kScale] = -w.cruise;
+    h[kScale] = n.z > kLevel ? -w.cruise : 0.0;
     h[kGyroBias + 1] += radius;
     // The nearer to its grip, the less a wheel's turning says.
     const double used = std::abs(w.traction) / std::max(dot(w.felt, n), 0.02 * weight_) / kGripUsed;
-    update(h, (1.0 + scale_) * rolled - dot3(t, speed), noise_.rolling * std::max(1.0, used * used));
-    const Vec3 off = {n.x, 0.0, n.z};
-    update(row(off), -dot3(off, speed), noise_.off_face);
+    update(h, (1.0 + scale_) * rolled - dot3(t, speed), std::hypot(noise_.rolling * std::max(1.0, used * used), askew));
+    update(row(off), -dot3(off, speed), std::hypot(noise_.off_face, askew));
 }
 
 void Estimator::correct(const Error& e) {
