@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,7 @@ from .store import ResultStore
 from .variables import DONE, PENDING, Record
 
 CHECKED = 0.25  # of the rows have a cell off their border asked
-_NEAR, _FRINGE = 0.8, 0.15  # share of these close to the border; how close, of the axis
+_NEAR, _FRINGE = 0.7, 0.15  # share of these close to the border; how close, of the axis
 _PER_ROW = 2.5  # cells that a row takes, before that is known
 
 Ints = NDArray[np.int64]
@@ -115,7 +115,7 @@ class _Search:
         """What to ask, each wave once the one before it is answered."""
         done: list[int] = []
         for level in self.rows.levels:
-            yield from self._settled(level.tolist(), done)
+            yield from self._settled(level.tolist(), done, self.rows.rising)
             done += level.tolist()
             share = len(self._stored) / len(done)
             self._meter.total = max(len(self._stored), round(share * len(self.rows.cells)))
@@ -123,9 +123,11 @@ class _Search:
         self._meter.total = self._meter.done
         self._meter.tell({})
 
-    def _settled(self, rows: list[int], done: list[int]) -> Iterator[list[tuple[int, int]]]:
+    def _settled(
+        self, rows: list[int], done: list[int], rising: bool | None
+    ) -> Iterator[list[tuple[int, int]]]:
         """Find the borders of `rows`, starting from those of the rows that are `done`."""
-        n, rising = self.rows.n, self.rows.rising
+        n = self.rows.n
         guesses: dict[int, float] = {}
         if done and rising is not None:
             places = self.rows.places[done]
@@ -152,12 +154,12 @@ class _Search:
         suspected: set[int] = set()
         while wave:
             yield wave
-            yield from self._settled(list(range(len(rows.cells))), [])
             rising = rows.rising
+            yield from self._settled(list(range(len(rows.cells))), [], rising)
             bad = [
                 row
                 for row, known in enumerate(rows.known)
-                if row not in suspected and _contradicts(known, rising)
+                if row not in suspected and not border(known, rising).monotone
             ]
             suspected |= set(bad)
             wave = self._beside(bad, suspected)
@@ -165,7 +167,7 @@ class _Search:
     def _sample(self, row: int, random: np.random.Generator) -> list[tuple[int, int]]:
         """A cell that was not asked yet: rather one that should pass, a little off the border."""
         known, n = self.rows.known[row], self.rows.n
-        found = border(known)
+        found = border(known, self.rows.rising)
         free = [k for k in range(n + 1) if k not in known]
         if found.inside is not None and found.beyond is not None and random.random() < _NEAR:
             reach = max(2, round(_FRINGE * n))
@@ -189,13 +191,6 @@ class _Search:
     def _neighbours(self, row: int) -> Ints:
         distance = np.abs(self.rows.places - self.rows.places[row]).sum(axis=1)
         return np.flatnonzero((distance > 0) & (distance <= 1.0))
-
-
-def _contradicts(known: Mapping[int, bool], rising: bool | None) -> bool:
-    """Whether a row changes more than once, or the other way than most rows."""
-    changes = flips(known)
-    wrong_way = bool(changes) and rising is not None and known[max(known)] != rising
-    return len(changes) > 1 or wrong_way
 
 
 def _stored_verdicts(store: ResultStore) -> dict[int, bool]:
