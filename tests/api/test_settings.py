@@ -16,6 +16,7 @@ COMPUTED = {
     "page": "the built page",
     "plan_workers": "cores, at most 4",
     "rollout_workers": "cores - 1, at least 1",
+    "study_workers": "cores",
 }
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from .border import border, flips, foretell, low_count, next_cells
 from .document import Study
-from .fill import Meter, Report
+from .fill import Meter, Report, Writer
 from .grid import levels
 from .serial import Engine, Finished, Stopped
 from .store import ResultStore
@@ -81,16 +81,23 @@ def fill_boundary(
     store: ResultStore, engine: Engine, report: Report | None, stopped: Stopped
 ) -> None:
     """Find the border of every row, and check that there is only one."""
-    search = _Search(store, engine, report, stopped)
-    all(search.ask(wave) for wave in search.waves())
+    with Writer(store) as writer:
+        search = _Search(store, engine, writer, report, stopped)
+        all(search.ask(wave) for wave in search.waves())
 
 
 class _Search:
     def __init__(
-        self, store: ResultStore, engine: Engine, report: Report | None, stopped: Stopped
+        self,
+        store: ResultStore,
+        engine: Engine,
+        writer: Writer,
+        report: Report | None,
+        stopped: Stopped,
     ) -> None:
         self.rows = Rows(store.study)
         self._store, self._engine, self._stopped = store, engine, stopped
+        self._writer = writer
         self._stored = _stored_verdicts(store)
         total = round(_PER_ROW * len(self.rows.cells))
         self._meter = Meter(len(self._stored), max(total, len(self._stored)), report)
@@ -102,7 +109,7 @@ class _Search:
         new = [cell for cell in places if cell not in self._stored]
         if new:
             for finished in self._engine.evaluate(self._store.study, new, self._stopped):
-                self._store.write(finished)
+                self._writer.add(finished)
                 self._stored |= {cell: passes(record) for cell, record in finished.items()}
                 self._meter.tell(finished)
         for cell, (row, k) in places.items():
@@ -209,7 +216,7 @@ def _stored_verdicts(store: ResultStore) -> dict[int, bool]:
 
 def searched_rows(store: ResultStore) -> tuple[Rows, bool]:
     """The rows as the search leaves them with what the store knows, and whether that is all."""
-    search = _Search(store, _Nobody(), None, lambda: True)
+    search = _Search(store, _Nobody(), Writer(store), None, lambda: True)
     complete = all(search.ask(wave) for wave in search.waves())
     return search.rows, complete
 

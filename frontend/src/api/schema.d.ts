@@ -455,7 +455,7 @@ export interface paths {
          * Get Study Document
          * @description What was asked, names resolved: posted again it is the same study.
          */
-        get: operations["get_study_document"];
+        get: operations["get_question"];
         put?: never;
         post?: never;
         delete?: never;
@@ -5088,7 +5088,7 @@ export interface operations {
             };
         };
     };
-    get_study_document: {
+    get_question: {
         parameters: {
             query?: never;
             header?: never;
