@@ -75,7 +75,8 @@ def test_a_scheduler_that_is_not_there(tmp_path: Path) -> None:
 
 def test_stopping_keeps_what_is_done(cluster: ClusterEngine, tmp_path: Path) -> None:
     store = _store(MAP, tmp_path / "c.zarr")
-    fill_grid(store, cluster, None, lambda: store.counts()["done"] >= 4)
+    seen: list[int] = []
+    fill_grid(store, cluster, lambda p: seen.extend(p.new), lambda: len(seen) >= 4)
     done = store.counts()["done"]
     assert 4 <= done < 20
     asked: list[int] = []

@@ -49,47 +49,63 @@ def next_cells(
         rising: Whether rows pass at their high end; None while that is not known.
         guess: Where the border may be: the last cell that is as the low end is.
     """
-    changes = flips(known)
-    if changes:
-        low, high = changes[0] if known[min(known)] else changes[-1]
-        return [(low + high) // 2] if high - low > 1 else []
-    if 0 in known and n in known:
-        return []
+    way = _way(known, rising)
+    if way is None:
+        return [k for k in (0, n) if k not in known]
     if not known:
-        if rising is None or guess is None:
+        if guess is None:
             return sorted({0, n})
         k = round(guess)
         return sorted({min(max(k, 0), n), min(max(k + 1, 0), n)})
-    if rising is None:
-        return [k for k in (0, n) if k not in known]
-    upwards = known[min(known)] != rising  # it is as the low end is: the border is above
-    if (upwards and n in known) or (not upwards and 0 in known):
-        return []
+    mirrored = {n - k: verdict for k, verdict in known.items()} if way else known
+    asked = _next_falling(mirrored, n)
+    return [n - k for k in asked] if way else asked
+
+
+def _next_falling(known: Known, n: int) -> list[int]:
+    """The same for a row that passes at its low end."""
+    inside, beyond = _first_failure(known)
     step = 2 ** max(0, len(known) - 2)
-    return [min(max(known) + step, n) if upwards else max(min(known) - step, 0)]
+    if beyond is None:
+        assert inside is not None
+        return [] if inside == n else [min(inside + step, n)]
+    if inside is None:
+        return [] if beyond == 0 else [max(beyond - step, 0)]
+    return [(inside + beyond) // 2] if beyond - inside > 1 else []
 
 
-def border(known: Known) -> Border:
-    """What the verdicts of a row say."""
+def _first_failure(known: Known) -> tuple[int | None, int | None]:
+    """The last cell that passes before the first that does not, and that one."""
+    beyond = min((k for k, verdict in known.items() if not verdict), default=None)
+    before = [k for k, verdict in known.items() if verdict and (beyond is None or k < beyond)]
+    return max(before, default=None), beyond
+
+
+def _way(known: Known, rising: bool | None) -> bool | None:
+    """Whether a row passes at its high end, by the others or else by itself."""
+    if rising is None and flips(known):
+        return known[max(known)]
+    return rising
+
+
+def border(known: Known, rising: bool | None = None) -> Border:
+    """What the verdicts of a row say; `rising` as in `next_cells`."""
+    way = bool(_way(known, rising))
     changes = flips(known)
-    monotone = len(changes) <= 1
-    if not changes:
-        if not any(known.values()):
-            return Border(None, None if not known else min(known), monotone)
-        return Border(max(known), None, monotone)
-    if known[min(known)]:  # passes at the low end
-        inside, beyond = changes[0]
-    else:
-        beyond, inside = changes[-1]
+    monotone = len(changes) <= 1 and all(known[b] == way for _, b in changes)
+    mirrored = {-k: verdict for k, verdict in known.items()} if way else known
+    inside, beyond = _first_failure(mirrored)
+    if way:
+        inside, beyond = (None if k is None else -k for k in (inside, beyond))
     return Border(inside, beyond, monotone)
 
 
 def low_count(known: Known, n: int, rising: bool) -> int:
     """The last cell that is as the low end is: -1 if all are as the high end, n if none is."""
-    changes = flips(known)
-    if changes:
-        return changes[0][0] if known[min(known)] else changes[-1][0]
-    return n if known and known[min(known)] != rising else -1
+    found = border(known, rising)
+    if rising:
+        return n if found.inside is None else (-1 if found.beyond is None else found.beyond)
+    return -1 if found.inside is None else (n if found.beyond is None else found.inside)
 
 
 def foretell(place: Floats, places: Floats, borders: Floats, n: int) -> float:

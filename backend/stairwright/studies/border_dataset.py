@@ -32,7 +32,8 @@ def border_dataset(store: ResultStore) -> xr.Dataset:
     study, axis = store.study, store.study.boundary_axis
     assert axis is not None
     rows, complete_ = searched_rows(store)
-    found = [border(known) for known in rows.known]
+    rising = rows.rising
+    found = [border(known, rising) for known in rows.known]
     unit = target(axis.name, study.method).unit
     columns: dict[str, list[Any]] = {
         "boundary": [_value(axis.points, each.inside) for each in found],
@@ -64,7 +65,7 @@ def border_dataset(store: ResultStore) -> xr.Dataset:
         "engine": store.engine,
         "boundary_axis": axis.name,
         "tolerance": (float(axis.points[-1]) - float(axis.points[0])) / rows.n,
-        "rising": -1 if rows.rising is None else int(rows.rising),
+        "rising": -1 if rising is None else int(rising),
         "complete": int(complete_),
         "study": study.model_dump_json(),
     }

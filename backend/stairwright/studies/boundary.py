@@ -1,26 +1,29 @@
 """Studies with a boundary: rows are searched, coarse ones first, others from their neighbours.
 
-That each row changes once is checked, not trusted: a share of the cells off the border is asked as
-well. A row that contradicts is asked cell by cell, and its neighbours are checked too.
+That each row changes once is checked, not trusted: in a share of the rows a cell off the border is
+asked as well, mostly one that should pass, for a border frays on that side. Where it does not pass,
+the border before it is found, and the neighbours are checked in the same place.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .border import flips, foretell, low_count, next_cells
+from .border import border, flips, foretell, low_count, next_cells
 from .document import Study
-from .fill import Meter, Report
+from .fill import Meter, Report, Writer
 from .grid import levels
 from .serial import Engine, Finished, Stopped
 from .store import ResultStore
 from .variables import DONE, PENDING, Record
 
-CHECKED = 0.1  # of the rows have a cell off their border asked
+CHECKED = 0.25  # of the rows have a cell off their border asked
+_NEAR, _FRINGE = 0.7, 0.15  # share of these close to the border; how close, of the axis
 _PER_ROW = 2.5  # cells that a row takes, before that is known
 
 Ints = NDArray[np.int64]
@@ -78,16 +81,23 @@ def fill_boundary(
     store: ResultStore, engine: Engine, report: Report | None, stopped: Stopped
 ) -> None:
     """Find the border of every row, and check that there is only one."""
-    search = _Search(store, engine, report, stopped)
-    all(search.ask(wave) for wave in search.waves())
+    with Writer(store) as writer:
+        search = _Search(store, engine, writer, report, stopped)
+        all(search.ask(wave) for wave in search.waves())
 
 
 class _Search:
     def __init__(
-        self, store: ResultStore, engine: Engine, report: Report | None, stopped: Stopped
+        self,
+        store: ResultStore,
+        engine: Engine,
+        writer: Writer,
+        report: Report | None,
+        stopped: Stopped,
     ) -> None:
         self.rows = Rows(store.study)
         self._store, self._engine, self._stopped = store, engine, stopped
+        self._writer = writer
         self._stored = _stored_verdicts(store)
         total = round(_PER_ROW * len(self.rows.cells))
         self._meter = Meter(len(self._stored), max(total, len(self._stored)), report)
@@ -99,7 +109,7 @@ class _Search:
         new = [cell for cell in places if cell not in self._stored]
         if new:
             for finished in self._engine.evaluate(self._store.study, new, self._stopped):
-                self._store.write(finished)
+                self._writer.add(finished)
                 self._stored |= {cell: passes(record) for cell, record in finished.items()}
                 self._meter.tell(finished)
         for cell, (row, k) in places.items():
@@ -112,7 +122,7 @@ class _Search:
         """What to ask, each wave once the one before it is answered."""
         done: list[int] = []
         for level in self.rows.levels:
-            yield from self._settled(level.tolist(), done)
+            yield from self._settled(level.tolist(), done, self.rows.rising)
             done += level.tolist()
             share = len(self._stored) / len(done)
             self._meter.total = max(len(self._stored), round(share * len(self.rows.cells)))
@@ -120,9 +130,11 @@ class _Search:
         self._meter.total = self._meter.done
         self._meter.tell({})
 
-    def _settled(self, rows: list[int], done: list[int]) -> Iterator[list[tuple[int, int]]]:
+    def _settled(
+        self, rows: list[int], done: list[int], rising: bool | None
+    ) -> Iterator[list[tuple[int, int]]]:
         """Find the borders of `rows`, starting from those of the rows that are `done`."""
-        n, rising = self.rows.n, self.rows.rising
+        n = self.rows.n
         guesses: dict[int, float] = {}
         if done and rising is not None:
             places = self.rows.places[done]
@@ -140,33 +152,43 @@ class _Search:
             yield wave
 
     def _checks(self) -> Iterator[list[tuple[int, int]]]:
-        """Cells off the border; of rows that contradict all cells, then checks of neighbours."""
+        """Cells off the border; where they contradict it, the border before them is found."""
         random = np.random.default_rng(0)
         rows = self.rows
-        count = max(1, round(CHECKED * len(rows.cells)))
-        wave = self._samples(random.permutation(len(rows.cells))[:count].tolist(), random)
+        count = math.ceil(CHECKED * len(rows.cells))
+        chosen = random.permutation(len(rows.cells))[:count].tolist()
+        wave = [pair for row in chosen for pair in self._sample(row, random)]
         suspected: set[int] = set()
         while wave:
             yield wave
-            yield from self._settled(list(range(len(rows.cells))), [])
             rising = rows.rising
+            yield from self._settled(list(range(len(rows.cells))), [], rising)
             bad = [
                 row
                 for row, known in enumerate(rows.known)
-                if row not in suspected and _contradicts(known, rising)
+                if row not in suspected and not border(known, rising).monotone
             ]
             suspected |= set(bad)
-            yield [(r, k) for r in bad for k in range(rows.n + 1) if k not in rows.known[r]]
-            wave = self._where_neighbours_contradict(bad, suspected)
+            wave = self._beside(bad, suspected)
 
-    def _where_neighbours_contradict(
-        self, bad: list[int], suspected: set[int]
-    ) -> list[tuple[int, int]]:
-        """The same cells in the neighbours of rows that contradict: two in each band of them."""
+    def _sample(self, row: int, random: np.random.Generator) -> list[tuple[int, int]]:
+        """A cell that was not asked yet: rather one that should pass, a little off the border."""
+        known, n = self.rows.known[row], self.rows.n
+        found = border(known, self.rows.rising)
+        free = [k for k in range(n + 1) if k not in known]
+        if found.inside is not None and found.beyond is not None and random.random() < _NEAR:
+            reach = max(2, round(_FRINGE * n))
+            ahead = 1 if found.inside > found.beyond else -1
+            fringe = {found.inside + ahead * step for step in range(1, reach + 1)}
+            free = [k for k in free if k in fringe] or free
+        return [(row, int(random.choice(free)))] if free else []
+
+    def _beside(self, bad: list[int], suspected: set[int]) -> list[tuple[int, int]]:
+        """In the neighbours of rows that contradict, the cells that did."""
         wave: set[tuple[int, int]] = set()
         for row in bad:
             changes = flips(self.rows.known[row])
-            marks = {k for (_, a), (b, _) in itertools.pairwise(changes) for k in ((a + b) // 2, a)}
+            marks = {k for (_, a), (b, _) in itertools.pairwise(changes) for k in (a, b)}
             for near in self._neighbours(row):
                 known = self.rows.known[int(near)]
                 if int(near) not in suspected:
@@ -176,22 +198,6 @@ class _Search:
     def _neighbours(self, row: int) -> Ints:
         distance = np.abs(self.rows.places - self.rows.places[row]).sum(axis=1)
         return np.flatnonzero((distance > 0) & (distance <= 1.0))
-
-    def _samples(self, rows: list[int], random: np.random.Generator) -> list[tuple[int, int]]:
-        """A cell that was not asked yet in each row."""
-        out = []
-        for row in rows:
-            free = [k for k in range(self.rows.n + 1) if k not in self.rows.known[row]]
-            if free:
-                out.append((row, int(random.choice(free))))
-        return out
-
-
-def _contradicts(known: Mapping[int, bool], rising: bool | None) -> bool:
-    """Whether a row changes more than once, or the other way than most rows."""
-    changes = flips(known)
-    wrong_way = bool(changes) and rising is not None and known[max(known)] != rising
-    return len(changes) > 1 or wrong_way
 
 
 def _stored_verdicts(store: ResultStore) -> dict[int, bool]:
@@ -210,7 +216,7 @@ def _stored_verdicts(store: ResultStore) -> dict[int, bool]:
 
 def searched_rows(store: ResultStore) -> tuple[Rows, bool]:
     """The rows as the search leaves them with what the store knows, and whether that is all."""
-    search = _Search(store, _Nobody(), None, lambda: True)
+    search = _Search(store, _Nobody(), Writer(store), None, lambda: True)
     complete = all(search.ask(wave) for wave in search.waves())
     return search.rows, complete
 

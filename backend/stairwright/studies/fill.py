@@ -11,7 +11,9 @@ import numpy as np
 from .grid import coarse_first
 from .serial import Engine, Finished, Stopped
 from .store import ResultStore
-from .variables import PENDING
+from .variables import PENDING, Record
+
+WRITE_EVERY = 2.0  # s
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,32 @@ class Meter:
             self._report(Progress(self.done, self.total, spent, left, new))
 
 
+class Writer:
+    """Writes cells down every so often: a write costs about 20 ms however few they are."""
+
+    def __init__(self, store: ResultStore) -> None:
+        self._store = store
+        self._held: dict[int, Record] = {}
+        self._written = time.monotonic()
+
+    def __enter__(self) -> Writer:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.flush()
+
+    def add(self, finished: Finished) -> None:
+        """Take in finished cells."""
+        self._held.update(finished)
+        if time.monotonic() - self._written >= WRITE_EVERY:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what is held."""
+        self._store.write(self._held)
+        self._held, self._written = {}, time.monotonic()
+
+
 def fill_grid(store: ResultStore, engine: Engine, report: Report | None, stopped: Stopped) -> None:
     """Evaluate all pending cells, coarse first."""
     pending = store.states.ravel() == PENDING
@@ -62,9 +90,10 @@ def fill_grid(store: ResultStore, engine: Engine, report: Report | None, stopped
     todo = order[pending[order]].tolist()
     meter = Meter(int((~pending).sum()), len(pending), report)
     meter.tell({})
-    for finished in engine.evaluate(store.study, todo, stopped) if todo else ():
-        store.write(finished)
-        meter.tell(finished)
+    with Writer(store) as writer:
+        for finished in engine.evaluate(store.study, todo, stopped) if todo else ():
+            writer.add(finished)
+            meter.tell(finished)
 
 
 def fill(store: ResultStore, engine: Engine, report: Report | None, stopped: Stopped) -> None:

@@ -99,6 +99,11 @@ def main() -> None:
         {
             "distributed.scheduler.allowed-failures": DEATHS,
             "distributed.worker.daemon": True,
+            # What looks at workers many times a second takes time from them.
+            "distributed.worker.profile.enabled": False,
+            "distributed.worker.memory.monitor-interval": "1s",
+            "distributed.admin.tick.interval": "1s",
+            "distributed.admin.system-monitor.interval": "5s",
             "distributed.scheduler.http.routes": [],  # nobody looks at pages of ours
             "distributed.worker.http.routes": [],
             "distributed.nanny.pre-spawn-environ.OPENBLAS_NUM_THREADS": 1,

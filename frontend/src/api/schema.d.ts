@@ -483,7 +483,7 @@ export interface paths {
          * Get Study Document
          * @description What was asked, names resolved: posted again it is the same study.
          */
-        get: operations["get_study_document"];
+        get: operations["get_question"];
         put?: never;
         post?: never;
         delete?: never;
@@ -5745,7 +5745,7 @@ export interface operations {
             };
         };
     };
-    get_study_document: {
+    get_question: {
         parameters: {
             query?: never;
             header?: never;
