@@ -146,10 +146,11 @@ def test_progress_is_a_way_to_say_the_time(session, plan):
 
 def test_layers_hide_and_come_back(session, plan):
     session.show(plan=plan, layers={"ghosts": False, "forces": False})
-    wait_for(lambda: "/forces/heads" in nodes(session))
     by_name = session._server.scene.get_handle_by_name
-    assert not by_name("/ghosts/trunk").visible
-    assert not by_name("/forces/heads").visible
+    hidden = {"/ghosts/trunk", "/forces/heads"}
+    # The scene is built on a thread of its own.
+    wait_for(lambda: hidden <= set(nodes(session)))
+    wait_for(lambda: not any(by_name(name).visible for name in hidden))
     session.set_view(layers={"forces": True})
     assert by_name("/forces/heads").visible
     assert not by_name("/ghosts/trunk").visible
