@@ -1,29 +1,19 @@
-/** The page: one screen of four areas. */
+/** The page: top bar, the open workspace, status line. */
 
 import { useEffect } from "preact/hooks";
-import { Inspector } from "./inspector/inspector";
-import { Plots } from "./plots/plots";
-import { onPageKey, onPageKeyUp } from "./profile-editor/commands";
-import { Editor } from "./profile-editor/editor";
-import { Results } from "./results/results";
-import { Scene } from "./scene/scene";
+import { Plan } from "./plan/plan";
+import { isField, onPageKey, onPageKeyUp } from "./profile-editor/commands";
 import { assertive, polite } from "./state/announce";
 import { connected } from "./state/connection";
 import { isEmpty } from "./state/drawing";
 import { plan, refusal, stale } from "./state/planning";
 import { activity, run } from "./state/rollouts";
-import { inspectorOpen, swapped, type Tab, tab } from "./state/view";
+import { inspectorOpen, swapped, tab } from "./state/view";
 import { Status } from "./status";
 import { ImportZone } from "./topbar/import-zone";
 import { TopBar } from "./topbar/topbar";
-import { Transport } from "./transport/transport";
 import { Toast } from "./ui/toast";
-
-const TABS: [Tab, string][] = [
-  ["editor", "Profile"],
-  ["scene", "Scene"],
-  ["results", "Results"],
-];
+import { openByKey, openRoom } from "./workspaces";
 
 /** In one word, for style sheets and tests. */
 function planState(): string {
@@ -32,18 +22,27 @@ function planState(): string {
   return stale.value || !plan.value ? "planning" : plan.value.status;
 }
 
+/** The number keys choose a workspace, all others belong to Plan while it is open. */
+function onKey(event: KeyboardEvent): void {
+  if (isField(event.target) || event.defaultPrevented) return;
+  const plain = !(event.ctrlKey || event.metaKey || event.altKey);
+  if (!(plain && openByKey(event.key)) && openRoom().name === "plan") onPageKey(event);
+}
+
 export function App() {
   useEffect(() => {
-    addEventListener("keydown", onPageKey);
+    addEventListener("keydown", onKey);
     addEventListener("keyup", onPageKeyUp);
     return () => {
-      removeEventListener("keydown", onPageKey);
+      removeEventListener("keydown", onKey);
       removeEventListener("keyup", onPageKeyUp);
     };
   }, []);
+  const open = openRoom();
   return (
     <div
       class="app"
+      data-workspace={open.name}
       data-offline={connected.value ? undefined : ""}
       data-swapped={swapped.value ? "" : undefined}
       data-inspector={inspectorOpen.value ? "open" : "shut"}
@@ -52,32 +51,14 @@ export function App() {
       data-run={activity.value === "idle" ? (run.value?.outcome ?? "none") : activity.value}
     >
       <TopBar />
-      <nav class="tabs" aria-label="Areas">
-        {TABS.map(([name, title]) => (
-          <button
-            key={name}
-            type="button"
-            aria-pressed={tab.value === name}
-            onClick={() => {
-              tab.value = name;
-            }}
-          >
-            {title}
-          </button>
-        ))}
-      </nav>
-      <main class="work">
-        <Editor />
-        <section class="scene3" aria-label="3-D scene">
-          <Scene />
-        </section>
-        <Inspector />
-        <section class="dock" aria-label="Playback and results">
-          <Transport />
-          <Results />
-          <Plots />
-        </section>
-      </main>
+      <div class="room" hidden={open.name !== "plan"}>
+        <Plan />
+      </div>
+      {open.name !== "plan" && (
+        <div class="room">
+          <open.room />
+        </div>
+      )}
       <Status />
       <ImportZone />
       <Toast />

@@ -58,7 +58,7 @@ function focusVertex(i: number): void {
   else requestAnimationFrame(() => element()?.focus());
 }
 
-const isField = (target: EventTarget | null) =>
+export const isField = (target: EventTarget | null) =>
   target instanceof HTMLElement && /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName);
 
 const ARROWS: Record<string, [number, number]> = {
@@ -68,7 +68,7 @@ const ARROWS: Record<string, [number, number]> = {
   ArrowDown: [0, -1],
 };
 
-/** Keys of the whole page; a text field keeps its own. */
+/** Keys of the workspace Plan; a text field keeps its own. */
 export function onPageKey(event: KeyboardEvent): void {
   if (isField(event.target) || event.defaultPrevented) return;
   const key = event.key.toLowerCase();

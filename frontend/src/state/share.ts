@@ -1,4 +1,4 @@
-/** The address: `#s=` and the state, enough to see the same page elsewhere. */
+/** The address: `#s=` and the state, enough to see the same page elsewhere; `v=` the workspace. */
 
 import { effect } from "@preact/signals";
 import type { Method, SettingValues, TerrainDocument, Vec2 } from "../api/types";
@@ -6,6 +6,7 @@ import { committed, isEmpty, open, origin, terrainDocument } from "./drawing";
 import { run, runB, runStale } from "./rollouts";
 import { compare, controller, method, robotName, seed, terrains, weights } from "./setup";
 import { toast } from "./toast";
+import { workspace } from "./workspace";
 
 /** Short keys: the whole of this stands in the link. */
 interface Shared {
@@ -94,7 +95,9 @@ export function startSharing(): void {
   let timer: ReturnType<typeof setTimeout> | undefined;
   effect(() => {
     const empty = isEmpty.value && origin.value === null;
-    const hash = empty ? "" : `#s=${encode(currentState())}`;
+    const parts = empty ? [] : [`s=${encode(currentState())}`];
+    if (workspace.value !== "plan") parts.unshift(`v=${workspace.value}`);
+    const hash = parts.length > 0 ? `#${parts.join("&")}` : "";
     clearTimeout(timer);
     timer = setTimeout(() => {
       if (hash !== location.hash) history.replaceState(null, "", hash || location.pathname);

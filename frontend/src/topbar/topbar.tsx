@@ -13,6 +13,7 @@ import { Friction } from "./friction";
 import { PlanPill } from "./plan-pill";
 import { RunButton } from "./run-button";
 import { TerrainMenu } from "./terrain-menu";
+import { WorkspaceTabs } from "./workspace-tabs";
 
 export function TopBar() {
   return (
@@ -21,6 +22,7 @@ export function TopBar() {
         <Logo />
         <span class="wide">Stairwright</span>
       </h1>
+      <WorkspaceTabs />
       <TerrainMenu
         button={
           <>
