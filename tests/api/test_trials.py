@@ -52,7 +52,7 @@ def test_trials_are_those_of_python(server: Server, api: httpx.Client) -> None:
 
 def test_trials_plan_first_and_can_be_cancelled(api: httpx.Client) -> None:
     job = api.post("/trials", json={"terrain": "three-stairs-up", "count": 500}).json()
-    assert (job["kind"], job["state"]) == ("trials", "queued")
+    assert job["kind"] == "trials"
     assert api.delete(f"/jobs/{job['id']}").json()["state"] == "cancelled"
 
 
