@@ -15,6 +15,9 @@ Form = Literal["contact", "paper"]
 Solver = Literal["native", "clarabel"]
 Sensing = Literal["ideal", "robot"]
 
+# m; a robot that does not quite know where the next face is must push on to find it.
+MAXIMUM_LEAD: dict[Sensing, float] = {"ideal": 0.012, "robot": 0.03}
+
 
 def _number(
     default: float | None, low: float, high: float, unit: str, title: str, text: str, scale: str
@@ -56,8 +59,15 @@ class ControllerSettings(Model):
     joint_speed: float = _number(
         1.5, 0.1, 10.0, "rad/s", "Joint speed", "Cap on joint rates along the plan", "log"
     )
-    leash: float = _number(
-        0.012, 0.002, 0.2, "m", "Leash", "How far the plan may run ahead of the wheels", "log"
+    leash: float | None = _number(
+        None,
+        0.002,
+        0.2,
+        "m",
+        "Leash",
+        "How far the plan may run ahead of the wheels; 30 mm if empty where the robot senses by "
+        "itself, else 12 mm",
+        "log",
     )
     joint_stiffness: float | None = _number(
         None, 0.0, 2000.0, "Nm/rad", "Joint stiffness", "K_p of eq 27; the robot's if empty", "log"
@@ -146,6 +156,11 @@ class ControllerSettings(Model):
         "Largest normal force of a wheel (eq 12); 1.3 times the robot's weight if empty",
         "log",
     )
+
+    @property
+    def maximum_lead(self) -> float:
+        """How far the plan may run ahead of the wheels [m]."""
+        return self.leash if self.leash is not None else MAXIMUM_LEAD[self.sensing]
 
     @model_validator(mode="after")
     def _check_sensing(self) -> ControllerSettings:

@@ -84,7 +84,7 @@ class Run:
         self.limit = 2.5 * self.track.duration + 5.0
         self.sensors = Sensors(disturbance, self.dt, seed, plan.poses[0].x_c)
         self.way = self.track.start
-        self.follower = follower(self.track, settings.leash)
+        self.follower = follower(self.track, settings.maximum_lead)
         self.places = np.full(4, np.nan)
         self.target = np.zeros(self.track.rows.shape[1])
         self.wanted = np.zeros(12)
@@ -126,7 +126,7 @@ class Run:
     def _native(self, every: int) -> _core.Rollout:
         controller = native_controller(self.robot, self.path, self.plan.friction, self.settings)
         model, data = int(self.model._address), int(self.data._address)  # noqa: SLF001
-        line = follower(self.track, self.settings.leash)
+        line = follower(self.track, self.settings.maximum_lead)
         bandwidth = self.disturbance.bandwidth
         perception = self._perception()
         return _core.Rollout(

@@ -16,7 +16,7 @@ constexpr double kForceTime = 0.015;    // s, smoothing of the forces
 // s, smoothing of the speed by which the wheels' scale is judged: noise in it would count twice, and shrink the scale.
 constexpr double kCruiseTime = 0.1;
 constexpr double kSure = 0.02;         // s that both faces of a corner must be felt before that counts
-constexpr double kMostScale = 0.04;    // of the wheels: more is slip
+constexpr double kMostScale = 0.025;   // of the wheels: more is slip
 constexpr double kGripUsed = 0.25;     // share of the normal force from which on traction makes slip likely
 constexpr double kAtRest = 0.015;      // m/s of rolling
 constexpr double kNearEdge = 0.015;    // m along the curve
@@ -72,6 +72,7 @@ void normalise(std::array<double, 4>& q) {
 Estimator::Estimator(Robot robot, WheelPath path, const Start& start, const Noise& noise)
     : robot_(std::move(robot)), path_(std::move(path)), noise_(noise), weight_(robot_.mass() * kGravity),
       attitude_{std::cos(0.5 * start.pitch), 0.0, std::sin(0.5 * start.pitch), 0.0}, place_(start.place), covariance_(initial(noise)) {
+    scale_ = -noise.deflection / path_.radius();
     for (WheelState& w : wheels_) w.s = std::numeric_limits<double>::quiet_NaN(), w.felt = {0.0, weight_ / 4};
 }
 

@@ -28,7 +28,7 @@ namespace stairwright::estimation {
 struct Noise {
     // At the start, of what is believed there.
     double start_place = 0.03, start_height = 0.003, start_tilt = 0.02, start_heading = 0.04;
-    double start_gyro_bias = 0.01, start_force_bias = 0.2, scale = 0.015;
+    double start_gyro_bias = 0.01, start_force_bias = 0.2, scale = 0.01;
     // Of the sensors, a reading.
     double gyro = 0.02, specific_force = 0.5;
     // Growth in the square root of a second.
@@ -36,6 +36,8 @@ struct Noise {
     // Growth of the map's error in the square root of a metre rolled, and of measurements.
     double map_along = 0.012, map_height = 0.006;
     double place = 0.002, rolling = 0.03, aside = 0.03, off_face = 0.02;
+    // A loaded tyre rolls on a radius that is smaller by this [m].
+    double deflection = 0.0004;
     // How long an error of these lasts [s].
     double place_lasts = 0.06, rolling_lasts = 0.02;
     // Of the force that a leg feels, in robot weights.
