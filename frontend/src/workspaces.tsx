@@ -1,6 +1,7 @@
 /** The workspaces there are, in the order of their keys. A workspace appears here when it works. */
 
 import type { ComponentType } from "preact";
+import { MapRoom } from "./map/map";
 import { Plan } from "./plan/plan";
 import { type Workspace, workspace } from "./state/workspace";
 
@@ -10,7 +11,10 @@ interface Room {
   room: ComponentType;
 }
 
-export const WORKSPACES: readonly Room[] = [{ name: "plan", title: "Plan", room: Plan }];
+export const WORKSPACES: readonly Room[] = [
+  { name: "plan", title: "Plan", room: Plan },
+  { name: "map", title: "Map", room: MapRoom },
+];
 
 /** The one that is open; Plan where the address names one that is not there. */
 export const openRoom = (): Room =>

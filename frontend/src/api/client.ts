@@ -66,6 +66,9 @@ async function json<T>(
   return (await (await call(method, path, body, signal)).json()) as T;
 }
 
+/** For calls that one workspace alone makes. */
+export { call as callService, json as callJson };
+
 export const getTerrains = () => json<TerrainDocument[]>("GET", "terrains");
 export const getRobots = () => json<RobotDocument[]>("GET", "robots");
 export const getSettings = () => json<Settings>("GET", "settings");

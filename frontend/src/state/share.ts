@@ -1,6 +1,7 @@
-/** The address: `#s=` and the state, enough to see the same page elsewhere; `v=` the workspace. */
+/** The address: `#s=` and the state, enough to see the same page elsewhere; `v=` the workspace,
+ * and what workspaces keep there under letters of their own. */
 
-import { effect } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import type { Method, SettingValues, TerrainDocument, Vec2 } from "../api/types";
 import { committed, isEmpty, open, origin, terrainDocument } from "./drawing";
 import { run, runB, runStale } from "./rollouts";
@@ -22,17 +23,22 @@ interface Shared {
   rb?: string;
 }
 
-function encode(state: Shared): string {
+/** What other workspaces keep in the address, by their letter. */
+export const kept = signal<Readonly<Record<string, string>>>({});
+
+/** A value as the address takes it. */
+export function encode(state: unknown): string {
   const bytes = new TextEncoder().encode(JSON.stringify(state));
   let text = "";
   for (const byte of bytes) text += String.fromCharCode(byte);
   return btoa(text).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "");
 }
 
-function decode(text: string): Shared {
+/** Throws where the text is none of `encode`'s. */
+export function decode(text: string): unknown {
   const binary = atob(text.replace(/-/g, "+").replace(/_/g, "/"));
   const bytes = Uint8Array.from(binary, (c) => c.charCodeAt(0));
-  return JSON.parse(new TextDecoder().decode(bytes)) as Shared;
+  return JSON.parse(new TextDecoder().decode(bytes));
 }
 
 const filled = (values: object | undefined) => values && Object.keys(values).length > 0;
@@ -67,7 +73,7 @@ export function restoreFromAddress(): Restored | null {
   if (!text) return null;
   let state: Shared;
   try {
-    state = decode(text);
+    state = decode(text) as Shared;
     if (!Array.isArray(state.t.points)) throw new TypeError("no points");
   } catch {
     toast.value = { text: "This link could not be read; the sample is shown instead." };
@@ -96,6 +102,7 @@ export function startSharing(): void {
   effect(() => {
     const empty = isEmpty.value && origin.value === null;
     const parts = empty ? [] : [`s=${encode(currentState())}`];
+    for (const [letter, text] of Object.entries(kept.value)) parts.unshift(`${letter}=${text}`);
     if (workspace.value !== "plan") parts.unshift(`v=${workspace.value}`);
     const hash = parts.length > 0 ? `#${parts.join("&")}` : "";
     clearTimeout(timer);

@@ -1,0 +1,99 @@
+/** On the right: what building codes ask for and the robot climbs, and the cell that is kept. */
+
+import { fixed } from "../geometry/format";
+import { Icon } from "../ui/icon";
+import { Facts } from "./card";
+import { factsAt, frictionAt } from "./cell";
+import { CODES } from "./codes";
+import { openCell } from "./open-cell";
+import { share } from "./share-climbed";
+import { fields, robotAxis } from "./state";
+import { options, pinned, shownAxes, showsCodes } from "./view";
+
+export function CellPanel() {
+  return (
+    <aside class="map-side right" aria-label="Cell">
+      <div class="scroll">
+        {showsCodes.value && fields.value.length > 0 && <Codes />}
+        <Pinned />
+      </div>
+    </aside>
+  );
+}
+
+function Codes() {
+  const axes = shownAxes.value!;
+  const names = robotAxis.value?.values.map(String) ?? [""];
+  const friction = frictionAt();
+  return (
+    <section>
+      <h2>Building codes</h2>
+      {names.map((name, robot) => (
+        <table key={name} class="codes">
+          {name && <caption>{name}</caption>}
+          <thead>
+            <tr>
+              <th scope="col">code</th>
+              <th scope="col">climbs</th>
+              <th scope="col">needs μ</th>
+              <th scope="col">CoM, mm</th>
+            </tr>
+          </thead>
+          <tbody>
+            {CODES.filter((code) => options.value.codes.has(code.name)).map((code) => {
+              const climbed = share(code, robot, axes[0].values, axes[1].values);
+              return (
+                <tr key={code.name}>
+                  <th scope="row" title={code.note}>
+                    {code.name}
+                  </th>
+                  <td>{climbed.asked ? `${fixed(climbed.percent, 0)} %` : "–"}</td>
+                  <td>{fixed(climbed.friction, 2)}</td>
+                  <td>{fixed(climbed.com * 1000, 0)}</td>
+                </tr>
+              );
+            })}
+          </tbody>
+        </table>
+      ))}
+      <p class="sub">
+        Share of each code’s stairs on this map that the robot climbs
+        {friction === null ? "" : ` at μ ${fixed(friction, 2)}`}, and the worst of those it climbs.
+      </p>
+    </section>
+  );
+}
+
+function Pinned() {
+  const place = pinned.value;
+  const facts = place && factsAt(place);
+  if (!facts || !place) {
+    return (
+      <section>
+        <h2>Kept cell</h2>
+        <p class="sub">Shift-click a cell, or press Space on it, to keep it here.</p>
+      </section>
+    );
+  }
+  return (
+    <section class="kept">
+      <header>
+        <h2>Kept cell</h2>
+        <button
+          type="button"
+          class="t ico"
+          aria-label="Let go of the cell"
+          onClick={() => {
+            pinned.value = null;
+          }}
+        >
+          <Icon name="close" />
+        </button>
+      </header>
+      <Facts facts={facts} />
+      <button type="button" class="btn pri" onClick={() => void openCell(place)}>
+        Open as plan
+      </button>
+    </section>
+  );
+}

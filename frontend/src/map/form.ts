@@ -1,0 +1,142 @@
+/** What a map is asked for: its axes and what is done about friction; and the study that asks it. */
+
+import { signal } from "@preact/signals";
+import { drawing } from "../state/drawing";
+import { request } from "../state/planning";
+import { axisKind } from "./quantities";
+import type { StudyDocument } from "./studies";
+
+export interface Range {
+  name: string;
+  from: number;
+  to: number;
+  count: number;
+}
+
+/** Friction: the page's, searched for the least that does, or some of them one after the other. */
+export type Friction = "page" | "least" | "slices";
+
+export interface Form {
+  x: Range;
+  y: Range;
+  friction: Friction;
+  slices: readonly number[];
+  steps: number;
+  /** Another robot to compare with. */
+  second: string | null;
+}
+
+const range = (name: string): Range => {
+  const [from, to, count] = axisKind(name).range;
+  return { name, from, to, count };
+};
+
+const SLICES = [0.3, 0.45, 0.6, 0.8];
+/** Friction is searched between this and the page's, to this tolerance. */
+const LEAST_FRICTION = 0.1;
+const TOLERANCE = 0.025;
+
+const asked = (x: string, y: string): Form => ({
+  x: range(x),
+  y: range(y),
+  friction: "page",
+  slices: SLICES,
+  steps: 3,
+  second: null,
+});
+
+export interface Preset {
+  title: string;
+  note: string;
+  form: Form;
+}
+
+export const PRESETS: readonly Preset[] = [
+  { title: "Stairs", note: "tread × rise", form: asked("stairs.tread", "stairs.rise") },
+  {
+    title: "Stairs, least friction",
+    note: "tread × rise, by bisection",
+    form: { ...asked("stairs.tread", "stairs.rise"), friction: "least" },
+  },
+  { title: "Step", note: "friction × height", form: asked("friction", "step.height") },
+  {
+    title: "Payload",
+    note: "friction × payload, on this terrain",
+    form: asked("friction", "payload"),
+  },
+  {
+    title: "Legs",
+    note: "thigh × calf, on this terrain",
+    form: asked("robot.thigh.length", "robot.calf.length"),
+  },
+];
+
+export const form = signal<Form>(PRESETS[0]!.form);
+
+export function change(part: Partial<Form>): void {
+  form.value = { ...form.peek(), ...part };
+}
+
+/** Another quantity on an axis: with its own range; the two change places where both are one. */
+export function chooseAxis(which: "x" | "y", name: string): void {
+  const now = form.peek();
+  const other = which === "x" ? "y" : "x";
+  if (now[other].name === name) change({ x: now.y, y: now.x });
+  else change({ [which]: range(name) });
+}
+
+const axesOf = (now: Form) => [now.x.name, now.y.name];
+
+export const asksSteps = (now: Form) =>
+  axesOf(now).some((name) => axisKind(name).group === "stairs") &&
+  !axesOf(now).includes("stairs.steps");
+
+export const hasFriction = (now: Form) => axesOf(now).includes("friction");
+
+/** Which terrain is meant, in a few words. */
+export function ground(now: Form): string {
+  const group = axesOf(now)
+    .map((name) => axisKind(name).group)
+    .find(Boolean);
+  if (group === "stairs") return asksSteps(now) ? `${now.steps} steps up` : "stairs up";
+  if (group) return `one ${group}`;
+  return drawing.value.name;
+}
+
+/** The study; null while the page has nothing to plan with. */
+export function documentOf(now: Form): StudyDocument | null {
+  const page = request.peek();
+  if (!page) return null;
+  const axes: StudyDocument[] = [now.x, now.y].map(({ name, from, to, count }) => ({
+    name,
+    from,
+    to,
+    count,
+  }));
+  if (now.second) axes.push({ name: "robot", values: [page.robot, now.second] });
+  const rest: StudyDocument = { friction: page.friction };
+  if (hasFriction(now)) delete rest.friction;
+  else if (now.friction === "slices") {
+    axes.push({ name: "friction", values: [...now.slices] });
+    delete rest.friction;
+  } else if (now.friction === "least" && page.friction > LEAST_FRICTION + TOLERANCE) {
+    axes.push({
+      name: "friction",
+      boundary: [LEAST_FRICTION, page.friction],
+      tolerance: TOLERANCE,
+    });
+    delete rest.friction;
+  }
+  const groups = axesOf(now).map((name) => axisKind(name).group);
+  if (groups.includes("stairs")) {
+    rest.terrain = { kind: "stair", rise: 0.17, run: 0.28, count: now.steps };
+  } else if (!groups.some(Boolean)) rest.terrain = page.terrain;
+  return {
+    schema: "stairwright/study/1",
+    robot: page.robot,
+    method: page.method,
+    ...(page.weights ? { weights: page.weights } : {}),
+    ...rest,
+    axes,
+  };
+}

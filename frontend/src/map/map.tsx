@@ -1,0 +1,106 @@
+/** The workspace Map: how far can it go? Axes and progress, the map, codes and a kept cell. */
+
+import { useEffect } from "preact/hooks";
+import { fixed } from "../geometry/format";
+import { Icon } from "../ui/icon";
+import { frictionAt } from "./cell";
+import { CellPanel } from "./cell-panel";
+import { Earlier } from "./earlier";
+import { ExportMenu } from "./export";
+import { MapView } from "./map-view";
+import { Slices } from "./slices";
+import { asked, begin, missing, pairView, refusal, robotAxis, study } from "./state";
+import { StudyPanel } from "./study-panel";
+import { MapTable } from "./table";
+import { asTable } from "./view";
+
+export function MapRoom() {
+  useEffect(begin, []);
+  return (
+    <main class="map-room">
+      <StudyPanel />
+      <section class="map-middle" aria-label="Map">
+        <header class="ph">
+          <h2>
+            Capability map <small>{subtitle()}</small>
+          </h2>
+          {robotAxis.value && <PairView />}
+          {study.value && (
+            <button
+              type="button"
+              class={asTable.value ? "t on" : "t"}
+              aria-pressed={asTable.value}
+              onClick={() => {
+                asTable.value = !asTable.value;
+              }}
+            >
+              <Icon name="table" />
+              Table
+            </button>
+          )}
+          <Earlier />
+          {study.value && <ExportMenu />}
+        </header>
+        <Slices />
+        {refusal.value && (
+          <p class="error map-note" role="alert">
+            {refusal.value}
+          </p>
+        )}
+        <Body />
+      </section>
+      <CellPanel />
+    </main>
+  );
+}
+
+function subtitle(): string {
+  const friction = frictionAt();
+  const names = robotAxis.value?.values.join(" and ") ?? asked.value?.robot;
+  if (!study.value || !names) return "";
+  return friction === null ? names : `${names}, μ ${fixed(friction, 2)}`;
+}
+
+function Body() {
+  if (missing.value) {
+    return (
+      <div class="map-empty">
+        <h3>This service cannot compute maps.</h3>
+        <p>{missing.value}</p>
+      </div>
+    );
+  }
+  if (!study.value) {
+    return (
+      <div class="map-empty">
+        <h3>How far can it go?</h3>
+        <p>
+          Choose what varies on the left and press Run. Each cell is one plan; a coarse picture
+          comes first.
+        </p>
+      </div>
+    );
+  }
+  return asTable.value ? <MapTable /> : <MapView />;
+}
+
+function PairView() {
+  return (
+    <div class="seg" role="radiogroup" aria-label="Two robots">
+      {(["both", "difference"] as const).map((name) => (
+        <button
+          key={name}
+          type="button"
+          role="radio"
+          aria-checked={pairView.value === name}
+          class={pairView.value === name ? "on" : ""}
+          onClick={() => {
+            pairView.value = name;
+          }}
+        >
+          {name === "both" ? "Side by side" : "Difference"}
+        </button>
+      ))}
+    </div>
+  );
+}

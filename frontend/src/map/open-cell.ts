@@ -1,0 +1,78 @@
+/** A cell as a plan in the editor: the terrain, robot, friction and weights it was asked with. */
+
+import { batch } from "@preact/signals";
+import { callJson } from "../api/client";
+import type { Method, RobotDocument, SettingValues, TerrainDocument } from "../api/types";
+import { fit } from "../profile-editor/viewport";
+import { report } from "../state/connection";
+import { open } from "../state/drawing";
+import { method, robotName, robots, weights } from "../state/setup";
+import { toast } from "../state/toast";
+import { workspace } from "../state/workspace";
+import { factsAt } from "./cell";
+import type { Place } from "./frame";
+import { study } from "./state";
+import { getCell } from "./studies";
+
+interface Question {
+  terrain: TerrainDocument;
+  robot: RobotDocument;
+  friction: number;
+  method: Method;
+  weights: SettingValues;
+}
+
+export async function openCell(place: Place): Promise<void> {
+  const facts = factsAt(place);
+  const id = study.peek()?.id;
+  if (!facts || !id || facts.cell < 0) return;
+  try {
+    const { plan } = await getCell(id, facts.cell);
+    if (!plan) {
+      toast.value = { text: "These values make no stairs, so there is nothing to open." };
+      return;
+    }
+    const question = plan as unknown as Question;
+    const robot = await known(question.robot, facts.title);
+    batch(() => {
+      open({ ...question.terrain, name: facts.title, friction: question.friction }, null);
+      robotName.value = robot;
+      method.value = question.method;
+      weights.value = { ...weights.peek(), [question.method]: question.weights };
+      workspace.value = "plan";
+    });
+    fit(question.terrain.points);
+  } catch (error) {
+    report(error);
+    toast.value = { text: error instanceof Error ? error.message : String(error) };
+  }
+}
+
+const LONGEST = 60;
+
+/** The robot's name; one that a map has changed is stored first, under a name that says how. */
+async function known(robot: RobotDocument, title: string): Promise<string> {
+  const same = robots.peek().find((each) => each.name === robot.name);
+  if (same && alike(same, robot)) return robot.name;
+  const tail = title.replaceAll(/[^a-z0-9.]+/gi, "-").replaceAll(/-+$/g, "");
+  const name = `${robot.name}-${tail}`.slice(0, LONGEST);
+  const { readonly: _, ...file } = { ...robot, name } as RobotDocument & { readonly?: boolean };
+  const stored = await callJson<RobotDocument>("PUT", `robots/${encodeURIComponent(name)}`, file);
+  robots.value = [...robots.peek().filter((each) => each.name !== name), stored];
+  toast.value = { text: `The robot is kept as ${name}.` };
+  return name;
+}
+
+/** Whether two files say the same, in whatever order; what a service adds does not count. */
+function alike(a: RobotDocument, b: RobotDocument): boolean {
+  const plain = (robot: RobotDocument) =>
+    JSON.stringify(robot, (key, value) => {
+      if (key === "readonly" || key === "schema") return undefined;
+      if (value && typeof value === "object" && !Array.isArray(value)) {
+        const entries = Object.entries(value).filter(([, v]) => v !== null);
+        return Object.fromEntries(entries.sort(([x], [y]) => (x < y ? -1 : 1)));
+      }
+      return value;
+    });
+  return plain(a) === plain(b);
+}

@@ -1,0 +1,65 @@
+/** The map as a table: the same cells and words, for screen readers and for whoever wants numbers. */
+
+import { fixed } from "../geometry/format";
+import { PASSES, STOPPED } from "./cube";
+import { openCell } from "./open-cell";
+import { quantityOf, reasonWords } from "./quantities";
+import { quantity } from "./state";
+import { contents, shownAxes } from "./view";
+
+export function MapTable() {
+  const axes = shownAxes.value;
+  const kind = quantityOf(quantity.value);
+  if (!axes) return null;
+  const [x, y] = axes;
+  const rows = y.values.map((_, j) => y.values.length - 1 - j);
+  return (
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: it scrolls by keys
+    <section class="map-table" aria-label="Map as a table" tabIndex={0}>
+      {contents.value.list.map(({ field, values, title }, panel) => (
+        <table key={title ?? ""}>
+          <caption>
+            {title ? `${title}: ` : ""}
+            {kind.title}, {kind.unit}; {y.kind.title.toLowerCase()} {y.kind.unit} down,{" "}
+            {x.kind.title.toLowerCase()} {x.kind.unit} across
+          </caption>
+          <thead>
+            <tr>
+              <td />
+              {x.values.map((v) => (
+                <th key={v} scope="col">
+                  {fixed(v, x.kind.digits)}
+                </th>
+              ))}
+            </tr>
+          </thead>
+          <tbody>
+            {rows.map((j) => (
+              <tr key={j}>
+                <th scope="row">{fixed(y.values[j]!, y.kind.digits)}</th>
+                {x.values.map((v, i) => {
+                  const here = j * field.nx + i;
+                  const verdict = field.coarse[here] === 1 ? field.verdict[here] : 0;
+                  const value = values[here]!;
+                  return (
+                    <td key={v} class={verdict === STOPPED ? "no" : ""}>
+                      <button
+                        type="button"
+                        tabIndex={-1}
+                        onClick={() => void openCell({ panel, i, j })}
+                      >
+                        {verdict === STOPPED && reasonWords(field.reason[here]!)[1]}
+                        {verdict === PASSES && fixed(value, kind.digits)}
+                        {verdict !== PASSES && verdict !== STOPPED && "…"}
+                      </button>
+                    </td>
+                  );
+                })}
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      ))}
+    </section>
+  );
+}
