@@ -83,7 +83,7 @@ function remember(): void {
 }
 
 /** Finish a change of settings: one step, however far a slider went. */
-function commitChoices(): void {
+export function commitChoices(): void {
   if (JSON.stringify(choices.peek()) === JSON.stringify(chosen)) return;
   remember();
   chosen = choices.peek();

@@ -11,7 +11,7 @@ import type { Method, Plan, PlanRequest } from "../api/types";
 import { connected, report } from "./connection";
 import { drawing, isEmpty, terrainDocument } from "./drawing";
 import { Pace } from "./pace";
-import { changedWeights, compare, method, robotName, robots, settings } from "./setup";
+import { changedWeights, compare, method, robotSource, robots, settings } from "./setup";
 
 /** Shorter waits show no spinner: it would only flicker [ms]. */
 const PATIENCE = 150;
@@ -66,7 +66,7 @@ function ask(by: Method, weights: PlanRequest["weights"]): PlanRequest {
   const state = drawing.value;
   return {
     terrain: terrainDocument(state),
-    robot: robotName.value,
+    robot: robotSource.value,
     friction: state.friction,
     method: by,
     ...(weights && Object.keys(weights).length > 0 ? { weights } : {}),
