@@ -2,6 +2,7 @@
 
 import type { ComponentType } from "preact";
 import { Plan } from "./plan/plan";
+import { RobotRoom } from "./robot/room";
 import { type Workspace, workspace } from "./state/workspace";
 
 interface Room {
@@ -10,7 +11,10 @@ interface Room {
   room: ComponentType;
 }
 
-export const WORKSPACES: readonly Room[] = [{ name: "plan", title: "Plan", room: Plan }];
+export const WORKSPACES: readonly Room[] = [
+  { name: "plan", title: "Plan", room: Plan },
+  { name: "robot", title: "Robot", room: RobotRoom },
+];
 
 /** The one that is open; Plan where the address names one that is not there. */
 export const openRoom = (): Room =>

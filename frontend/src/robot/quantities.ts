@@ -270,8 +270,8 @@ type MotorField = "torque" | "speed" | "armature";
 const MOTORS: Quantity[] = (["leg", "thigh", "calf", "wheel"] as const).flatMap((name) =>
   (
     [
-      ["torque", TORQUE, "peak torque", /torque/i],
-      ["speed", SPEED, "no-load speed", /speed/i],
+      ["torque", TORQUE, "torque", /torque/i],
+      ["speed", SPEED, "top speed", /speed/i],
       ["armature", ROTOR, "rotor inertia", /rotor|armature/i],
     ] as const
   ).map(([field, kind, text, words]) => motorRow(name, field, kind, text, words)),
@@ -288,7 +288,7 @@ function motorRow(
   return quantity(
     `${name}.${field}`,
     "Motors",
-    `${label}, ${text}`,
+    `${label} ${text}`,
     kind,
     words,
     (f) => f.actuators[name]?.[field] ?? null,

@@ -27,6 +27,13 @@ export const controller = signal<SettingValues>({});
 
 /** Robots that were changed or imported and are not saved as they are now, by name. */
 export const robotEdits = signal<Readonly<Record<string, RobotDocument>>>({});
+/** Stored robots as they are now, then those that were only read from files. */
+export const allRobots = computed<RobotDocument[]>(() => {
+  const edits = robotEdits.value;
+  const names = new Set(robots.value.map((r) => r.name));
+  const unsaved = Object.values(edits).filter((r) => !names.has(r.name));
+  return [...robots.value.map((r) => edits[r.name] ?? r), ...unsaved];
+});
 /** The robot as it is stored; null for one that never was. */
 export const storedRobot = computed(
   () => robots.value.find((r) => r.name === robotName.value) ?? null,
