@@ -26,6 +26,9 @@ const TRUNK_HEIGHT = 96;
 /** How far beside a link its length is drawn [px]. */
 const LINK = 62;
 
+/** With less room beside the middle the trunk's height stands in the table alone [px]. */
+const NARROW = 260;
+
 const unit = (a: Vec2, b: Vec2): Vec2 => {
   const d: Vec2 = [b[0] - a[0], b[1] - a[1]];
   const length = Math.hypot(...d) || 1;
@@ -39,7 +42,8 @@ export function dimensions(file: RobotDocument, bones: Skeleton, to: Projection)
   const top = Math.min(...corners.map((p) => p[1]), ...(bones.payload ?? []).map((p) => px(p)[1]));
   const ground = to.py(0);
   const back = Math.min(...corners.map((p) => p[0]));
-  const left = Math.min(back - TRUNK_HEIGHT - 60, ...rear.map((p) => p[0]));
+  const narrow = to.px(0) < NARROW;
+  const left = Math.min(narrow ? back : back - TRUNK_HEIGHT - 60, ...rear.map((p) => p[0]));
   const trunk = bones.trunk.map(px);
   const line = (
     id: string,
@@ -110,5 +114,5 @@ export function dimensions(file: RobotDocument, bones: Skeleton, to: Projection)
       0.4,
     ),
   ];
-  return out;
+  return narrow ? out.filter((d) => d.id !== "trunk.height") : out;
 }

@@ -1,6 +1,6 @@
 /** The robots there are: presets, one's own, those just read from files; and the door for files. */
 
-import { useMemo, useRef, useState } from "preact/hooks";
+import { useMemo, useRef } from "preact/hooks";
 import type { RobotDocument } from "../api/types";
 import { fixed } from "../geometry/format";
 import { robotShape, skeleton } from "../geometry/robot";
@@ -16,31 +16,12 @@ import { dismiss, readFile, remove } from "./shelf";
 
 export function Library() {
   const file = useRef<HTMLInputElement>(null);
-  const [over, setOver] = useState(false);
   const read = Object.values(imports.value).filter(
     ({ robot }) => !robots.value.some((r) => r.name === robot.name),
   );
   const own = robots.value.filter((r) => !r.readonly);
   return (
-    <aside
-      class={`library${over ? " over" : ""}`}
-      aria-label="Robots"
-      onDragOver={(event) => {
-        if (!event.dataTransfer?.types.includes("Files")) return;
-        event.preventDefault();
-        event.stopPropagation();
-        setOver(true);
-      }}
-      onDragLeave={() => setOver(false)}
-      onDrop={(event) => {
-        const dropped = event.dataTransfer?.files[0];
-        setOver(false);
-        if (!dropped) return;
-        event.preventDefault();
-        event.stopPropagation();
-        void readFile(dropped);
-      }}
-    >
+    <aside class="library" aria-label="Robots">
       <header class="hd">
         <h2>Robots</h2>
       </header>
@@ -156,7 +137,7 @@ function Thumbnail({ robot }: { robot: RobotDocument }) {
     return { shape, bones, to };
   }, [robot]);
   return (
-    <svg class="thumb" width={WIDE} height={TALL} aria-hidden="true">
+    <svg class="thumb" viewBox={`0 0 ${WIDE} ${TALL}`} aria-hidden="true">
       <path class="floor" d={`M0 ${TALL - 1.5}H${WIDE}`} />
       <Figure robot={drawn.shape} bones={drawn.bones} to={drawn.to} kind="key" />
     </svg>
