@@ -1,6 +1,7 @@
 /** Pulling at the side view: one drag is one step in the history, Escape gives it up. */
 
 import type { RobotDocument, Vec2 } from "../api/types";
+import { held } from "../state/drawing";
 import { robotDocument } from "../state/setup";
 import { draft, finish, posture, selected } from "./edit";
 import { clamped, quantityOf } from "./quantities";
@@ -23,7 +24,12 @@ interface Held {
   release: () => void;
 }
 
-let held: Held | null = null;
+let inHand: Held | null = null;
+
+function take(next: Held): void {
+  inHand = next;
+  held.value = true;
+}
 
 const onGrid = (value: number, step: number) =>
   Number((Math.round(value / step) * step).toFixed(9));
@@ -34,7 +40,7 @@ export function hold(pulls: readonly Pull[], from: Vec2): void {
   if (!file) return;
   selected.value = pulls[0]!.id;
   const { scale } = projection.peek();
-  held = {
+  take({
     from,
     file,
     move: (at, fine) => {
@@ -50,7 +56,7 @@ export function hold(pulls: readonly Pull[], from: Vec2): void {
       draft(next);
     },
     release: finish,
-  };
+  });
 }
 
 /** Angle of a joint whose link points to `at` on screen; nearest to the one before. */
@@ -67,7 +73,7 @@ export function holdLimit(id: string, joint: Vec2, zero: number, from: Vec2): vo
   selected.value = id;
   const q = quantityOf(id);
   let value = q.read(file) ?? 0;
-  held = {
+  take({
     from,
     file,
     move: (at, fine) => {
@@ -76,7 +82,7 @@ export function holdLimit(id: string, joint: Vec2, zero: number, from: Vec2): vo
       draft(q.write(file, clamped(q, onGrid(value, step))));
     },
     release: finish,
-  };
+  });
 }
 
 /** Take hold of the dot at a joint's angle: poses the leg, and changes nothing of the robot. */
@@ -85,7 +91,7 @@ export function holdJoint(index: number, joint: Vec2, zero: number, range: Vec2,
   const start = frame.peek()?.q;
   if (!file || !start) return;
   let value = start[index]!;
-  held = {
+  take({
     from,
     file,
     move: (at) => {
@@ -95,22 +101,23 @@ export function holdJoint(index: number, joint: Vec2, zero: number, range: Vec2,
       posture.value = q;
     },
     release: () => undefined,
-  };
+  });
 }
 
 export function pull(at: Vec2, fine: boolean): void {
-  held?.move(at, fine);
+  inHand?.move(at, fine);
 }
 
 export function letGo(): void {
-  held?.release();
-  held = null;
+  held.value = false;
+  inHand?.release();
+  inHand = null;
 }
 
-/** Back to how it was when the hand took hold. True if there was something to give up. */
-export function giveUp(): boolean {
-  if (!held) return false;
-  draft(held.file);
-  held = null;
-  return true;
+/** Back to how it was when the hand took hold. */
+export function giveUp(): void {
+  if (!inHand) return;
+  draft(inHand.file);
+  inHand = null;
+  held.value = false;
 }

@@ -10,17 +10,17 @@ import { Figure } from "../profile-editor/figure";
 import { worst } from "../profile-editor/margins";
 import { drawing } from "../state/drawing";
 import { follow, plan, preview, refusal, slow, stale } from "../state/planning";
-import { robotDocument, robotName } from "../state/setup";
+import { robotName } from "../state/setup";
 import { Icon } from "../ui/icon";
 import { Menu, MenuItem } from "../ui/menu";
-import { rivalDocument, rivalName, rivalPlan, rivalRequest, rivals, swap } from "./rival";
+import { rivalName, rivalPending, rivalPlan, rivalRequest, rivals, swap } from "./rival";
 import { fitted, previewSize } from "./stage";
 
 /** How far along both are shown: a robot half-way up says more than one that waits. */
 const share = signal(0.43);
 
 export function Preview() {
-  useEffect(() => follow(rivalRequest, rivalPlan), []);
+  useEffect(() => follow(rivalRequest, rivalPlan, rivalPending), []);
   const a = preview.value ?? plan.value;
   return (
     <section class="preview" aria-label="Two robots on this terrain">
@@ -31,7 +31,7 @@ export function Preview() {
           <div class="grow" />
           <Verdict of={a} waiting={slow.value || (stale.value && !preview.value)} live />
         </header>
-        <Stage of={a} robot={robotDocument.value} />
+        <Stage of={a} />
         <Facts of={a} refused={refusal.value} />
       </div>
       <div class="rivals">
@@ -39,7 +39,7 @@ export function Preview() {
           <b class="ab b">B</b>
           <Rival />
           <div class="grow" />
-          <Verdict of={rivalPlan.value} waiting={!rivalPlan.value} />
+          <Verdict of={rivalPlan.value} waiting={rivalPending.value} />
           <button
             type="button"
             class="t ico"
@@ -50,7 +50,7 @@ export function Preview() {
             <Icon name="exchange" />
           </button>
         </header>
-        <Stage of={rivalPlan.value} robot={rivalDocument.value} />
+        <Stage of={rivalPlan.value} />
         <Facts of={rivalPlan.value} refused={null} />
       </div>
       <input
@@ -75,8 +75,10 @@ function Rival() {
   return (
     <Menu
       label="Robot B"
+      named
       button={
         <>
+          <span class="sr">Robot B</span>
           <b>{rivalName.value}</b>
           {same && <small>as stored</small>}
           <Icon name="down" />
@@ -167,7 +169,7 @@ function Facts({ of, refused }: { of: Plan | null; refused: string | null }) {
 /** Figures beside the one in hand. */
 const GHOSTS = 6;
 
-function Stage({ of, robot }: { of: Plan | null; robot: RobotDocument | null }) {
+function Stage({ of }: { of: Plan | null }) {
   const box = useRef<HTMLDivElement>(null);
   useLayoutEffect(() => {
     const element = box.current!;
@@ -181,7 +183,7 @@ function Stage({ of, robot }: { of: Plan | null; robot: RobotDocument | null }) 
   return (
     <div class="stage" ref={box}>
       <svg width={width} height={height} role="img" aria-label={told(of)}>
-        {width > 0 && <Drawn of={of} robot={robot} />}
+        {width > 0 && <Drawn of={of} />}
       </svg>
     </div>
   );
@@ -190,14 +192,15 @@ function Stage({ of, robot }: { of: Plan | null; robot: RobotDocument | null }) 
 const told = (of: Plan | null) =>
   of ? `${of.robot} over ${of.terrain.name}: ${of.poses.length} poses` : "No plan yet";
 
-function Drawn({ of, robot }: { of: Plan | null; robot: RobotDocument | null }) {
+/** Each with the robot that was planned, which may be older than the one in hand. */
+function Drawn({ of }: { of: Plan | null }) {
   const to = fitted.value;
   const { height } = previewSize.value;
   const ground = drawing.value.points;
   const line = ground.map(to.at).join(" ");
   const [first, last] = [ground[0], ground[ground.length - 1]];
   if (!first || !last) return null;
-  const shape = robot && robotShape(robot);
+  const shape = of && robotShape(of.robot_description as RobotDocument);
   const times = of ? poseTimes(of) : [];
   const total = times[times.length - 1] ?? 0;
   const at = (t: number) => (of && shape ? planFrame(of, t) : null);

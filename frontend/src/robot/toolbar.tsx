@@ -106,7 +106,8 @@ function Files() {
 function Save() {
   return (
     <Menu
-      label="Save robot"
+      label="Save as"
+      named
       button="Save as"
       buttonClass="btn"
       panelClass="save-robot"

@@ -55,6 +55,8 @@ interface Question {
 interface Follower {
   request: ReadonlySignal<PlanRequest | null>;
   answer: Signal<Plan | null>;
+  /** The answer is to an older question. */
+  pending: Signal<boolean>;
   /** The last question that was answered, as text. */
   key: string;
 }
@@ -224,11 +226,16 @@ export function unoptimised(question: PlanRequest): PlanRequest {
 const followers: Follower[] = [];
 
 /** Keep `answer` the answer to `request` from now on; A goes first, one solve runs at a time. */
-export function follow(request: Follower["request"], answer: Follower["answer"]): () => void {
-  const follower = { request, answer, key: "" };
+export function follow(
+  request: Follower["request"],
+  answer: Follower["answer"],
+  pending: Follower["pending"] = signal(false),
+): () => void {
+  const follower = { request, answer, pending, key: "" };
   followers.push(follower);
   const stop = effect(() => {
     if (request.value) {
+      pending.value = JSON.stringify(request.value) !== follower.key;
       if (!stale.value && connected.value) askFollowers();
     } else {
       answer.value = null;
@@ -257,6 +264,7 @@ function answerFollower(follower: Follower, key: string, answer: Plan | null): v
   if (key === JSON.stringify(follower.request.peek())) {
     follower.key = key;
     follower.answer.value = answer;
+    follower.pending.value = false;
   }
   askFollowers();
 }
