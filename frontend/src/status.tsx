@@ -4,14 +4,24 @@ import { fixed, millimetres } from "./geometry/format";
 import { worst } from "./profile-editor/margins";
 import { connected, latency } from "./state/connection";
 import { outdated, plan } from "./state/planning";
+import type { Workspace } from "./state/workspace";
+import { openRoom } from "./workspaces";
 
-const KEYS = [
-  ["Arrows", "1 cm"],
-  ["Shift", "10 cm"],
-  ["Del", "remove"],
-  ["Ctrl Z", "undo"],
-  ["Space", "play"],
-];
+const KEYS: Partial<Record<Workspace, string[][]>> = {
+  plan: [
+    ["Arrows", "1 cm"],
+    ["Shift", "10 cm"],
+    ["Del", "remove"],
+    ["Ctrl Z", "undo"],
+    ["Space", "play"],
+  ],
+  robot: [
+    ["Drag", "a dimension"],
+    ["Alt", "fine"],
+    ["Enter", "type a value"],
+    ["Ctrl Z", "undo"],
+  ],
+};
 
 export function Status() {
   const shown = plan.value;
@@ -29,7 +39,7 @@ export function Status() {
       {shown && outdated.value && <span>of the drawing before the latest edit</span>}
       {shown && !shown.problem && !outdated.value && <Certified />}
       <span class="keys">
-        {KEYS.map(([key, does]) => (
+        {(KEYS[openRoom().name] ?? []).map(([key, does]) => (
           <span key={key}>
             <kbd>{key}</kbd>
             {does}

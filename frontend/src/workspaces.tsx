@@ -3,6 +3,7 @@
 import type { ComponentType } from "preact";
 import { MapRoom } from "./map/map";
 import { Plan } from "./plan/plan";
+import { RobotRoom } from "./robot/room";
 import { type Workspace, workspace } from "./state/workspace";
 
 interface Room {
@@ -13,6 +14,7 @@ interface Room {
 
 export const WORKSPACES: readonly Room[] = [
   { name: "plan", title: "Plan", room: Plan },
+  { name: "robot", title: "Robot", room: RobotRoom },
   { name: "map", title: "Map", room: MapRoom },
 ];
 

@@ -1,12 +1,14 @@
 /** One function a REST call. Throws `ApiError` for an answer that says no, `Offline` for none. */
 
 import type {
+  ImportedRobot,
   Job,
   Plan,
   PlanRequest,
   ProblemDetail,
   RobotDocument,
   Rollout,
+  SentRobot,
   Settings,
   SettingValues,
   TerrainDocument,
@@ -91,6 +93,22 @@ export const putTerrain = (terrain: TerrainDocument) => {
 
 export const deleteTerrain = (name: string) =>
   call("DELETE", `terrains/${encodeURIComponent(name)}`);
+
+export const putRobot = (robot: SentRobot) =>
+  json<RobotDocument>("PUT", `robots/${encodeURIComponent(robot.name)}`, robot);
+
+export const deleteRobot = (name: string) => call("DELETE", `robots/${encodeURIComponent(name)}`);
+
+export function importRobot(file: File, abort?: AbortSignal) {
+  const form = new FormData();
+  form.append("file", file, file.name);
+  return json<ImportedRobot>("POST", "robots/import", form, abort);
+}
+
+/** A robot as a file for other tools, whether it is saved or not. */
+export async function robotFile(robot: SentRobot, format: string): Promise<Blob> {
+  return (await call("POST", `robots/export?format=${encodeURIComponent(format)}`, robot)).blob();
+}
 
 export const generateTerrain = (parameters: Record<string, unknown>) =>
   json<TerrainDocument>("POST", "terrains/generate", parameters);

@@ -17,6 +17,9 @@ export type TerrainDocument = Omit<Schemas["Terrain"], "points" | "schema"> & {
 
 /** Only what the page draws is looked at; the rest of the robot file passes through untouched. */
 export type RobotDocument = Schemas["RobotDocument"];
+/** As it is sent: without what the service adds. */
+export type SentRobot = Omit<RobotDocument, "readonly" | "version">;
+export type ImportedRobot = Schemas["Imported"];
 export type Method = Schemas["PlanRequest"]["method"];
 export type Margins = Schemas["Margins"];
 
@@ -142,7 +145,7 @@ export type SettingValues = Record<string, SettingValue>;
 
 export interface PlanRequest {
   terrain: TerrainDocument;
-  robot: string;
+  robot: string | SentRobot;
   friction: number;
   method: Method;
   weights?: SettingValues;

@@ -2,12 +2,34 @@
 
 import type { RobotDocument, Vec2 } from "../api/types";
 
+/** A bar with round ends, in the frame of its link [m]. */
+export interface Capsule {
+  from: Vec2;
+  to: Vec2;
+  radius: number;
+}
+
+export interface LinkShape {
+  length: number;
+  /** One straight bar from joint to joint, or what a bent link is made of. */
+  capsules: Capsule[];
+}
+
+export interface LegShape {
+  /** In the trunk frame. */
+  hip: Vec2;
+  thigh: LinkShape;
+  calf: LinkShape;
+}
+
 export interface RobotShape {
   name: string;
   trunk: { length: number; height: number };
-  hips: [Vec2, Vec2];
-  thigh: number;
-  calf: number;
+  /** Convex pieces of the trunk, in its frame. */
+  outline: Vec2[][];
+  payload: { mass: number; place: Vec2 } | null;
+  /** Front and rear. */
+  legs: [LegShape, LegShape];
   wheel: number;
   /** Peak torques [Nm]. */
   limit: { leg: number; wheel: number };
@@ -24,9 +46,19 @@ export interface Frame {
 }
 
 export interface Skeleton {
+  /** Corners of the box. */
   trunk: Vec2[];
+  /** What the trunk really looks like: its convex pieces. */
+  outline: Vec2[][];
+  payload: Vec2[] | null;
   /** Hip, knee and wheel centre of the front and the rear leg. */
   legs: [Vec2[], Vec2[]];
+  /** The bars of each leg. */
+  bars: [Bar[], Bar[]];
+}
+
+export interface Bar extends Capsule {
+  link: "thigh" | "calf";
 }
 
 const pair = (v: readonly number[]): Vec2 => [v[0]!, v[1]!];
@@ -45,19 +77,67 @@ const STANDARD_POINTS: RobotShape["collisionPoints"] = {
 };
 
 export function robotShape(file: RobotDocument): RobotShape {
-  const points = file.collision_points;
+  const size: Vec2 = [file.trunk.size[0]!, file.trunk.size[2]!];
+  const outline = (file.trunk.outline ?? []).map((piece) => piece.points.map(pair));
+  const rear = file.rear;
+  const load = file.payload;
   return {
     name: file.name,
-    trunk: { length: file.trunk.size[0]!, height: file.trunk.size[2]! },
-    hips: [pair(file.hips.front), pair(file.hips.rear)],
-    thigh: file.thigh.length,
-    calf: file.calf.length,
+    trunk: { length: size[0], height: size[1] },
+    outline: outline.length > 0 ? outline : [box([0, 0], size)],
+    payload: load ? { mass: load.mass, place: pair(load.place ?? [0, 0]) } : null,
+    legs: [
+      { hip: pair(file.hips.front), thigh: linkShape(file.thigh), calf: linkShape(file.calf) },
+      {
+        hip: pair(file.hips.rear),
+        thigh: linkShape(rear?.thigh ?? file.thigh),
+        calf: linkShape(rear?.calf ?? file.calf),
+      },
+    ],
     wheel: file.wheel.radius,
     limit: { leg: legTorque(file), wheel: file.actuators.wheel.torque },
-    collisionPoints: points
-      ? { trunk: points.trunk.map(pair), thigh: points.thigh, calf: points.calf }
-      : STANDARD_POINTS,
+    collisionPoints: pointsOf(file, outline.flat(), size),
   };
+}
+
+function linkShape(link: RobotDocument["thigh"]): LinkShape {
+  const { length, radius } = link;
+  const shape = link.shape ?? [];
+  return {
+    length,
+    capsules:
+      shape.length > 0
+        ? shape.map((c) => ({ from: pair(c.start), to: pair(c.end), radius: c.radius }))
+        : [{ from: [0, 0], to: [0, -length], radius }],
+  };
+}
+
+/** Where the service puts them: the paper's 25, and the corners of a trunk beyond its box. */
+function pointsOf(file: RobotDocument, corners: Vec2[], size: Vec2) {
+  const own = file.collision_points;
+  if (own) return { trunk: own.trunk.map(pair), thigh: own.thigh, calf: own.calf };
+  const beyond = corners
+    .map(([x, z]): Vec2 => [x / size[0], z / size[1]])
+    .filter((p) => Math.max(Math.abs(p[0]), Math.abs(p[1])) > 0.5 + 1e-9);
+  return { ...STANDARD_POINTS, trunk: [...STANDARD_POINTS.trunk, ...beyond] };
+}
+
+function box(centre: Vec2, size: Vec2): Vec2[] {
+  const [x, z] = centre;
+  const [l, h] = [size[0] / 2, size[1] / 2];
+  return [
+    [x - l, z - h],
+    [x + l, z - h],
+    [x + l, z + h],
+    [x - l, z + h],
+  ];
+}
+
+/** A load has no shape in the file: a flat box on its place, as large as a heavy one may be. */
+function loadBox(robot: RobotShape): Vec2[] | null {
+  if (!robot.payload) return null;
+  const size: Vec2 = [0.45 * robot.trunk.length, 0.25 * robot.trunk.height];
+  return box(robot.payload.place, size);
 }
 
 /** The weaker of thigh's and calf's peak torque [Nm]. */
@@ -77,23 +157,41 @@ function along(from: Vec2, length: number, angle: number): Vec2 {
   return [from[0] - length * Math.sin(angle), from[1] - length * Math.cos(angle)];
 }
 
+/** A point of a link's frame, whose origin is its upper joint and which hangs down at angle 0. */
+function onLink(joint: Vec2, angle: number, [u, v]: Vec2): Vec2 {
+  const c = Math.cos(angle);
+  const s = Math.sin(angle);
+  return [joint[0] + c * u + s * v, joint[1] - s * u + c * v];
+}
+
+function bars(link: "thigh" | "calf", shape: LinkShape, joint: Vec2, angle: number): Bar[] {
+  return shape.capsules.map(({ from, to, radius }) => ({
+    link,
+    radius,
+    from: onLink(joint, angle, from),
+    to: onLink(joint, angle, to),
+  }));
+}
+
 export function skeleton(robot: RobotShape, frame: Frame): Skeleton {
-  const l = robot.trunk.length / 2;
-  const h = robot.trunk.height / 2;
-  const legs = robot.hips.map((offset, leg) => {
-    const hip = toWorld(frame, offset[0], offset[1]);
-    const thigh = frame.pitch + frame.q[2 * leg]!;
-    const knee = along(hip, robot.thigh, thigh);
-    return [hip, knee, along(knee, robot.calf, thigh + frame.q[2 * leg + 1]!)];
+  const place = ([u, v]: Vec2) => toWorld(frame, u, v);
+  const legs = robot.legs.map((leg, i) => {
+    const hip = place(leg.hip);
+    const thigh = frame.pitch + frame.q[2 * i]!;
+    const calf = thigh + frame.q[2 * i + 1]!;
+    const knee = along(hip, leg.thigh.length, thigh);
+    return {
+      joints: [hip, knee, along(knee, leg.calf.length, calf)],
+      bars: [...bars("thigh", leg.thigh, hip, thigh), ...bars("calf", leg.calf, knee, calf)],
+    };
   });
+  const [front, rear] = legs;
   return {
-    trunk: [
-      toWorld(frame, -l, -h),
-      toWorld(frame, l, -h),
-      toWorld(frame, l, h),
-      toWorld(frame, -l, h),
-    ],
-    legs: legs as [Vec2[], Vec2[]],
+    trunk: box([0, 0], [robot.trunk.length, robot.trunk.height]).map(place),
+    outline: robot.outline.map((piece) => piece.map(place)),
+    payload: loadBox(robot)?.map(place) ?? null,
+    legs: [front!.joints, rear!.joints],
+    bars: [front!.bars, rear!.bars],
   };
 }
 
@@ -101,17 +199,16 @@ export type Part = "trunk" | "front-thigh" | "front-calf" | "rear-thigh" | "rear
 
 /** The part of the robot nearest to a point: the one to paint red. */
 export function nearestPart(bones: Skeleton, at: Vec2): Part {
-  const [front, rear] = bones.legs;
-  const candidates: [Part, number][] = [
-    ["front-thigh", distance(at, front[0]!, front[1]!)],
-    ["front-calf", distance(at, front[1]!, front[2]!)],
-    ["rear-thigh", distance(at, rear[0]!, rear[1]!)],
-    ["rear-calf", distance(at, rear[1]!, rear[2]!)],
-    [
-      "trunk",
-      Math.min(...bones.trunk.map((corner, i) => distance(at, corner, bones.trunk[(i + 1) % 4]!))),
-    ],
-  ];
+  const candidates = bones.bars.flatMap((leg, i) =>
+    leg.map((bar): [Part, number] => [
+      `${i === 0 ? "front" : "rear"}-${bar.link}`,
+      distance(at, bar.from, bar.to) - bar.radius,
+    ]),
+  );
+  for (const piece of bones.outline) {
+    const sides = piece.map((corner, i) => distance(at, corner, piece[(i + 1) % piece.length]!));
+    candidates.push(["trunk", Math.min(...sides)]);
+  }
   return candidates.reduce((best, next) => (next[1] < best[1] ? next : best))[0];
 }
 

@@ -1,7 +1,7 @@
 /** One robot on the canvas: its lines and wheels, and the details of the pose at the clock. */
 
 import type { Vec2 } from "../api/types";
-import type { Part, RobotShape, Skeleton } from "../geometry/robot";
+import type { Bar, Part, RobotShape, Skeleton } from "../geometry/robot";
 import type { Projection } from "./viewport";
 
 interface FigureProps {
@@ -12,15 +12,42 @@ interface FigureProps {
   bad?: Part | null;
 }
 
-/** Rear leg, front leg and trunk as lines; wheels as circles. */
+/** The robot's lines at the clock are as thick as its links; elsewhere they are thin. */
+const THICK = { cur: 0, halo: 6 } as const;
+/** Least width of a link that is drawn as it is [px]. */
+const THIN = 3;
+
+const line = (bar: Bar, to: Projection) => `M${to.at(bar.from)}L${to.at(bar.to)}`;
+
+const thickness = (bar: Bar, to: Projection, more: number) => ({
+  strokeWidth: `${Math.max(THIN, 2 * bar.radius * to.scale) + more}px`,
+});
+
+/** Closed outlines of several pieces as one path. */
+const closed = (pieces: Vec2[][], to: Projection) =>
+  pieces.map((piece) => `M${piece.map(to.at).join("L")}Z`).join("");
+
+/** Rear leg, front leg and trunk; wheels as circles. */
 export function Figure({ robot, bones, to, kind, bad }: FigureProps) {
   const r = robot.wheel * to.scale;
+  const more = kind === "cur" || kind === "halo" ? THICK[kind] : null;
   const leg = (i: 0 | 1, name: "f" | "r") => {
-    const points = bones.legs[i];
-    const hub = points[2]!;
+    const bars = bones.bars[i];
+    const hub = bones.legs[i][2]!;
     return (
       <>
-        <polyline class={`leg ${name}`} points={points.map(to.at).join(" ")} />
+        {more === null ? (
+          <path class={`leg ${name}`} d={bars.map((bar) => line(bar, to)).join("")} />
+        ) : (
+          bars.map((bar, k) => (
+            <path
+              key={k}
+              class={`leg ${name}`}
+              style={thickness(bar, to, more)}
+              d={line(bar, to)}
+            />
+          ))
+        )}
         <circle class={`wh ${name}`} cx={to.px(hub[0])} cy={to.py(hub[1])} r={r} />
       </>
     );
@@ -29,10 +56,8 @@ export function Figure({ robot, bones, to, kind, bad }: FigureProps) {
     <g class={`rb ${kind}`}>
       {leg(1, "r")}
       {leg(0, "f")}
-      <polygon
-        class={bad === "trunk" ? "tr badpart" : "tr"}
-        points={bones.trunk.map(to.at).join(" ")}
-      />
+      {bones.payload && <path class="load" d={closed([bones.payload], to)} />}
+      <path class={bad === "trunk" ? "tr badpart" : "tr"} d={closed(bones.outline, to)} />
       {bad && bad !== "trunk" && <BadLink bones={bones} to={to} part={bad} />}
     </g>
   );
@@ -40,9 +65,14 @@ export function Figure({ robot, bones, to, kind, bad }: FigureProps) {
 
 function BadLink({ bones, to, part }: { bones: Skeleton; to: Projection; part: Part }) {
   const [where, link] = part.split("-");
-  const points = bones.legs[where === "front" ? 0 : 1]!;
-  const [a, b] = link === "thigh" ? [points[0]!, points[1]!] : [points[1]!, points[2]!];
-  return <polyline class="badseg" points={`${to.at(a)} ${to.at(b)}`} />;
+  const bars = bones.bars[where === "front" ? 0 : 1].filter((bar) => bar.link === link);
+  return (
+    <>
+      {bars.map((bar, k) => (
+        <path key={k} class="badseg" style={thickness(bar, to, 0)} d={line(bar, to)} />
+      ))}
+    </>
+  );
 }
 
 /** Joints, hubs, nose and collision points of the pose at the clock. */

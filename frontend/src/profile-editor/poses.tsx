@@ -9,6 +9,7 @@ import { duration, frame, poseIndex, shownRun, shownTime } from "../state/playba
 import { runB } from "../state/rollouts";
 import { robot } from "../state/setup";
 import { layers } from "../state/view";
+import { workspace } from "../state/workspace";
 import { collisionPoints, Details, Figure } from "./figure";
 import { type Projection, projection } from "./viewport";
 
@@ -38,7 +39,10 @@ const ghostIndices = computed<number[]>(() => {
 });
 
 /** Whose key poses are drawn: those for what is on screen now, before a path through them. */
-const keyed = computed(() => preview.value ?? plan.value);
+const keyed = computed(() =>
+  // While another workspace hides the canvas, nothing on it has to follow the hand.
+  workspace.value === "plan" ? (preview.value ?? plan.value) : null,
+);
 
 /** Key poses that stand apart; of a cluster the first is drawn. */
 const keyIndices = computed<number[]>(() => {

@@ -83,7 +83,7 @@ function remember(): void {
 }
 
 /** Finish a change of settings: one step, however far a slider went. */
-function commitChoices(): void {
+export function commitChoices(): void {
   if (JSON.stringify(choices.peek()) === JSON.stringify(chosen)) return;
   remember();
   chosen = choices.peek();
@@ -92,6 +92,9 @@ function commitChoices(): void {
 /** A slider at rest is a finished change [ms]. */
 const REST = 500;
 
+/** A hand has hold of something: what it passes on the way is no step. */
+export const held = signal(false);
+
 /** Settings take part in the history from now on. */
 export function startHistory(): void {
   chosen = choices.peek();
@@ -99,7 +102,7 @@ export function startHistory(): void {
   effect(() => {
     choices.value;
     clearTimeout(timer);
-    timer = setTimeout(commitChoices, REST);
+    timer = setTimeout(() => held.peek() || commitChoices(), REST);
   });
 }
 

@@ -3,7 +3,7 @@
  * full path takes longer than a hand waits, the paper's few poses come first and the path follows.
  */
 
-import { batch, computed, effect, signal } from "@preact/signals";
+import { batch, computed, effect, type ReadonlySignal, type Signal, signal } from "@preact/signals";
 import { postPlan } from "../api/client";
 import { connectLive, livePlan } from "../api/live";
 import { NewestWins } from "../api/newest-wins";
@@ -11,7 +11,7 @@ import type { Method, Plan, PlanRequest } from "../api/types";
 import { connected, report } from "./connection";
 import { drawing, isEmpty, terrainDocument } from "./drawing";
 import { Pace } from "./pace";
-import { changedWeights, compare, method, robotName, robots, settings } from "./setup";
+import { changedWeights, compare, method, robotSource, robots, settings } from "./setup";
 
 /** Shorter waits show no spinner: it would only flicker [ms]. */
 const PATIENCE = 150;
@@ -47,6 +47,18 @@ interface Question {
   request: PlanRequest;
   /** Of the question that was meant: the request of A as text. */
   key: string;
+  /** Who asked besides A. */
+  follower?: Follower;
+}
+
+/** A second question beside the plan's, such as another robot's on the same terrain. */
+interface Follower {
+  request: ReadonlySignal<PlanRequest | null>;
+  answer: Signal<Plan | null>;
+  /** The answer is to an older question. */
+  pending: Signal<boolean>;
+  /** The last question that was answered, as text. */
+  key: string;
 }
 
 export const request = computed<PlanRequest | null>(() => {
@@ -62,11 +74,15 @@ export const outdated = computed(() =>
   connected.value ? slow.value && !preview.value : stale.value,
 );
 
+/** What another robot would be asked on the same terrain. */
+export const requestWith = (robot: PlanRequest["robot"]): PlanRequest | null =>
+  request.value && { ...request.value, robot };
+
 function ask(by: Method, weights: PlanRequest["weights"]): PlanRequest {
   const state = drawing.value;
   return {
     terrain: terrainDocument(state),
-    robot: robotName.value,
+    robot: robotSource.value,
     friction: state.friction,
     method: by,
     ...(weights && Object.keys(weights).length > 0 ? { weights } : {}),
@@ -128,8 +144,8 @@ function yields(running: Question, next: Question, since: number): boolean {
 }
 
 function show(answer: Plan, question: Question, newest: boolean): void {
-  if (question.which === "b") {
-    if (newest) planB.value = answer;
+  if (question.follower) {
+    answerFollower(question.follower, question.key, answer);
     return;
   }
   markDrawn(question.asked);
@@ -162,7 +178,7 @@ function showPlan(answer: Plan, question: Question, newest: boolean): void {
   });
   if (!newest) return;
   stopWaiting();
-  if (compare.peek()) askForB(question.request, question.key);
+  askFollowers();
 }
 
 /** The question that the quick method is asked: the same without the full method's weights. */
@@ -207,19 +223,64 @@ export function unoptimised(question: PlanRequest): PlanRequest {
   return { ...rest, method: "nominal" };
 }
 
-function askForB(question: PlanRequest, key: string): void {
-  queue.ask({ which: "b", asked: performance.now(), request: unoptimised(question), key });
+const followers: Follower[] = [];
+
+/** Keep `answer` the answer to `request` from now on; A goes first, one solve runs at a time. */
+export function follow(
+  request: Follower["request"],
+  answer: Follower["answer"],
+  pending: Follower["pending"] = signal(false),
+): () => void {
+  const follower = { request, answer, pending, key: "" };
+  followers.push(follower);
+  const stop = effect(() => {
+    if (request.value) {
+      pending.value = JSON.stringify(request.value) !== follower.key;
+      if (!stale.value && connected.value) askFollowers();
+    } else {
+      answer.value = null;
+      follower.key = "";
+    }
+  });
+  return () => {
+    stop();
+    followers.splice(followers.indexOf(follower), 1);
+  };
+}
+
+/** The first of them whose answer is not the one to its question. */
+function askFollowers(): void {
+  if (stale.peek()) return;
+  for (const follower of followers) {
+    const request = follower.request.peek();
+    const key = JSON.stringify(request);
+    if (!request || key === follower.key) continue;
+    queue.ask({ which: "b", asked: performance.now(), request, key, follower });
+    return;
+  }
+}
+
+function answerFollower(follower: Follower, key: string, answer: Plan | null): void {
+  if (key === JSON.stringify(follower.request.peek())) {
+    follower.key = key;
+    follower.answer.value = answer;
+    follower.pending.value = false;
+  }
+  askFollowers();
 }
 
 function fail(error: unknown, question: Question, newest: boolean): void {
   report(error);
+  if (question.follower) {
+    if (connected.peek()) answerFollower(question.follower, question.key, null);
+    return;
+  }
   if (!newest) return;
   if (question.which === "preview" && connected.peek()) {
     pace.finds = false;
     askForPath(question, false);
     return;
   }
-  if (question.which === "b") return;
   stopWaiting();
   if (!connected.peek()) return;
   batch(() => {
@@ -247,7 +308,6 @@ export function startPlanning(): () => void {
       forget();
       batch(() => {
         plan.value = null;
-        planB.value = null;
         refusal.value = null;
         shownKey.value = key;
       });
@@ -263,12 +323,10 @@ export function startPlanning(): () => void {
     startWaiting();
     askForA(question, key);
   });
-  const stopB = effect(() => {
-    if (!compare.value) planB.value = null;
-    else if (request.peek() && !stale.peek() && connected.value) {
-      askForB(request.peek()!, requestKey.peek());
-    }
-  });
+  const nominal = computed(() =>
+    compare.value && request.value ? unoptimised(request.value) : null,
+  );
+  const stopB = follow(nominal, planB);
   return () => {
     stopA();
     stopB();

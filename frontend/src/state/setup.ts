@@ -4,6 +4,7 @@ import { batch, computed, signal } from "@preact/signals";
 import type {
   Method,
   RobotDocument,
+  SentRobot,
   SettingChange,
   SettingSchema,
   Settings,
@@ -24,10 +25,39 @@ export const seed = signal(0);
 export const weights = signal<Partial<Record<Method, SettingValues>>>({});
 export const controller = signal<SettingValues>({});
 
-export const robot = computed<RobotShape | null>(() => {
-  const document = robots.value.find((r) => r.name === robotName.value) ?? robots.value[0];
-  return document ? robotShape(document) : null;
+/** Robots that were changed or imported and are not saved as they are now, by name. */
+export const robotEdits = signal<Readonly<Record<string, RobotDocument>>>({});
+/** Stored robots as they are now, then those that were only read from files. */
+export const allRobots = computed<RobotDocument[]>(() => {
+  const edits = robotEdits.value;
+  const names = new Set(robots.value.map((r) => r.name));
+  const unsaved = Object.values(edits).filter((r) => !names.has(r.name));
+  return [...robots.value.map((r) => edits[r.name] ?? r), ...unsaved];
 });
+/** The robot as it is stored; null for one that never was. */
+export const storedRobot = computed(
+  () => robots.value.find((r) => r.name === robotName.value) ?? null,
+);
+/** The robot that is planned with. */
+export const robotDocument = computed<RobotDocument | null>(
+  () => robotEdits.value[robotName.value] ?? storedRobot.value ?? robots.value[0] ?? null,
+);
+/** What a question says of it: its name, or all of it where no name stands for that. */
+export const robotSource = computed(() => sourceOf(robotName.value, robotEdits.value));
+
+export function sourceOf(name: string, edits: typeof robotEdits.value): string | SentRobot {
+  const edited = edits[name];
+  return edited ? sentRobot(edited) : name;
+}
+
+export function sentRobot(document: RobotDocument): SentRobot {
+  const { readonly: _, version: __, ...sent } = document;
+  return sent;
+}
+
+export const robot = computed<RobotShape | null>(() =>
+  robotDocument.value ? robotShape(robotDocument.value) : null,
+);
 
 export const weightSchema = computed<Record<string, SettingSchema>>(
   () => settings.value?.weights[method.value]?.properties ?? {},
@@ -62,6 +92,7 @@ export function setController(name: string, value: SettingChange): void {
 /** All that undo brings back besides the drawing. */
 export const choices = computed(() => ({
   robotName: robotName.value,
+  robotEdits: robotEdits.value,
   method: method.value,
   seed: seed.value,
   weights: weights.value,
@@ -72,6 +103,7 @@ export type Choices = typeof choices.value;
 export function choose(again: Choices): void {
   batch(() => {
     robotName.value = again.robotName;
+    robotEdits.value = again.robotEdits;
     method.value = again.method;
     seed.value = again.seed;
     weights.value = again.weights;

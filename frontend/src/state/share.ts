@@ -2,10 +2,27 @@
  * and what workspaces keep there under letters of their own. */
 
 import { effect, signal } from "@preact/signals";
-import type { Method, SettingValues, TerrainDocument, Vec2 } from "../api/types";
+import type {
+  Method,
+  RobotDocument,
+  SentRobot,
+  SettingValues,
+  TerrainDocument,
+  Vec2,
+} from "../api/types";
 import { committed, isEmpty, open, origin, terrainDocument } from "./drawing";
 import { run, runB, runStale } from "./rollouts";
-import { compare, controller, method, robotName, seed, terrains, weights } from "./setup";
+import {
+  compare,
+  controller,
+  method,
+  robotEdits,
+  robotName,
+  robotSource,
+  seed,
+  terrains,
+  weights,
+} from "./setup";
 import { toast } from "./toast";
 import { workspace } from "./workspace";
 
@@ -13,6 +30,8 @@ import { workspace } from "./workspace";
 interface Shared {
   t: Omit<TerrainDocument, "schema">;
   r: string;
+  /** The robot itself, where it is not a stored one. */
+  rd?: SentRobot;
   m: Method;
   w?: Partial<Record<Method, SettingValues>>;
   c?: SettingValues;
@@ -48,10 +67,12 @@ function currentState(): Shared {
   const changed = Object.fromEntries(
     Object.entries(weights.value).filter(([, values]) => filled(values)),
   );
+  const source = robotSource.value;
   const result = runStale.value ? null : run.value;
   return {
     t: terrain,
     r: robotName.value,
+    ...(typeof source === "string" ? {} : { rd: source }),
     m: method.value,
     ...(filled(changed) ? { w: changed } : {}),
     ...(filled(controller.value) ? { c: controller.value } : {}),
@@ -85,6 +106,10 @@ export function restoreFromAddress(): Restored | null {
   const stored = terrains.peek().find((t) => t.name === state.t.name) ?? null;
   open({ ...state.t, points, schema: "stairwright/terrain/1" }, stored);
   robotName.value = state.r;
+  if (state.rd) {
+    const robot = { ...state.rd, readonly: false, version: "" } satisfies RobotDocument;
+    robotEdits.value = { [state.r]: robot };
+  }
   method.value = state.m;
   weights.value = state.w ?? {};
   controller.value = state.c ?? {};

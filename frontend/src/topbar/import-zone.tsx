@@ -3,11 +3,25 @@
 import { signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { fixed, setting } from "../geometry/format";
+import { readFile } from "../robot/shelf";
+import { workspace } from "../state/workspace";
 import { Icon } from "../ui/icon";
 import { NumberField } from "../ui/number-field";
 import { importFile, meshToCut, takeFile, takeText, terrainError } from "./terrain-actions";
 
 const hovering = signal(false);
+
+const ROBOT = /\.(urdf|mjcf|xml|zip)$/i;
+
+/** A robot's file goes to its room, everything else is a profile. */
+function take(file: File): void {
+  if (!ROBOT.test(file.name)) {
+    void takeFile(file);
+    return;
+  }
+  workspace.value = "robot";
+  void readFile(file);
+}
 
 const isField = (target: EventTarget | null) =>
   target instanceof HTMLElement && /^(INPUT|TEXTAREA)$/.test(target.tagName);
@@ -28,13 +42,13 @@ export function ImportZone() {
       const file = event.dataTransfer?.files[0];
       if (!file) return;
       event.preventDefault();
-      void takeFile(file);
+      take(file);
     };
     const paste = (event: ClipboardEvent) => {
       if (isField(event.target)) return;
       const file = event.clipboardData?.files[0];
       const text = event.clipboardData?.getData("text/plain") ?? "";
-      if (file) void takeFile(file);
+      if (file) take(file);
       else if (text.trim()) takeText(text);
     };
     addEventListener("dragover", over);
@@ -54,8 +68,8 @@ export function ImportZone() {
         <div class="dropzone" aria-hidden="true">
           <div>
             <Icon name="upload" />
-            <b>Drop a profile</b>
-            CSV, JSON or YAML points, or an STL or OBJ mesh
+            <b>Drop a profile or a robot</b>
+            CSV, JSON or YAML points, an STL or OBJ mesh; URDF, MJCF or zip
           </div>
         </div>
       )}

@@ -38,7 +38,7 @@ export function PlanPill() {
     return (
       <div class="pill bad" title={refusal.value}>
         <Icon name="warning" />
-        <b>Not a terrain</b>
+        <b>{/^robot\b/.test(refusal.value) ? "Not a robot" : "Not a terrain"}</b>
       </div>
     );
   }

@@ -4,7 +4,7 @@ import { useState } from "preact/hooks";
 import type { RobotDocument } from "../api/types";
 import { fixed } from "../geometry/format";
 import { drawing, isEdited } from "../state/drawing";
-import { robotName, robots } from "../state/setup";
+import { allRobots, robotEdits, robotName } from "../state/setup";
 import { theme, toggleTheme } from "../state/view";
 import { Icon, Logo } from "../ui/icon";
 import { Menu, MenuItem } from "../ui/menu";
@@ -59,13 +59,14 @@ function RobotMenu() {
   const button = (
     <>
       <small class="quiet">Robot</small> <b>{robotName.value}</b>
+      {robotEdits.value[robotName.value] && <span class="dot" title="Not saved" />}
       <Icon name="down" />
     </>
   );
   return (
     <Menu label="Robot" named button={button} buttonClass="fld" panelClass="robots">
       {(close) =>
-        robots.value.map((robot) => (
+        allRobots.value.map((robot) => (
           <MenuItem
             key={robot.name}
             checked={robot.name === robotName.value}

@@ -74,6 +74,22 @@ async def import_robot(
     return Imported.model_validate(document)
 
 
+@router.post(
+    "/export",
+    response_class=Response,
+    dependencies=[JSON_BODY],
+    responses={**stored.files(ROBOT_FORMATS), **describe(415, 429, 503)},
+)
+async def export_sent_robot(
+    request: Request,
+    services: Service,
+    body: SentRobot,
+    format_name: Annotated[RobotFormat, Query(alias="format")] = "urdf",
+) -> Response:
+    """A robot that need not be saved, as a file for other tools."""
+    return await stored.export_document(request, services, "robot", body.name, body, format_name)
+
+
 @router.get("/{name}", response_model=RobotDocument, responses=describe(404))
 def get_robot(request: Request, services: Service, name: RobotName) -> Response:
     """One robot."""

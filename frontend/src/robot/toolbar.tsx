@@ -1,0 +1,157 @@
+/** Over the side view: what it shows, the way back, and where the robot goes from here. */
+
+import { useState } from "preact/hooks";
+import { canRedo, canUndo, redo, undo } from "../state/drawing";
+import { robotDocument, robotEdits, robotName, robots, settings } from "../state/setup";
+import { Icon } from "../ui/icon";
+import { Menu, MenuItem } from "../ui/menu";
+import { changed, imports, posture, resetRobot } from "./edit";
+import { download, saveAs, shelfError } from "./shelf";
+import { LAYERS, type Layer, shown, toggle } from "./view";
+
+function state(): string {
+  const count = changed.value.size;
+  if (count > 0) return `edited, ${count} ${count === 1 ? "number" : "numbers"}`;
+  if (imports.value[robotName.value] && robotEdits.value[robotName.value]) return "not saved";
+  const stored = robots.value.find((r) => r.name === robotName.value);
+  return stored?.readonly ? "preset" : "yours";
+}
+
+export function Toolbar() {
+  return (
+    <header class="hd">
+      <h2 title={robotDocument.value?.description}>
+        {robotName.value} <small>{state()}</small>
+      </h2>
+      <div class="grow" />
+      {(Object.keys(LAYERS) as Layer[]).map((layer) => (
+        <button
+          key={layer}
+          type="button"
+          class={shown.value.has(layer) ? "t on" : "t"}
+          aria-pressed={shown.value.has(layer)}
+          onClick={() => toggle(layer)}
+        >
+          {LAYERS[layer]}
+        </button>
+      ))}
+      <div class="sep" />
+      <button
+        type="button"
+        class="t ico"
+        aria-label="Undo"
+        title="Undo (Ctrl Z)"
+        disabled={!canUndo.value}
+        onClick={undo}
+      >
+        <Icon name="undo" />
+      </button>
+      <button
+        type="button"
+        class="t ico"
+        aria-label="Redo"
+        title="Redo (Ctrl Shift Z)"
+        disabled={!canRedo.value}
+        onClick={redo}
+      >
+        <Icon name="redo" />
+      </button>
+      <button
+        type="button"
+        class="t ico"
+        aria-label="Reset robot"
+        title="Reset all its numbers"
+        disabled={changed.value.size === 0 && !posture.value}
+        onClick={resetRobot}
+      >
+        <Icon name="reset" />
+      </button>
+      <Files />
+      <Save />
+    </header>
+  );
+}
+
+function Files() {
+  const formats = settings.value?.exports.robot ?? [];
+  return (
+    <Menu
+      label="Download robot"
+      button={<Icon name="download" />}
+      buttonClass="t ico"
+      panelClass="downloads"
+      align="right"
+    >
+      {(close) => (
+        <>
+          <div class="head">Robot</div>
+          {formats.map(({ name, note }) => (
+            <MenuItem
+              key={name}
+              onChoose={() => {
+                void download(name);
+                close();
+              }}
+            >
+              <b>{name.toUpperCase()}</b>
+              <small>{note}</small>
+            </MenuItem>
+          ))}
+        </>
+      )}
+    </Menu>
+  );
+}
+
+function Save() {
+  return (
+    <Menu
+      label="Save as"
+      named
+      button="Save as"
+      buttonClass="btn"
+      panelClass="save-robot"
+      kind="dialog"
+      align="right"
+    >
+      {(close) => <SaveForm close={close} />}
+    </Menu>
+  );
+}
+
+/** A preset keeps its name to itself: a changed one is saved under another. */
+function suggestion(): string {
+  const name = robotName.peek();
+  return robots.peek().some((r) => r.name === name && r.readonly) ? `${name}-mine` : name;
+}
+
+function SaveForm({ close }: { close: () => void }) {
+  const [name, setName] = useState(suggestion);
+  const save = async (event: Event) => {
+    event.preventDefault();
+    if (await saveAs(name.trim())) close();
+  };
+  return (
+    <form class="save" onSubmit={save}>
+      <label>
+        <span>Save as</span>
+        <input
+          value={name}
+          maxLength={100}
+          required
+          pattern="[\w .+\-]*\w[\w .+\-]*"
+          title="A letter or digit at least; besides those space and . + - _"
+          onInput={(event) => setName(event.currentTarget.value)}
+        />
+      </label>
+      <button type="submit" class="btn pri">
+        Save
+      </button>
+      {shelfError.value && (
+        <p class="error" role="alert">
+          {shelfError.value}
+        </p>
+      )}
+    </form>
+  );
+}

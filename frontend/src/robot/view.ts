@@ -1,0 +1,68 @@
+/** What the side view shows, and how large: it keeps its scale while a dimension is dragged. */
+
+import { computed, signal } from "@preact/signals";
+import type { Vec2 } from "../api/types";
+import { type Frame, robotShape, type Skeleton, skeleton } from "../geometry/robot";
+import { stance } from "../geometry/stance";
+import type { Projection } from "../profile-editor/viewport";
+import { robot, robotDocument } from "../state/setup";
+import { base, posture } from "./edit";
+
+export const LAYERS = {
+  dimensions: "Dimensions",
+  joints: "Joints",
+  reach: "Reach",
+  points: "Collision points",
+} as const;
+export type Layer = keyof typeof LAYERS;
+
+export const shown = signal<ReadonlySet<Layer>>(new Set(["dimensions", "joints", "reach"]));
+
+export function toggle(layer: Layer): void {
+  const next = new Set(shown.peek());
+  if (!next.delete(layer)) next.add(layer);
+  shown.value = next;
+}
+
+export const size = signal({ width: 0, height: 0 });
+
+/** Lengths that decide the scale, of the robot before it was changed [m]. */
+const extent = computed(() => {
+  const file = base.value ?? robotDocument.value;
+  if (!file) return null;
+  const shape = robotShape(file);
+  const reach = shape.legs[0].thigh.length + shape.legs[0].calf.length;
+  const corners = shape.outline.flat();
+  const half = Math.max(...corners.map((p) => Math.abs(p[0])), file.hips.front[0]!);
+  return { half, reach, height: file.nominal_height, wheel: file.wheel.radius };
+});
+
+/** Ground line above the lower rim [px]. */
+const GROUND = 46;
+/** Room for dimension lines beside and above the robot [px]. */
+const SIDE = 90;
+const ABOVE = 60;
+
+export const projection = computed<Projection>(() => {
+  const { width, height } = size.value;
+  const of = extent.value;
+  const wide = of ? 2 * (of.half + 0.5 * of.reach) : 1;
+  const tall = of ? of.height + 0.5 * of.reach : 1;
+  const fitted = Math.min((width - 2 * SIDE) / wide, (height - GROUND - ABOVE) / tall);
+  const scale = Math.max(20, fitted);
+  const px = (x: number) => width / 2 + x * scale;
+  const py = (z: number) => height - GROUND - z * scale;
+  const round = (v: number) => Math.round(v * 10) / 10;
+  return { px, py, scale, at: (p: Vec2) => `${round(px(p[0]))},${round(py(p[1]))}` };
+});
+
+export const frame = computed<Frame | null>(() => {
+  const file = robotDocument.value;
+  if (!file) return null;
+  const stands = stance(file);
+  return posture.value ? { ...stands, q: posture.value } : stands;
+});
+
+export const bones = computed<Skeleton | null>(() =>
+  robot.value && frame.value ? skeleton(robot.value, frame.value) : null,
+);
