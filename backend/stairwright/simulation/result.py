@@ -119,6 +119,14 @@ class Metrics(Model):
     end_error: float = Field(description="largest distance of a wheel from the plan's end [m]")
     progress: float = Field(description="share of the plan that was reached, 0..1")
     speed_mean: float = Field(description="along the course [m/s]")
+    speed_stairs: float | None = Field(
+        None,
+        description="along x, from the first contact with the first face to all wheels on the "
+        "landing [m/s]; null where the ground is level or the robot does not get there",
+    )
+    cost_of_transport: float | None = Field(
+        None, description="energy per weight and way; null where it does not get on"
+    )
     real_time_factor: float = Field(description="simulated time per wall-clock time")
 
 

@@ -26,6 +26,7 @@ from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
 
 from . import score
+from .crossing import speed_over_faces
 from .disturbance import Disturbance
 from .governor import Track, cruise, follower, track
 from .outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
@@ -353,6 +354,10 @@ class Run:
             end_error=min(ending.error, _HUGE),
             progress=reached / total,
             speed_mean=reached / max(ending.time - SETTLE, self.dt),
+            speed_stairs=speed_over_faces(series, self.terrain, robot),
+            cost_of_transport=s[score.ENERGY] / (robot.mass * 9.81 * reached)
+            if reached > 0.0
+            else None,
             real_time_factor=ending.time / max(self.wall, 1e-9),
         )
         deviations = {k: v for k, v in self.disturbance.model_dump().items() if v != 0.0}

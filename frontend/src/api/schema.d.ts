@@ -1053,10 +1053,9 @@ export interface components {
             joint_speed: number;
             /**
              * Leash
-             * @description How far the plan may run ahead of the wheels
-             * @default 0.012
+             * @description How far the plan may run ahead of the wheels; 30 mm if empty where the robot senses by itself, else 12 mm
              */
-            leash: number;
+            leash?: number | null;
             /**
              * Joint stiffness
              * @description K_p of eq 27; the robot's if empty
@@ -1682,6 +1681,16 @@ export interface components {
              * @description along the course [m/s]
              */
             speed_mean: number;
+            /**
+             * Speed Stairs
+             * @description along x, from the first contact with the first face to all wheels on the landing [m/s]; null where the ground is level or the robot does not get there
+             */
+            speed_stairs?: number | null;
+            /**
+             * Cost Of Transport
+             * @description energy per weight and way; null where it does not get on
+             */
+            cost_of_transport?: number | null;
             /**
              * Real Time Factor
              * @description simulated time per wall-clock time

@@ -1,0 +1,59 @@
+"""How fast a rollout crosses what is not level: first contact with the first face to all wheels on
+the landing.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.robot.description import Robot
+from stairwright.robot.kinematics import forward
+from stairwright.terrain.profile import Terrain
+from stairwright.terrain.wheel_path import wheel_path
+
+from .result import Series
+
+Floats = NDArray[np.float64]
+
+LEVEL = 1e-6  # m that a wheel's centre may be off the height of the start or of the landing
+TOUCH = 0.002  # m: tyres and contacts give way
+_STEP = 0.001  # m between the samples of the wheel-centre curve
+_SIDES = ([0, 1, 6, 7], [3, 4, 9, 10])  # thighs and calves among the joints, left and right
+
+
+def speed_over_faces(series: Series, terrain: Terrain, robot: Robot) -> float | None:
+    """Mean speed of the trunk along x [m/s] while it crosses the faces of `terrain`.
+
+    From the moment in which the first wheel reaches the first face to that in which the last one
+    is past the last of them. None where the ground is level or the robot does not get past.
+    """
+    span = faces_span(terrain, robot.wheel.radius)
+    if span is None or len(series) < 2:
+        return None
+    x, z = series.base_position[:, 0], series.base_position[:, 2]
+    sides = [forward(robot, x, z, series.pitch, series.q[:, side]).wheels for side in _SIDES]
+    wheels = np.concatenate([wheels[..., 0] for wheels in sides], axis=-1)
+    begun = _first(wheels.max(axis=1) >= span[0] - TOUCH)
+    ended = _first(wheels.min(axis=1) >= span[1] - TOUCH)
+    if begun is None or ended is None or ended <= begun:
+        return None
+    return float((x[ended] - x[begun]) / (series.time[ended] - series.time[begun]))
+
+
+def faces_span(terrain: Terrain, radius: float) -> tuple[float, float] | None:
+    """Where a wheel's centre [m] leaves the level of the start, and where it has reached that of
+    the landing; None on level ground.
+    """
+    path = wheel_path(terrain, radius)
+    x, z = path.centres(np.arange(0.0, path.length + _STEP, _STEP)).T
+    off = np.flatnonzero(np.abs(z - z[0]) > LEVEL)
+    if not len(off):
+        return None
+    below = np.flatnonzero(np.abs(z - z[-1]) > LEVEL)
+    return float(x[off[0]]), float(x[below[-1]])
+
+
+def _first(true: NDArray[np.bool_]) -> int | None:
+    places = np.flatnonzero(true)
+    return int(places[0]) if len(places) else None
