@@ -22,6 +22,7 @@ constexpr double kAtRest = 0.015;      // m/s of rolling
 constexpr double kNearEdge = 0.015;    // m along the curve
 constexpr double kEdgeStray = 0.012;   // m that the map's edge may be off
 constexpr double kLevel = 0.95;        // cosine of the slope of a face on which the wheels' scale is learnt
+constexpr double kTread = 0.7;          // cosine of the slope of a face that is a tread
 constexpr double kGate = 9.0;           // of a normalised innovation squared
 constexpr double kNearCorner = 0.006;   // m; which way a wheel rolls this near to a concave corner is open
 
@@ -172,6 +173,7 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     belief.force_deviation = noise_.force * weight_ + 0.15 * norm(w.felt);
     const CurveMatch on = match(path_, belief, w.s, kWindow);
     w.s = on.s;
+    enter_face(i, on);
 
     w.at_corner = on.corner ? w.at_corner + dt : 0.0;
     estimate_.touching[i] = std::max({dot(w.felt, on.point.normal), dot(w.felt, on.before), dot(w.felt, on.after)}) > kTouching * weight_ / 4;
@@ -180,6 +182,17 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     if (!on.corner || w.at_corner > kSure) measure_place(i, on, along_x, along_z, centre, dt, error);
     measure_rolling(i, on, readings, dt, error);
     correct(error);
+}
+
+// Every face lies and every tread is as high as the map says only more or less: what is ahead is anew unsure.
+void Estimator::enter_face(int i, const CurveMatch& on) {
+    WheelState& w = wheels_[i];
+    if (on.corner || on.piece == w.face || path_.pieces()[on.piece].arc) return;
+    w.face = on.piece;
+    const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
+    const bool tread = on.point.normal.z > kTread;
+    const double error = tread ? noise_.face_place : noise_.tread_height;
+    covariance_.add_noise(tread ? own : own + 1, 0.5 * error * error);
 }
 
 void Estimator::measure_place(int, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error) {
@@ -288,6 +301,8 @@ void Estimator::report(const Readings& readings) {
     out.joints = readings.joints, out.joint_rates = readings.joint_rates;
     out.velocity = velocity_, out.angular_velocity = rate_;
     for (int i = 0; i < 4; ++i) estimate_.places[i] = wheels_[i].s;
+    const Vec2 apart = 0.5 * (offset_[1] - offset_[0]);
+    estimate_.ground = {apart, -1.0 * apart};
 }
 
 Estimator::Judgement Estimator::judge(const control::RobotState& truth) const {
