@@ -1,7 +1,7 @@
 """What does a robot that has only its own sensors do where the world differs from its map?
 
     python benchmarks/deviations.py [--count 60] [--first 5000] [--rows NAME ...] [--robots NAME]
-        [--sensing robot] [--workers N] [--quick] [--show] [--json FILE]
+        [--terrains NAME ...] [--sensing robot] [--workers N] [--quick] [--show] [--json FILE]
 
 Every preset terrain and `--count` profiles of `profiles.py` are planned for each robot; every plan
 is rolled out once for each row of the table, with deviations whose signs and draws differ from plan
@@ -164,7 +164,7 @@ def run(quick: bool = False, **options: Any) -> list[Row]:
     first = options.get("first", FIRST)
     rows = tuple(name for name in ROWS if name in options.get("rows", ROWS))
     robots = options.get("robots", ROBOTS)
-    presets = () if options.get("no_presets") else terrains()
+    presets = options.get("terrains", terrains())
     cases = [(t, r) for t in [*presets, *map(str, range(first, first + count))] for r in robots]
     workers = options.get("workers") or len(os.sched_getaffinity(0))
     found = []
@@ -186,7 +186,7 @@ def main() -> None:
     parser.add_argument("--rows", nargs="*", help=f"of: {', '.join(ROWS)}")
     parser.add_argument("--robots", nargs="*")
     parser.add_argument("--sensing", choices=("ideal", "robot"))
-    parser.add_argument("--no-presets", action="store_true")
+    parser.add_argument("--terrains", nargs="*", help="presets; all by default")
     parser.add_argument("--workers", type=int, help="processes; all cores by default")
     parser.add_argument("--quick", action="store_true", help="6 profiles")
     parser.add_argument("--show", action="store_true", help="print what did not succeed")

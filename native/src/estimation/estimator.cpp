@@ -15,6 +15,8 @@ constexpr double kTouching = 0.15;      // of the share of the weight: a wheel t
 constexpr double kForceTime = 0.015;    // s, smoothing of the forces
 // s, smoothing of the speed by which the wheels' scale is judged: noise in it would count twice, and shrink the scale.
 constexpr double kCruiseTime = 0.1;
+constexpr double kForceAtRest = 0.3;    // of a force's uncertainty in motion
+constexpr double kForceSpeed = 0.05;    // m/s of rolling from which on it is that in motion
 constexpr double kSure = 0.02;         // s that both faces of a corner must be felt before that counts
 constexpr double kMostScale = 0.025;   // of the wheels: more is slip
 constexpr double kGripUsed = 0.25;     // share of the normal force from which on traction makes slip likely
@@ -170,7 +172,9 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const double least = noise_.place * noise_.place;
     belief.spread.xx += least, belief.spread.zz += least;
     belief.force = {w.felt, w.traction, true};
-    belief.force_deviation = noise_.force * weight_ + 0.15 * norm(w.felt);
+    // At rest no acceleration mixes with the ground's force.
+    const double motion = kForceAtRest + (1.0 - kForceAtRest) * std::min(1.0, std::abs(w.cruise) / kForceSpeed);
+    belief.force_deviation = motion * (noise_.force * weight_ + 0.15 * norm(w.felt));
     const CurveMatch on = match(path_, belief, w.s, kWindow);
     w.s = on.s;
     enter_face(i, on);
