@@ -9,7 +9,7 @@ namespace stairwright::control {
 namespace {
 
 constexpr double kTime = 0.15;   // s
-constexpr double kMost = 0.04;   // m; more is a wrong estimate
+constexpr double kMost = 0.07;   // m; more is a wrong estimate
 constexpr double kLeast = 1e-5;  // m
 
 }  // namespace

@@ -45,16 +45,18 @@ bool Rollout::diverged() const {
 Perceived Rollout::perceive(std::span<const double> noise) {
     if (auto* ideal = std::get_if<SensorModel>(&perception_)) {
         const RobotState& state = ideal->perceive(truth(), noise);
-        return {state, {}, {}, state.joints, state.joint_rates};
+        return {state, {}, {}, {}, state.joints, state.joint_rates};
     }
     return std::get<RobotSense>(perception_).perceive(truth(), torques_, dt_);
 }
 
 const control::Reference& Rollout::target(const Perceived& seen, bool moving, double time) {
     if (safe_stop_.why() != control::Stop::none) return stand_;
-    const control::Reference& drawn = follower_.advance(controller_.places(), moving, dt_);
+    const bool searching = moving && seen.ahead.any();
+    const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt_);
     if (!seen.places) return drawn;
     const control::Reference& next = adapted_ = leg_fit_.fit(drawn, seen.ground, dt_);
+    if (searching) adapted_ = control::search(adapted_, seen.ahead, *seen.places);
     const auto [w, x, y, z] = seen.state.quaternion;
     const double pitch = std::atan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y));
     const double error = std::remainder(pitch - next.value.pitch, 2 * std::numbers::pi);

@@ -36,7 +36,7 @@ struct Noise {
     // Growth of the map's error in the square root of a metre rolled, and of measurements.
     double map_along = 0.006, map_height = 0.004;
     // Of the place of a face against the one before, and of the height of a tread [m].
-    double face_place = 0.015, tread_height = 0.010;
+    double face_place = 0.018, tread_height = 0.010;
     double place = 0.002, rolling = 0.03, aside = 0.03, off_face = 0.02;
     // A loaded tyre rolls on a radius that is smaller by this [m].
     double deflection = 0.0004;
@@ -59,6 +59,8 @@ struct Estimate {
     std::array<bool, 4> touching{};
     // How much farther ahead and higher each pair's ground lies than drawn, against their mean [m].
     std::array<Vec2, 2> ground{};
+    std::array<bool, 2> on_tread{};   // of each pair: it can roll on for a while
+    std::array<bool, 2> searching{};  // the map has a face where the pair is, and it feels none
 };
 
 class Estimator {
@@ -100,6 +102,7 @@ class Estimator {
     void predict(const Readings& readings, double dt);
     void see_legs(const Readings& readings, double dt);
     void measure(int wheel, const Readings& readings, double dt);
+    void put_back(int wheel, Vec2 along, double excess, Error& error);
     void enter_face(int wheel, const CurveMatch& on);
     void measure_place(int wheel, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error);
     void measure_rolling(int wheel, const CurveMatch& on, const Readings& readings, double dt, Error& error);

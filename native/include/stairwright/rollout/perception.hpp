@@ -5,6 +5,7 @@
 #include <span>
 #include <variant>
 
+#include "stairwright/control/face_search.hpp"
 #include "stairwright/estimation/estimator.hpp"
 #include "stairwright/rollout/robot_sensors.hpp"
 #include "stairwright/rollout/sensor_model.hpp"
@@ -15,6 +16,7 @@ struct Perceived {
     RobotState state;
     std::optional<std::array<double, 4>> places;  // of the wheels on the map, where they are known by themselves
     std::array<Vec2, 2> ground{};                 // how the pairs' ground differs, see estimation::Estimate
+    control::Ahead ahead{};
     std::array<double, 12> joints{}, joint_rates{};  // what the drives read now
 };
 
