@@ -80,15 +80,21 @@ void bind_perception(nb::module_& m) {
         .def("__init__", [](SensorModel* self, std::size_t delay_steps, double start, double offset, double scale, double pitch) {
             new (self) SensorModel(delay_steps, {start, offset, scale, pitch});
         }, nb::arg("delay_steps"), nb::arg("start"), nb::arg("offset") = 0.0, nb::arg("scale") = 0.0, nb::arg("pitch") = 0.0);
+    nb::class_<SensorErrors>(m, "SensorErrors", "Of the robot's own sensors, see rollout/robot_sensors.hpp.")
+        .def("__init__", [](SensorErrors* self, double scale) { new (self) SensorErrors(usual_errors(scale)); }, nb::arg("scale") = 1.0)
+        .def_rw("gyro", &SensorErrors::gyro)
+        .def_rw("specific_force", &SensorErrors::specific_force)
+        .def_rw("gyro_offset", &SensorErrors::gyro_offset)
+        .def_rw("force_offset", &SensorErrors::force_offset)
+        .def_rw("wheel_scale", &SensorErrors::wheel_scale)
+        .def_rw("tilt", &SensorErrors::tilt);
     nb::class_<RobotSense>(m, "RobotSense", "The robot's own sensors, late, and the estimator.")
         .def("__init__", [](RobotSense* self, const Robot& robot, const WheelPath& path, std::array<double, 2> start, double pitch,
-                            double noise, double wheel_scale, double tilt, std::size_t delay_steps, std::uint64_t seed,
+                            const SensorErrors& errors, std::size_t delay_steps, std::uint64_t seed,
                             const estimation::Noise& believed) {
-            SensorErrors errors = usual_errors(noise);
-            errors.wheel_scale = wheel_scale, errors.tilt = tilt;
             new (self) RobotSense({errors, seed}, {robot, path, {{start[0], start[1]}, pitch}, believed}, delay_steps);
-        }, nb::arg("robot"), nb::arg("path"), nb::arg("start"), nb::arg("pitch"), nb::arg("noise"), nb::arg("wheel_scale"),
-           nb::arg("tilt"), nb::arg("delay_steps"), nb::arg("seed"), nb::arg("believed") = estimation::Noise{});
+        }, nb::arg("robot"), nb::arg("path"), nb::arg("start"), nb::arg("pitch"), nb::arg("errors"), nb::arg("delay_steps"),
+           nb::arg("seed"), nb::arg("believed") = estimation::Noise{});
 }
 
 }  // namespace
@@ -109,12 +115,12 @@ void bind_rollout(nb::module_& m) {
     nb::class_<Rollout>(m, "Rollout", "The closed loop in MuJoCo; keep model and data alive as long as it.")
         .def("__init__", [](Rollout* self, std::uintptr_t model, std::uintptr_t data, const Controller& controller,
                             const PlanFollower& follower, const Perception& perception, double motor_bandwidth,
-                            std::size_t log_every, int substeps) {
+                            double torque_scale, std::size_t log_every, int substeps) {
             if (model == 0 || data == 0) throw std::invalid_argument("model and data must be addresses");
             new (self) Rollout(reinterpret_cast<const mjModel_*>(model), reinterpret_cast<mjData_*>(data), controller, follower,
-                               perception, {motor_bandwidth}, log_every, substeps);
+                               perception, {motor_bandwidth, torque_scale}, log_every, substeps);
         }, nb::arg("model"), nb::arg("data"), nb::arg("controller"), nb::arg("follower"), nb::arg("perception"),
-           nb::arg("motor_bandwidth"), nb::arg("log_every"), nb::arg("substeps"))
+           nb::arg("motor_bandwidth"), nb::arg("torque_scale"), nb::arg("log_every"), nb::arg("substeps"))
         .def("run", [](Rollout& self, int first, int last, bool looked, bool loaded, bool moving, double begun, const Noise& noise) {
             nb::gil_scoped_release release;
             return self.run({std::max(first, 0), last, looked, loaded, moving, begun}, {noise.data(), noise.size()});

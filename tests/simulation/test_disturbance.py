@@ -9,7 +9,7 @@ import pytest
 import stairwright as sw
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
-from stairwright.simulation.disturbance import Disturbance
+from stairwright.simulation.disturbance import Disturbance, parse_disturbance
 from stairwright.simulation.ranges import BUNDLES, chosen_ranges, draw
 from stairwright.simulation.rollout import rollout
 from stairwright.simulation.trials import Trial, suspects
@@ -35,7 +35,13 @@ VALUES = {
     "noise": 1.0,
     "delay": 0.004,
     "bandwidth": 40.0,
+    "friction_wheels": [0.6, 0.6, 0.3, 0.3],
+    "torque_scale": -0.05,
+    "stiction": 0.3,
+    "rotor_inertia": 0.02,
+    "imu": {"gyro_bias": 0.02},
 }
+OF_THE_SENSORS = ("imu",)  # felt where the robot senses by itself
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +54,7 @@ def undisturbed(plan: Plan) -> np.ndarray:
     return ending(plan)
 
 
-def ending(plan: Plan, seed: int = 3, sensing: str = "ideal", **deviation: float) -> np.ndarray:
+def ending(plan: Plan, seed: int = 3, sensing: str = "ideal", **deviation: object) -> np.ndarray:
     """Joints along the way."""
     run = rollout(
         plan,
@@ -72,6 +78,10 @@ def test_every_field_is_tried() -> None:
 
 @pytest.mark.parametrize("name", VALUES)
 def test_each_deviation_is_felt(plan: Plan, undisturbed: np.ndarray, name: str) -> None:
+    if name in OF_THE_SENSORS:
+        undisturbed = ending(plan, sensing="robot")
+        assert differs(ending(plan, sensing="robot", **{name: VALUES[name]}), undisturbed)
+        return
     assert differs(ending(plan, **{name: VALUES[name]}), undisturbed)
 
 
@@ -84,7 +94,7 @@ def test_each_seed_draws_its_own(plan: Plan, name: str) -> None:
 
 def test_faces_move_and_steps_rise() -> None:
     terrain = sw.load_terrain("three-stairs-up-down")
-    deviation = Disturbance(step_height_error=0.02, face_place_error=0.03)
+    deviation = Disturbance(step_height_error=0.01, face_place_error=0.015)
     real = np.array(real_terrain(terrain, deviation, 5).points)
     drawn = np.array(terrain.points)
     moved = real - drawn
@@ -97,6 +107,63 @@ def test_faces_move_and_steps_rise() -> None:
     np.testing.assert_allclose(moved[treads, 1], moved[treads + 1, 1], atol=1e-12)  # and level
     assert np.all(moved[:2, 1] == 0.0)  # heights count from where the robot starts
     assert len({real_terrain(terrain, deviation, seed).points[2] for seed in range(5)}) == 5
+
+
+def test_errors_are_given_one_by_one_or_drawn_with_a_standard_deviation() -> None:
+    terrain = sw.load_terrain("three-stairs-up-down")
+    drawn = np.array(terrain.points)
+    deviation = Disturbance(step_height_error=[0.01, -0.02], face_place_error=[0.0, 0.015])
+    moved = np.array(real_terrain(terrain, deviation, 0).points) - drawn
+    np.testing.assert_allclose(np.unique(moved[:, 1].round(9)), [-0.01, 0.0, 0.01])
+    np.testing.assert_allclose(np.unique(moved[:, 0].round(9)), [0.0, 0.015])
+    heights = [
+        np.diff(
+            np.array(real_terrain(terrain, Disturbance(step_height_error=0.01), k).points)[:, 1]
+        )
+        for k in range(200)
+    ]
+    errors = np.array(heights) - np.diff(drawn[:, 1])
+    errors = errors[np.abs(errors) > 1e-12]
+    assert errors.std() == pytest.approx(0.01, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("value", "field"),
+    [
+        ({"friction_wheels": [0.6, 0.6, 0.0, 0.6]}, "friction_wheels"),
+        ({"payload": {"mass": -1.0}}, "payload"),
+        ({"imu": {"gyro": 1.0}}, "imu"),
+        ({"torque_scale": 0.95}, "torque_scale"),
+        ({"step_height_error": [0.2]}, "step_height_error"),
+    ],
+)
+def test_bad_deviations_are_named(value: dict[str, object], field: str) -> None:
+    with pytest.raises(InputError) as caught:
+        parse_disturbance(value)
+    assert caught.value.field[:2] == ("disturbance", field)
+
+
+def test_a_payload_has_a_place_and_motors_are_not_as_believed() -> None:
+    robot, terrain = sw.load_robot("a1_wheeled"), sw.load_terrain("flat")
+    plain = build_world(robot, terrain, 0.6, Disturbance(), pivot=0.0)
+    deviation = parse_disturbance(
+        {
+            "payload": {"mass": 2.0, "place": [0.1, 0.05, 0.1]},
+            "friction_wheels": [0.5, 0.6, 0.3, 0.4],
+            "stiction": 0.2,
+            "rotor_inertia": 0.0,
+        }
+    )
+    model = build_world(robot, terrain, 0.6, deviation, pivot=0.0)
+    trunk, before = model.body("trunk"), plain.body("trunk")
+    mass = trunk.mass[0]
+    assert mass - before.mass[0] == pytest.approx(2.0)
+    place = (trunk.ipos * mass - before.ipos * before.mass[0]) / 2.0
+    np.testing.assert_allclose(place, [0.1, 0.05, 0.1], atol=1e-9)
+    grips = [model.geom(f"{leg}_wheel").friction[0] for leg in ("FL", "RL", "RR")]
+    np.testing.assert_allclose(grips, [0.5, 0.3, 0.4])
+    assert np.all(model.dof_armature[6:] == 0.0)
+    np.testing.assert_allclose(model.dof_frictionloss[6:], plain.dof_frictionloss[6:] + 0.2)
 
 
 def test_faces_do_not_cross() -> None:
@@ -128,7 +195,9 @@ def test_the_world_is_turned_and_the_wheels_grip_differently() -> None:
 def test_bundles_are_known_by_name() -> None:
     assert chosen_ranges(bundle="field") is BUNDLES["field"]
     deviations = draw(BUNDLES["field"], 50, 1)
-    assert all(d.face_place_error == 0.03 and d.delay == 0.008 for d in deviations)
+    assert all(
+        d.face_place_error == pytest.approx(0.03 / 3**0.5) and d.delay == 0.008 for d in deviations
+    )
     assert max(abs(d.x_offset) for d in deviations) > 0.015
     with pytest.raises(InputError, match="laboratory"):
         chosen_ranges(bundle="moon")

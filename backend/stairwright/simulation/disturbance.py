@@ -3,16 +3,45 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import Field
 
 from stairwright.arguments import as_model
 from stairwright.documents import Model
 
+Error = Annotated[float, Field(ge=-0.1, le=0.1)]  # m
+Friction = Annotated[float, Field(gt=0.0, le=5.0)]
+
 
 def _field(low: float, high: float, text: str) -> Any:
     return Field(0.0, ge=low, le=high, description=text)
+
+
+def _deviation(text: str) -> Any:
+    return Field(0.0, description=f"{text}: standard deviation, or one after the other [m]")
+
+
+class Payload(Model):
+    """A mass that the plan does not know of."""
+
+    mass: float = Field(ge=0.0, le=100.0, description="kg")
+    place: tuple[float, float, float] | None = Field(
+        None, description="of its mass centre in the trunk's frame; on top if empty [m]"
+    )
+
+
+class ImuErrors(Model):
+    """The inertial sensor's errors, beside those that the usual one has."""
+
+    gyro_bias: float = _field(-0.5, 0.5, "about each axis [rad/s]")
+    accelerometer_bias: float = _field(-5.0, 5.0, "along each axis [m/s^2]")
+    gyro_noise: float | None = Field(
+        None, ge=0.0, le=1.0, description="of a reading; the usual one if empty [rad/s]"
+    )
+    accelerometer_noise: float | None = Field(
+        None, ge=0.0, le=20.0, description="of a reading; the usual one if empty [m/s^2]"
+    )
 
 
 class Disturbance(Model):
@@ -21,17 +50,18 @@ class Disturbance(Model):
     friction: float = _field(-5.0, 5.0, "added to the true friction")
     friction_front: float = _field(-5.0, 5.0, "added to that, at the front wheels")
     friction_rear: float = _field(-5.0, 5.0, "added to that, at the rear wheels")
+    friction_wheels: tuple[Friction, Friction, Friction, Friction] | None = Field(
+        None, description="the true friction of the wheels FL, FR, RL, RR instead"
+    )
     mass: float = _field(-0.5, 1.0, "share of the robot's mass, on the trunk")
-    payload: float = _field(0.0, 100.0, "on top of the trunk's middle [kg]")
+    payload: Annotated[float, Field(ge=0.0, le=100.0)] | Payload = Field(
+        0.0, description="on top of the trunk's middle [kg], or a mass and its place"
+    )
     com_x: float = _field(-0.2, 0.2, "the robot's CoM moves forward [m]")
     com_z: float = _field(-0.2, 0.2, "the robot's CoM moves up [m]")
     height: float = _field(-0.2, 0.2, "added to the terrain's rise [m]")
-    step_height_error: float = _field(
-        0.0, 0.1, "each rise or descent is off by at most this, at random [m]"
-    )
-    face_place_error: float = _field(
-        0.0, 0.1, "each face is moved along by at most this, at random [m]"
-    )
+    step_height_error: Error | list[Error] = _deviation("each rise or descent is off")
+    face_place_error: Error | list[Error] = _deviation("each face is moved along")
     heading: float = _field(-0.5, 0.5, "the robot starts turned to the left of the course [rad]")
     cross_slope: float = _field(-0.3, 0.3, "the terrain rises to the left [rad]")
     x_offset: float = _field(
@@ -42,6 +72,28 @@ class Disturbance(Model):
     noise: float = _field(0.0, 20.0, "sensor noise, in units of the sensors' own")
     delay: float = _field(0.0, 0.1, "from sensing to torque [s]")
     bandwidth: float = _field(0.0, 500.0, "of the torques [Hz]; 0: they act at once")
+    torque_scale: float = _field(-0.5, 0.5, "share by which motors give more than asked for")
+    stiction: float = _field(0.0, 20.0, "dry friction of each leg joint and wheel [Nm]")
+    rotor_inertia: float | None = Field(
+        None, ge=0.0, le=1.0, description="of every motor, as its joint feels it [kg m^2]"
+    )
+    imu: ImuErrors = Field(ImuErrors(), description="what the robot's own inertial sensor errs by")
+
+    @property
+    def load(self) -> Payload:
+        """The payload with its place, if one is given."""
+        return self.payload if isinstance(self.payload, Payload) else Payload(mass=self.payload)
+
+    def size(self, name: str) -> float:
+        """How large the deviation `name` is: without sign, the largest of several."""
+        value = getattr(self, name)
+        if isinstance(value, Payload):
+            return value.mass
+        if isinstance(value, ImuErrors):
+            return max(abs(v) for v in (value.gyro_bias, value.accelerometer_bias))
+        if isinstance(value, list | tuple):
+            return max((abs(v) for v in value), default=0.0)
+        return abs(value) if value is not None else 0.0
 
 
 def parse_disturbance(value: Mapping[str, Any] | Disturbance | None) -> Disturbance:

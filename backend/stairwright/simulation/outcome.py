@@ -2,7 +2,8 @@
 
 ``success``: all four wheels within 2 cm of where the plan ends, upright, no link loaded.
 ``diverged``: the numbers left the finite. ``fell``: the trunk turned over or left the plan's pitch
-by a radian, or the robot dropped off the terrain. ``collided``: trunk or a link carried load.
+by a radian, or the robot dropped off the terrain. ``collided``: trunk or a link carried load, or
+legs touched each other.
 ``stopped``: the robot gave up by itself, stood still and says why (sensing robot).
 ``stuck``: no progress for some seconds, or at rest short of the end. ``timeout``: still moving when
 the time was over.
@@ -124,6 +125,8 @@ def judge(ending: Ending, loads: LinkLoads, weight: float) -> tuple[Outcome, str
         return "collided", f"{_words(link)} carried {loads.peak:.0f} N at {time:.1f} s.{rest}"
     if ending.cause == "stopped":
         return "stopped", f"The robot stopped and stands: {ending.detail} {where}."
+    if loads.self_contacts:
+        return "collided", f"Its legs touched each other. It ended {where}."
     if ending.cause == "arrived" and ending.error <= ARRIVED:
         grazes = f"; a link grazed for {loads.contacts} control steps" if loads.contacts else ""
         return "success", f"Arrived after {ending.time:.1f} s{grazes}."

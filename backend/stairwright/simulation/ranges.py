@@ -19,6 +19,7 @@ Bound = Annotated[float, Field(ge=-5.0, le=500.0)]
 Range = tuple[Bound, Bound]
 
 _DEGREE = math.pi / 180
+_UNIFORM = 1 / math.sqrt(3)  # standard deviation of what is uniform, by its limit
 _FIRST = 7  # fields from friction to delay
 
 
@@ -40,14 +41,16 @@ class Ranges(Model):
     friction_front: Range = _none("added to that, at the front wheels")
     friction_rear: Range = _none("added to that, at the rear wheels")
     payload: Range = _none("on top of the trunk's middle [kg]")
-    step_height_error: Range = _none("each rise or descent is off by at most this, at random [m]")
-    face_place_error: Range = _none("each face is moved along by at most this, at random [m]")
+    step_height_error: Range = _none("of each rise or descent, standard deviation [m]")
+    face_place_error: Range = _none("of each face's place, standard deviation [m]")
     heading: Range = _none("the robot starts turned to the left of the course [rad]")
     cross_slope: Range = _none("the terrain rises to the left [rad]")
     x_offset: Range = _none("the robot believes to start farther ahead than it does [m]")
     odometry_scale: Range = _none("share by which a way seems longer than it is")
     pitch_bias: Range = _none("the IMU is mounted pitched [rad]")
     bandwidth: Range = _none("of the torques [Hz]; 0: they act at once")
+    torque_scale: Range = _none("share by which motors give more than asked for")
+    stiction: Range = _none("dry friction of each leg joint and wheel [Nm]")
 
     @model_validator(mode="after")
     def _check_order(self) -> Ranges:
@@ -65,7 +68,7 @@ class Ranges(Model):
 
 def _bundle(start: float, delay: float, bandwidth: float, steps: float, turn: float) -> Ranges:
     """Deviations around none: place of the start [m], loop, steps [m], heading [degrees]."""
-    tilt = turn / 3 * _DEGREE
+    tilt, steps = turn / 3 * _DEGREE, steps * _UNIFORM
     return Ranges(
         friction=(-0.05, 0.05),
         mass=(-0.05, 0.05),
@@ -88,7 +91,7 @@ BUNDLES = {
     "usual": Ranges(),
     "laboratory": _bundle(0.01, 0.006, 40.0, 0.005, 1.5),
     "field": _bundle(0.02, 0.008, 25.0, 0.015, 3.0).model_copy(
-        update={"face_place_error": (0.03, 0.03)}
+        update={"face_place_error": (0.03 * _UNIFORM, 0.03 * _UNIFORM)}
     ),
 }
 

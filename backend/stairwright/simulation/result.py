@@ -148,7 +148,7 @@ class Rollout(Model):
     friction: float
     seed: int
     controller: ControllerSettings
-    disturbance: dict[str, float] = {}
+    disturbance: dict[str, Any] = Field({}, description="what deviated, see Disturbance")
     outcome: Outcome
     reason: str = Field(description="one sentence: what happened, where and when")
     metrics: Metrics

@@ -40,6 +40,7 @@ Floats = NDArray[np.float64]
 _PIECE = re.compile(r"(?<=trunk|thigh|_calf)_\d+$")  # of a part that is several shapes
 CONTROL_STEPS = 2  # physics steps per control step: 500 Hz
 SETTLE = 0.4  # s at rest before the plan starts and after it ends
+DRIFT = 0.01  # of the way: what wheels that roll without slip may be off by
 STANDS = 1.0  # s that a robot which gave up must stand
 STOPS = {  # why it gives up, see control/safe_stop.hpp
     1: "the wheels did not follow the plan for 3 s",
@@ -130,8 +131,9 @@ class Run:
         line = follower(self.track, self.settings.maximum_lead)
         bandwidth = self.disturbance.bandwidth
         perception = self._perception()
+        scale = 1.0 + self.disturbance.torque_scale
         return _core.Rollout(
-            model, data, controller, line, perception, bandwidth, every, CONTROL_STEPS
+            model, data, controller, line, perception, bandwidth, scale, every, CONTROL_STEPS
         )
 
     def _perception(self) -> _core.IdealSense | _core.RobotSense:
@@ -147,12 +149,21 @@ class Run:
             self.path.native,
             start=(start.x_c, start.z_c),
             pitch=start.pitch,
-            noise=max(1.0, deviation.noise),  # real sensors have it anyway
-            wheel_scale=deviation.odometry_scale,
-            tilt=deviation.pitch_bias,
+            errors=self._sensor_errors(),
             delay_steps=late,
             seed=self.seed,
         )
+
+    def _sensor_errors(self) -> _core.SensorErrors:
+        deviation, imu = self.disturbance, self.disturbance.imu
+        errors = _core.SensorErrors(max(1.0, deviation.noise))  # real sensors have it anyway
+        errors.wheel_scale, errors.tilt = deviation.odometry_scale, deviation.pitch_bias
+        errors.gyro_offset, errors.force_offset = [imu.gyro_bias] * 3, [imu.accelerometer_bias] * 3
+        if imu.gyro_noise is not None:
+            errors.gyro = imu.gyro_noise
+        if imu.accelerometer_noise is not None:
+            errors.specific_force = imu.accelerometer_noise
+        return errors
 
     def _place(self) -> None:
         """Put the robot into the plan's first pose."""
@@ -303,9 +314,10 @@ class Run:
     def _end_error(self) -> float:
         """Largest distance of a wheel from where the plan ends on the real terrain [m].
 
-        What a deviation makes of the way itself (a start elsewhere, faces moved, a wrong measure of
-        length) is not held against the robot: it can know where it is on the stairs, not in the
-        world.
+        Judged along the path: what a deviation makes of the way itself (a start elsewhere, faces
+        moved, a wrong measure of length), and where the robot senses by itself the drift of its
+        wheels since the last face, is not held against it. It can know where it is on the stairs,
+        not in the world. Across the path what counts is the ground that is there.
         """
         deviation = self.disturbance
         turn, origin = course_frame(deviation, self.plan.poses[0].x_c)
@@ -316,17 +328,28 @@ class Run:
         end = np.array(self.plan.poses[-1].wheels)[[0, 0, 1, 1]]
         start = np.array(self.plan.poses[0].wheels)[[0, 0, 1, 1]]
         way = np.abs(end[:, 0] - start[:, 0])
-        lost = (
-            abs(deviation.x_offset)
-            + deviation.face_place_error
-            + abs(deviation.odometry_scale) * way
-        )
+        lost = abs(deviation.x_offset) + self._faces_moved()
+        lost = lost + (abs(deviation.odometry_scale) + 1.0 - math.cos(deviation.heading)) * way
+        if self.settings.sensing == "robot":
+            lost = lost + DRIFT * self._since_last_face(end[:, 0])
         off = np.maximum(0.0, np.abs(x - end[:, 0]) - lost)
         real = wheel_path(self.terrain, self.robot.wheel.radius)
         places = np.column_stack([x, z])
         nearest = real.centres(np.array([real.project(place) for place in places]))
         off_ground = np.hypot(*(places - nearest).T)
         return float(np.hypot(off, off_ground).max())
+
+    def _faces_moved(self) -> float:
+        """How far a face is from where it was drawn, at most [m]."""
+        real, drawn = (np.array(t.points)[:, 0] for t in (self.terrain, self.plan.terrain))
+        return float(np.abs(real - drawn).max())
+
+    def _since_last_face(self, x: Floats) -> Floats:
+        """Way from the last steep face before each `x` (n,), or from the start (n,) [m]."""
+        vertices, start = self.plan.terrain.vertices, self.plan.poses[0].x_c
+        dx, dz = np.diff(vertices, axis=0).T
+        faces = np.append(vertices[1:, 0][np.abs(dz) > dx], start)
+        return np.array([float((at - faces[faces <= at]).min(initial=at - start)) for at in x])
 
     def _at_rest(self) -> bool:
         return bool(np.abs(self.data.qvel[:3]).max() < 0.02)
@@ -360,7 +383,7 @@ class Run:
             else None,
             real_time_factor=ending.time / max(self.wall, 1e-9),
         )
-        deviations = {k: v for k, v in self.disturbance.model_dump().items() if v != 0.0}
+        deviations = self.disturbance.model_dump(mode="json", exclude_defaults=True)
         key = [plan.id, plan.friction, self.friction, self.seed, self.settings.model_dump()]
         if self.simulated:
             key.append(self.simulated)

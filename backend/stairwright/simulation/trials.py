@@ -148,7 +148,7 @@ def suspects(results: Sequence[Trial]) -> dict[str, float]:
     if not good or not bad:
         return found
     for name in Disturbance.model_fields:
-        a, b = (np.abs([getattr(one, name) for one in group]) for group in (bad, good))
+        a, b = (np.array([one.size(name) for one in group]) for group in (bad, good))
         more = np.mean(np.sign(a[:, None] - b[None, :]) / 2 + 0.5)
         if more > SUSPECT:
             found[name] = round(float(more), 3)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import mujoco
@@ -21,6 +22,7 @@ Floats = NDArray[np.float64]
 _LEAST_FRICTION = 0.01
 _FACE_SLOPE = 1.0  # a stretch that is steeper (45 degrees) is a face, else a tread
 _PAYLOAD_ABOVE = 0.05  # m, mass centre of the payload above the trunk's top
+_MOST_DEVIATIONS = 2.0  # standard deviations
 _TERRAIN_STREAM = 1  # of the seed's random numbers: those of the terrain's errors
 
 
@@ -44,13 +46,25 @@ def build_world(
     spec = build_spec(robot, terrain, ground, half_width=half_width, visual=False)
     _turn_terrain(spec, deviation, pivot)
     for leg in LEGS:
-        extra = deviation.friction_front if leg[0] == "F" else deviation.friction_rear
-        if extra != 0.0:
+        own = friction + (deviation.friction_front if leg[0] == "F" else deviation.friction_rear)
+        if deviation.friction_wheels is not None:
+            own = deviation.friction_wheels[LEGS.index(leg)]
+        if own != friction:
             wheel = spec.geom(f"{leg}_wheel")
             wheel.priority = 2  # over the terrain's
-            wheel.friction = [max(_LEAST_FRICTION, friction + extra), 0.0, 0.0]
+            wheel.friction = [max(_LEAST_FRICTION, own), 0.0, 0.0]
+    _disturb_motors(spec, deviation)
     disturb_trunk(spec, robot, deviation)
     return spec.compile()
+
+
+def _disturb_motors(spec: Any, deviation: Disturbance) -> None:
+    for leg in LEGS:
+        for part in ("thigh", "calf", "wheel"):
+            joint = spec.joint(f"{leg}_{part}")
+            joint.frictionloss += deviation.stiction
+            if deviation.rotor_inertia is not None:
+                joint.armature = deviation.rotor_inertia
 
 
 def course_frame(deviation: Disturbance, pivot: float) -> tuple[Floats, Floats]:
@@ -88,7 +102,7 @@ def real_terrain(terrain: Terrain, deviation: Disturbance, seed: int) -> Terrain
     rise = float(np.ptp(z))
     if deviation.height != 0.0 and rise >= 1e-6:
         z = z[0] + max(0.0, 1.0 + deviation.height / rise) * (z - z[0])
-    if deviation.step_height_error != 0.0 or deviation.face_place_error != 0.0:
+    if deviation.step_height_error or deviation.face_place_error:
         random = np.random.default_rng([seed, _TERRAIN_STREAM])
         x, z = _with_errors(x, z, deviation, random)
     if np.array_equal(np.column_stack([x, z]), points):
@@ -113,6 +127,8 @@ def _with_errors(
     dx, dz = np.diff(x), np.diff(z)
     steep = np.abs(dz) > _FACE_SLOPE * dx
     moved, lifted = np.zeros(len(x)), np.zeros(len(x))
+    heights = _errors(deviation.step_height_error, len(x), random)
+    places = _errors(deviation.face_place_error, len(x), random)
     level = at = 0.0
     before = -np.inf  # where the tread begins
     stretch = 0
@@ -122,19 +138,27 @@ def _with_errors(
             lifted[first : stretch + 1] = level
             before = x[first] + at
             continue
-        wanted = deviation.face_place_error * random.uniform(-1.0, 1.0)
+        wanted = next(places)
         # A face does not reach past the ends of the treads beside it.
         following = np.flatnonzero(steep[stretch:])
         after = x[stretch + following[0]] if len(following) else x[-1]
         room = (0.4 * (x[first] - before), 0.4 * (after - x[stretch]))
         at = float(np.clip(wanted, -max(room[0], 0.0), max(room[1], 0.0)))
-        level += deviation.step_height_error * random.uniform(-1.0, 1.0)
+        level += next(heights)
         moved[first : stretch + 1] = at
         shares = np.linspace(0.0, 1.0, stretch + 1 - first)
         old = lifted[first]
         lifted[first : stretch + 1] = old + shares * (level - old)
     moved[0] = moved[-1] = 0.0
     return np.maximum.accumulate(x + moved), z + lifted
+
+
+def _errors(given: float | list[float], most: int, random: np.random.Generator) -> Iterator[float]:
+    """One error after the other: those given, or normal ones, cut at two standard deviations."""
+    if isinstance(given, list):
+        return itertools.chain(given, itertools.repeat(0.0))
+    drawn = np.clip(random.standard_normal(most), -_MOST_DEVIATIONS, _MOST_DEVIATIONS)
+    return iter((given * drawn).tolist())
 
 
 def disturb_trunk(spec: Any, robot: Robot, disturbance: Disturbance) -> None:
@@ -144,10 +168,12 @@ def disturb_trunk(spec: Any, robot: Robot, disturbance: Disturbance) -> None:
     inertia = np.array(body.inertia) * mass / body.mass
     outline = np.array([point for piece in body.outline for point in piece.points])
     top = np.array([outline[:, 0].mean(), 0.0, outline[:, 1].max() + _PAYLOAD_ABOVE])
-    added = disturbance.payload
+    added, place = disturbance.load.mass, disturbance.load.place
+    if place is not None:
+        top = np.array(place)
     com = (mass * np.array(body.com) + added * top) / (mass + added)
-    for part, place in ((mass, np.array(body.com)), (added, top)):
-        arm = place - com
+    for part, at in ((mass, np.array(body.com)), (added, top)):
+        arm = at - com
         inertia = inertia + part * (arm @ arm - arm**2)
     mass += added
     total = robot.mass - body.mass + mass

@@ -114,8 +114,20 @@ Controller::Controller(Robot robot, WheelPath path, double friction, const Gains
     places_.fill(std::numeric_limits<double>::quiet_NaN());
 }
 
+Torques drive(const Command& c, const std::array<double, 12>& joints, const std::array<double, 12>& joint_rates) {
+    Torques out;
+    for (std::size_t j = 0; j < out.size(); ++j)
+        out[j] = c.torques[j] + c.stiffness[j] * (c.joints[j] - joints[j]) + c.damping[j] * (c.rates[j] - joint_rates[j]);
+    return out;
+}
+
 Torques Controller::step(const RobotState& state, const Reference& target, double yaw_rate,
                          const std::optional<std::array<double, 4>>& places) {
+    return drive(command(state, target, yaw_rate, places), state.joints, state.joint_rates);
+}
+
+Command Controller::command(const RobotState& state, const Reference& target, double yaw_rate,
+                            const std::optional<std::array<double, 4>>& places) {
     const Gains& g = gains_;
     const Measurement m = measure(robot_, mass_, state);
     const double usable = std::max(g.friction_share, target.friction_share) * friction_;
@@ -134,7 +146,7 @@ Torques Controller::step(const RobotState& state, const Reference& target, doubl
     // Torques: forces and weight, tracking (eq 27), rolling (eqs 14-16) with the traction fed forward.
     const double turn = yaw_rate - g.heading_stiffness * m.heading;
     const double difference = robot_.half_track / path_.radius() * (turn + g.yaw_damping * (turn - m.yaw_rate));
-    Torques out;
+    Command out;
     for (int i = 0; i < 4; ++i) {
         const int pair = i / 2, j = 3 * i;
         const Leg& leg = robot_.legs[pair];
@@ -143,14 +155,16 @@ Torques Controller::step(const RobotState& state, const Reference& target, doubl
         const Vec2 force = {t * s.normal.z + n * s.normal.x, n * s.normal.z - t * s.normal.x};
         const Vec2 point = m.legs[i].wheel - s.reach * s.normal;
         const LegTorques carrying = force_torques(leg, m.legs[i], point, force);
-        const double balance[] = {carrying.thigh, carrying.calf};
-        for (int k = 0; k < 2; ++k)
-            out[j + k] = balance[k] + g.joint_stiffness * (target.value.joints[2 * pair + k] - state.joints[j + k]) +
-                         g.joint_damping * (target.rate.joints[2 * pair + k] - state.joint_rates[j + k]);
+        out.torques[j] = carrying.thigh, out.torques[j + 1] = carrying.calf;
+        for (int k = 0; k < 2; ++k) {
+            out.joints[j + k] = target.value.joints[2 * pair + k], out.rates[j + k] = target.rate.joints[2 * pair + k];
+            out.stiffness[j + k] = g.joint_stiffness, out.damping[j + k] = g.joint_damping;
+        }
         const double speed = target.rate.wheels[pair] + g.wheel_sync * (target.value.wheels[pair] - places_[i]);
         const double rate = speed / leg.wheel.radius + (i % 2 == 0 ? -difference : difference);
-        const double rolled = state.joint_rates[j] + state.joint_rates[j + 1] + state.joint_rates[j + 2] + m.pitch_rate;
-        out[j + 2] = leg.wheel.radius * s.traction(force) + g.wheel_damping * (rate - rolled);
+        // A wheel turns against its calf.
+        out.torques[j + 2] = leg.wheel.radius * s.traction(force), out.damping[j + 2] = g.wheel_damping;
+        out.rates[j + 2] = rate - state.joint_rates[j] - state.joint_rates[j + 1] - m.pitch_rate;
     }
     return out;
 }

@@ -15,6 +15,9 @@ constexpr double kTouching = 0.15;      // of the share of the weight: a wheel t
 constexpr double kForceTime = 0.015;    // s, smoothing of the forces
 // s, smoothing of the speed by which the wheels' scale is judged: noise in it would count twice, and shrink the scale.
 constexpr double kCruiseTime = 0.1;
+constexpr double kForceAtRest = 0.3;    // of a force's uncertainty in motion
+constexpr double kForceSpeed = 0.15;    // m/s of the wheel's centre from which on it is that in motion
+constexpr double kRoom = 0.10;          // m to the next face that a pair needs to roll on freely
 constexpr double kSure = 0.02;         // s that both faces of a corner must be felt before that counts
 constexpr double kMostScale = 0.025;   // of the wheels: more is slip
 constexpr double kGripUsed = 0.25;     // share of the normal force from which on traction makes slip likely
@@ -22,6 +25,8 @@ constexpr double kAtRest = 0.015;      // m/s of rolling
 constexpr double kNearEdge = 0.015;    // m along the curve
 constexpr double kEdgeStray = 0.012;   // m that the map's edge may be off
 constexpr double kLevel = 0.95;        // cosine of the slope of a face on which the wheels' scale is learnt
+constexpr double kSearchNoise = 0.01;   // m^2 of variance for a metre that a face is farther on
+constexpr double kTread = 0.7;          // cosine of the slope of a face that is a tread
 constexpr double kGate = 9.0;           // of a normalised innovation squared
 constexpr double kNearCorner = 0.006;   // m; which way a wheel rolls this near to a concave corner is open
 
@@ -86,6 +91,7 @@ Estimator::Rotation Estimator::rotation() const {
 const Estimate& Estimator::step(const Readings& readings, double dt) {
     predict(readings, dt);
     see_legs(readings, dt);
+    estimate_.searching = {};
     for (int i = 0; i < 4; ++i) measure(i, readings, dt);
     started_ = true;
     report(readings);
@@ -169,9 +175,18 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const double least = noise_.place * noise_.place;
     belief.spread.xx += least, belief.spread.zz += least;
     belief.force = {w.felt, w.traction, true};
-    belief.force_deviation = noise_.force * weight_ + 0.15 * norm(w.felt);
+    // At rest no acceleration mixes with the ground's force.
+    const Vec3 spin = cross3(rate_, {w.place.x, side, w.place.z});
+    const Vec3 own_speed = times(R, {spin[0] + w.rate.x, spin[1], spin[2] + w.rate.z});
+    const double speed = std::hypot(velocity_[0] + own_speed[0], velocity_[2] + own_speed[2]);
+    const double motion = kForceAtRest + (1.0 - kForceAtRest) * std::min(1.0, speed / kForceSpeed);
+    belief.force_deviation = motion * (noise_.force * weight_ + 0.15 * norm(w.felt));
     const CurveMatch on = match(path_, belief, w.s, kWindow);
     w.s = on.s;
+    enter_face(i, on);
+    const std::size_t next = path_.corner_from(on.s);
+    const double room = next < path_.corners().size() ? path_.corners()[next] - on.s : kRoom;
+    estimate_.on_tread[i / 2] = !on.corner && on.point.normal.z > kTread && room >= kRoom;
 
     w.at_corner = on.corner ? w.at_corner + dt : 0.0;
     estimate_.touching[i] = std::max({dot(w.felt, on.point.normal), dot(w.felt, on.before), dot(w.felt, on.after)}) > kTouching * weight_ / 4;
@@ -182,7 +197,18 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     correct(error);
 }
 
-void Estimator::measure_place(int, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error) {
+// Every face lies and every tread is as high as the map says only more or less: what is ahead is anew unsure.
+void Estimator::enter_face(int i, const CurveMatch& on) {
+    WheelState& w = wheels_[i];
+    if (on.corner || on.piece == w.face || path_.pieces()[on.piece].arc) return;
+    w.face = on.piece;
+    const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
+    const bool tread = on.point.normal.z > kTread;
+    const double error = tread ? noise_.face_place : noise_.tread_height;
+    covariance_.add_noise(tread ? own : own + 1, 0.5 * error * error);
+}
+
+void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error) {
     const double variance = noise_.place * noise_.place * std::max(1.0, noise_.place_lasts / dt);
     const Vec2 off = on.point.centre - centre;
     const auto row = [&](Vec2 d) {
@@ -200,8 +226,17 @@ void Estimator::measure_place(int, const CurveMatch& on, const Error& along_x, c
     if (on.beyond == 0 || !on.blocked) return;
     // The mean alone is projected: that the face is not felt yet is the same news at every step.
     const Vec2 t = {n.z, -n.x};
-    const double excess = dot(t, off) - dot_of(row(t), error);
-    error[kPlace] += excess * t.x, error[kPlace + 1] += excess * t.z;
+    put_back(i, t, dot(t, off) - dot_of(row(t), error), error);
+}
+
+// A wheel that the map has beyond a face which it does not feel: the face is farther on than drawn. Where the other
+// pair can roll on, so is all the rest.
+void Estimator::put_back(int i, Vec2 along, double excess, Error& error) {
+    const int pair = i / 2;
+    estimate_.searching[pair] = true;
+    const std::size_t at = estimate_.on_tread[1 - pair] ? kPlace : pair == 0 ? kFrontOffset : kRearOffset;
+    error[at] += excess * along.x, error[at + 1] += excess * along.z;
+    covariance_.add_noise(at, kSearchNoise * std::abs(excess));
 }
 
 void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& readings, double dt, Error& error) {
@@ -288,6 +323,8 @@ void Estimator::report(const Readings& readings) {
     out.joints = readings.joints, out.joint_rates = readings.joint_rates;
     out.velocity = velocity_, out.angular_velocity = rate_;
     for (int i = 0; i < 4; ++i) estimate_.places[i] = wheels_[i].s;
+    const Vec2 apart = 0.5 * (offset_[1] - offset_[0]);
+    estimate_.ground = {apart, -1.0 * apart};
 }
 
 Estimator::Judgement Estimator::judge(const control::RobotState& truth) const {

@@ -31,8 +31,8 @@ SensorErrors usual_errors(double scale) {
 }
 
 RobotSensors::RobotSensors(const SensorErrors& errors, std::uint64_t seed) : errors_(errors), noise_(seed) {
-    for (double& v : gyro_bias_) v = errors.gyro_bias * noise_();
-    for (double& v : force_bias_) v = errors.force_bias * noise_();
+    for (int i = 0; i < 3; ++i) gyro_bias_[i] = errors.gyro_offset[i] + errors.gyro_bias * noise_();
+    for (int i = 0; i < 3; ++i) force_bias_[i] = errors.force_offset[i] + errors.force_bias * noise_();
 }
 
 estimation::Readings RobotSensors::read(const control::RobotState& truth, const control::Torques& torques, double dt) {

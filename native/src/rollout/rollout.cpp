@@ -20,7 +20,7 @@ constexpr int kAllContacts = 16;  // the sensor that counts every contact; befor
 Rollout::Rollout(const mjModel* model, mjData* data, control::Controller controller, control::PlanFollower follower,
                  Perception perception, const Motors& motors, std::size_t log_every, int substeps)
     : model_(model), data_(data), controller_(std::move(controller)), follower_(std::move(follower)),
-      perception_(std::move(perception)), log_(log_every), substeps_(substeps), dt_(substeps * model->opt.timestep) {
+      perception_(std::move(perception)), scale_(motors.scale), leg_fit_(controller_.robot()), log_(log_every), substeps_(substeps), dt_(substeps * model->opt.timestep) {
     if (model->nq != control::kPositions || model->nv != control::kVelocities || model->nu != 12 ||
         model->nsensordata <= kAllContacts)
         throw std::invalid_argument("the model is not one of a robot with four wheeled legs");
@@ -43,14 +43,20 @@ bool Rollout::diverged() const {
 }
 
 Perceived Rollout::perceive(std::span<const double> noise) {
-    if (auto* ideal = std::get_if<SensorModel>(&perception_)) return {ideal->perceive(truth(), noise), {}};
+    if (auto* ideal = std::get_if<SensorModel>(&perception_)) {
+        const RobotState& state = ideal->perceive(truth(), noise);
+        return {state, {}, {}, {}, state.joints, state.joint_rates};
+    }
     return std::get<RobotSense>(perception_).perceive(truth(), torques_, dt_);
 }
 
 const control::Reference& Rollout::target(const Perceived& seen, bool moving, double time) {
     if (safe_stop_.why() != control::Stop::none) return stand_;
-    const control::Reference& next = follower_.advance(controller_.places(), moving, dt_);
-    if (!seen.places) return next;
+    const bool searching = moving && seen.ahead.any();
+    const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt_);
+    if (!seen.places) return drawn;
+    const control::Reference& next = adapted_ = leg_fit_.fit(drawn, seen.ground, dt_);
+    if (searching) adapted_ = control::search(adapted_, seen.ahead, *seen.places);
     const auto [w, x, y, z] = seen.state.quaternion;
     const double pitch = std::atan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y));
     const double error = std::remainder(pitch - next.value.pitch, 2 * std::numbers::pi);
@@ -66,8 +72,9 @@ const control::Reference& Rollout::target(const Perceived& seen, bool moving, do
 void Rollout::control(const Perceived& seen, bool moving, double time) {
     const RobotState state = truth();
     const control::Reference& target = this->target(seen, moving, time);
-    const control::Torques wanted = controller_.step(seen.state, target, 0.0, seen.places);
-    for (std::size_t i = 0; i < torques_.size(); ++i) torques_[i] += lag_ * (wanted[i] - torques_[i]);
+    const control::Command command = controller_.command(seen.state, target, 0.0, seen.places);
+    const control::Torques wanted = control::drive(command, seen.joints, seen.joint_rates);
+    for (std::size_t i = 0; i < torques_.size(); ++i) torques_[i] += lag_ * (scale_ * wanted[i] - torques_[i]);
     const control::Torques torques = control::limit_torques(controller_.robot(), std::span<const double, 12>(state.joint_rates), torques_);
     torques_ = torques;
     std::copy(torques.begin(), torques.end(), data_->ctrl);

@@ -67,13 +67,27 @@ struct Gains {
 
 using Torques = std::array<double, 12>;  // thigh, calf, wheel of each leg [Nm]
 
+// What the drives are told (the low-level commands of such robots): torque = torques + stiffness (joints - q) +
+// damping (rates - dq), with their own q and dq, which are not late.
+struct Command {
+    Torques torques{};
+    std::array<double, 12> joints{}, rates{};       // rad, rad/s
+    std::array<double, 12> stiffness{}, damping{};  // Nm/rad, Nm s/rad; wheels have no stiffness
+};
+
+// The torques that a drive makes of it.
+Torques drive(const Command& command, const std::array<double, 12>& joints, const std::array<double, 12>& joint_rates);
+
 class Controller {
   public:
     // `friction` is the one the plan was made for.
     Controller(Robot robot, WheelPath path, double friction, const Gains& gains);
 
-    // Torques before the motors' limits; `yaw_rate` is commanded. `places` of the wheels on the wheel-centre curve [m]
+    // What the drives are to do; `yaw_rate` is commanded. `places` of the wheels on the wheel-centre curve [m]
     // are those nearest to where the state puts the wheels, unless they are given.
+    Command command(const RobotState& state, const Reference& target, double yaw_rate = 0.0,
+                    const std::optional<std::array<double, 4>>& places = {});
+    // The torques of that command at the same state, before the motors' limits.
     Torques step(const RobotState& state, const Reference& target, double yaw_rate = 0.0,
                  const std::optional<std::array<double, 4>>& places = {});
 

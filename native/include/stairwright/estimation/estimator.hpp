@@ -34,7 +34,9 @@ struct Noise {
     // Growth in the square root of a second.
     double gyro_bias = 2e-4, force_bias = 5e-3;
     // Growth of the map's error in the square root of a metre rolled, and of measurements.
-    double map_along = 0.012, map_height = 0.006;
+    double map_along = 0.006, map_height = 0.004;
+    // Of the place of a face against the one before, and of the height of a tread [m].
+    double face_place = 0.018, tread_height = 0.010;
     double place = 0.002, rolling = 0.03, aside = 0.03, off_face = 0.02;
     // A loaded tyre rolls on a radius that is smaller by this [m].
     double deflection = 0.0004;
@@ -55,6 +57,10 @@ struct Estimate {
     control::RobotState state;       // for the controller: on the map as it was drawn
     std::array<double, 4> places{};  // of the wheels on the wheel-centre curve [m]
     std::array<bool, 4> touching{};
+    // How much farther ahead and higher each pair's ground lies than drawn, against their mean [m].
+    std::array<Vec2, 2> ground{};
+    std::array<bool, 2> on_tread{};   // of each pair: it can roll on for a while
+    std::array<bool, 2> searching{};  // the map has a face where the pair is, and it feels none
 };
 
 class Estimator {
@@ -83,6 +89,7 @@ class Estimator {
         Vec2 felt;                // the force, smoothed [N]
         double traction = 0.0;    // smoothed [N]
         double s;                 // place on the curve [m]
+        std::size_t face = 0;     // piece of the curve, the last straight one
         double rolled = 0.0;      // by the last step [m]
         double rate_now = 0.0;    // absolute, of its turning [rad/s]
         double cruise = 0.0;      // speed that it rolls at, smoothed [m/s]
@@ -95,6 +102,8 @@ class Estimator {
     void predict(const Readings& readings, double dt);
     void see_legs(const Readings& readings, double dt);
     void measure(int wheel, const Readings& readings, double dt);
+    void put_back(int wheel, Vec2 along, double excess, Error& error);
+    void enter_face(int wheel, const CurveMatch& on);
     void measure_place(int wheel, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error);
     void measure_rolling(int wheel, const CurveMatch& on, const Readings& readings, double dt, Error& error);
     void correct(const Error& error);

@@ -15,6 +15,7 @@ struct SensorErrors {
     double specific_force = 0.1, force_bias = 0.1;
     double wheel_scale = 0.0;     // share by which the wheels' turning is read too large
     double tilt = 0.0;            // the IMU is mounted pitched by this [rad]
+    std::array<double, 3> gyro_offset{}, force_offset{};  // added to the drawn biases
 };
 
 // Errors of `scale` times those of the usual sensors.

@@ -1,6 +1,7 @@
 // The closed loop in MuJoCo: sense, control, record, step the physics.
 #pragma once
 
+#include "stairwright/control/leg_fit.hpp"
 #include "stairwright/control/plan_follower.hpp"
 #include "stairwright/control/safe_stop.hpp"
 #include "stairwright/rollout/log.hpp"
@@ -15,6 +16,7 @@ namespace stairwright::rollout {
 // What is between the torques that the controller wants and those that act.
 struct Motors {
     double bandwidth = 0.0;  // of a first-order lag [Hz]; 0: none
+    double scale = 1.0;      // of the torque that acts to the one that is asked for
 };
 
 // The estimator's error against the truth at one step, see Estimator::judge.
@@ -75,11 +77,14 @@ class Rollout {
     control::Controller controller_;
     control::PlanFollower follower_;
     Perception perception_;
+    double scale_;  // of the motors' torques
     double lag_;  // share of the wanted torque that acts after a control step
     control::Torques torques_{};
     std::vector<Judged> judged_;
     control::SafeStop safe_stop_;
-    control::Reference stand_{};  // what is asked for after the stop
+    control::LegFit leg_fit_;
+    control::Reference adapted_{};  // what is asked for, with legs that fit the ground as it is
+    control::Reference stand_{};    // what is asked for after the stop
     double stopped_at_ = 0.0;
     Log log_;
     Score score_;

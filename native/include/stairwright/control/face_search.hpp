@@ -1,0 +1,20 @@
+// Finding a face that is not yet where the map has it: the plan waits before it while the wheels roll on.
+#pragma once
+
+#include "stairwright/control/controller.hpp"
+
+namespace stairwright::control {
+
+// How the pairs stand to what is ahead of them.
+struct Ahead {
+    std::array<bool, 2> searching{};  // a face should be here, and is not felt
+    std::array<bool, 2> on_tread{};   // can roll on
+
+    bool any() const { return searching[0] || searching[1]; }
+};
+
+// `waiting` is the plan's set point that waits; `places` of the wheels on the wheel-centre curve [m]. The pairs that can
+// roll on do so slowly, and the body with them; the weight stays on the treads.
+Reference search(const Reference& waiting, const Ahead& ahead, const std::array<double, 4>& places);
+
+}  // namespace stairwright::control

@@ -1,0 +1,22 @@
+// Legs that fit the ground as it is found to be: where front and rear wheels stand higher or farther apart than drawn,
+// the legs reach differently, so that the trunk keeps its planned attitude and no joint pulls against the ground.
+#pragma once
+
+#include "stairwright/control/controller.hpp"
+
+namespace stairwright::control {
+
+class LegFit {
+  public:
+    explicit LegFit(Robot robot) : robot_(std::move(robot)) {}
+
+    // `planned` with the joints that put each pair's wheels `ground` [m] off their planned place. What is asked
+    // for follows a change of the ground within some tenths of a second.
+    Reference fit(const Reference& planned, const std::array<Vec2, 2>& ground, double dt);
+
+  private:
+    Robot robot_;
+    std::array<Vec2, 2> off_{};
+};
+
+}  // namespace stairwright::control
