@@ -83,7 +83,7 @@ export const LEAST = "least_friction";
 export const QUANTITIES: readonly Quantity[] = [
   {
     name: LEAST,
-    title: "Least friction needed",
+    title: "Friction needed",
     unit: "μ",
     digits: 2,
     scale: 1,
