@@ -130,6 +130,7 @@ export function documentOf(now: Form): StudyDocument | null {
       boundary: [LEAST_FRICTION, page.friction],
       tolerance: TOLERANCE,
     });
+    rest.diagnose = "last"; // with less friction, it is friction that is missing
     delete rest.friction;
   }
   const groups = axesOf(now).map((name) => axisKind(name).group);

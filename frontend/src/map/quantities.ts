@@ -123,6 +123,7 @@ export const quantityOf = (name: string): Quantity =>
 
 /** What stops the robot: a letter and a word, as on the map. */
 const REASONS: Record<string, readonly [string, string]> = {
+  "": ["–", "not looked into"],
   reach: ["R", "reach"],
   clearance: ["C", "clearance"],
   joint_limit: ["J", "joint limit"],
