@@ -48,6 +48,22 @@ def test_what_stops_the_robot_is_told(result: sw.StudyResult) -> None:
     assert np.isnan(float(here.margin_com))
 
 
+@pytest.mark.parametrize(
+    ("diagnose", "told"), [("all", [1, 1]), ("last", [0, 1]), ("none", [0, 0])]
+)
+def test_what_would_open_the_way_is_found_out_where_it_is_asked(
+    diagnose: str, told: list[int]
+) -> None:
+    friction = {"name": "friction", "boundary": [0.3, 0.6], "tolerance": 0.3}
+    document = study({"name": "step.height", "values": [1.2]}, friction, diagnose=diagnose)
+    questions = Questions(load_study(document))
+    records = [cell.evaluate(questions, (1.2, mu)) for mu in (0.3, 0.6)]
+    assert [not record["feasible"] for record in records] == [True, True]
+    assert [record["reason"] != "" for record in records] == [bool(each) for each in told]
+    assert [record["needed"] == record["needed"] for record in records] == [bool(e) for e in told]
+    assert all("wheels stop at x" in record["message"] for record in records)
+
+
 def test_axes_have_units_and_order(result: sw.StudyResult) -> None:
     data = result.dataset
     assert data.feasible.dims == ("step.height", "friction")
@@ -71,7 +87,7 @@ def test_values_that_make_no_question_are_an_answer() -> None:
 
 
 def test_a_bug_is_recorded_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(*_: object) -> None:
+    def broken(*_: object, **__: object) -> None:
         raise ZeroDivisionError("by zero")
 
     monkeypatch.setattr(cell, "make_plan", broken)

@@ -118,9 +118,8 @@ def test_files_hold_what_python_computes(
     block = api.get(f"/studies/{done['id']}/cells").json()
     assert block["plan_id"] == truth.plan_id.values.ravel().tolist()
     assert block["margin_com"][-1] is None  # a step of 1.2 m
-    kinds = [kind for kind, _ in _events(api, done["id"])]  # cells as they came, in blocks
-    assert kinds == ["cells"] * (len(kinds) - 1) + ["study"]
-    assert len(kinds) > 1
+    kinds = [kind for kind, _ in _events(api, done["id"])]
+    assert list(dict.fromkeys(kinds)) == ["cells", "study"]  # in one block or several
 
 
 def test_a_cell_opens_as_a_plan(api: httpx.Client, done: dict[str, Any]) -> None:

@@ -101,7 +101,7 @@ def test_what_is_out_of_date_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 def test_failures_are_not_tried_for_ever(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(*_: object) -> None:
+    def broken(*_: object, **__: object) -> None:
         raise ZeroDivisionError("by zero")
 
     path = tmp_path / "a.zarr"

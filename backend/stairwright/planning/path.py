@@ -21,7 +21,12 @@ from stairwright.terrain.profile import Terrain
 
 
 def plan_path(
-    terrain: Terrain, robots: Sequence[Robot], friction: float, weights: PathWeights
+    terrain: Terrain,
+    robots: Sequence[Robot],
+    friction: float,
+    weights: PathWeights,
+    *,
+    diagnose: bool = True,
 ) -> Plan:
     """Plan a dense path of poses from the first flat stretch to the last.
 
@@ -35,6 +40,7 @@ def plan_path(
             with some CoM margin, else the one with the most, else the one that comes farthest.
         friction: Coulomb friction between wheels and terrain.
         weights: What to trade off.
+        diagnose: Find out what would open the way where there is none.
 
     Returns:
         The plan; on impossible terrain one with a `problem`, and the poses up to there.
@@ -55,10 +61,12 @@ def plan_path(
     if isinstance(found, Solved):
         plan = make_plan(terrain, robot, friction, weights, begun, *planner.document(found.nodes))
         return plan.model_copy(update={"certificate": found.certificate})
-    from stairwright.planning.infeasibility.obstruction import (
-        explain,  # it plans again, so it imports us
-    )
+    # They plan again, so they import us.
+    from stairwright.planning.infeasibility.obstruction import explain, undiagnosed
 
+    if not diagnose:
+        problem = undiagnosed(planner, found)
+        return make_plan(terrain, robot, friction, weights, begun, problem=problem)
     problem, way = explain(planner, found)
     return make_plan(terrain, robot, friction, weights, begun, *way, problem)
 

@@ -34,6 +34,7 @@ def plan(
     weights: Mapping[str, float] | Model | None = None,
     *,
     certified: bool = True,
+    diagnose: bool = True,
     solver: PoseSolver | None = None,
     extra_cost: ExtraCost | None = None,
     extra_constraints: ExtraConstraints | None = None,
@@ -49,6 +50,8 @@ def plan(
         weights: Cost weights by name, see `stairwright.planning.weights`.
         certified: Check single poses and the motion between them; without, ``critical`` is sooner.
             A path is always certified.
+        diagnose: Find out what would open the way where there is none, which takes most of the time
+            of such an answer; without, the problem of a ``path`` tells only where it ends.
         solver: What solves the poses of ``critical``: ``native``, or ``ipopt``, which solves the
             same problem written in CasADi. By default ``native``; with terms of yours ``ipopt``.
         extra_cost: Of ``critical``: gives, for a `SymbolicPose`, a CasADi scalar to add to eq 17.
@@ -83,7 +86,7 @@ def plan(
     if method == "path":
         from stairwright.planning.path import plan_path
 
-        found = plan_path(ground, configured, mu, chosen)
+        found = plan_path(ground, configured, mu, chosen, diagnose=diagnose)
     elif method == "critical":
         from stairwright.planning.poses.critical_poses import plan_critical
 

@@ -29,21 +29,32 @@ def evaluate(questions: Questions, point: tuple[Value, ...]) -> Record:
         return complete({"state": REFUSED, "reason": "bad-input", "message": str(error)})
     try:
         with one_by_one():
-            return complete(_answer(questions.study, question))
+            return complete(_answer(questions.study, question, _diagnosed(questions.study, point)))
     except Exception as error:  # noqa: BLE001 - one cell must not end the others
         why = f"{type(error).__name__}: {error}"
         return complete({"state": FAILED, "reason": "bug", "message": " ".join(why.split())})
 
 
-def _answer(study: Study, question: CellQuestion) -> Record:
+def _diagnosed(study: Study, point: tuple[Value, ...]) -> bool:
+    """Whether a cell without a way is asked what would open it."""
+    axis = study.boundary_axis
+    if study.diagnose != "last" or axis is None:
+        return study.diagnose == "all"
+    return point[study.axes.index(axis)] == axis.points[-1]
+
+
+def _answer(study: Study, question: CellQuestion, diagnose: bool) -> Record:
     plan = make_plan(
         question.terrain,
         question.robot,
         question.friction,
         question.method,
         dict(question.weights),
+        diagnose=diagnose,
     )
     record: Record = {"state": DONE, **_of_plan(plan)}
+    if not diagnose:
+        record.pop("reason", None)  # the message says where it ends
     if study.compute != "plan" and plan.executable and plan.feasible:
         record |= (_rolled_out if study.compute == "rollout" else _tried)(study, question, plan)
     elif study.compute != "plan":

@@ -30,6 +30,7 @@ MOST_AXES = 8
 MOST_CELLS = 10_000_000  # of one study: its states have to fit into memory
 MOST_TRIALS = 10_000  # of one cell
 Compute = Literal["plan", "rollout", "trials"]
+Diagnose = Literal["all", "last", "none"]
 
 
 def _form(value: Any) -> str | None:
@@ -92,6 +93,11 @@ class Study(Model):
     weights: dict[SettingName, bool | float] = Field({}, max_length=32)
     axes: list[Axis] = Field(min_length=1, max_length=MOST_AXES)
     compute: Compute = "plan"
+    diagnose: Diagnose = Field(
+        "all",
+        description="of which cells without a way is found out what would open it, which takes "
+        "most of their time: all, those at the last value of the boundary axis, or none",
+    )
     controller: dict[SettingName, Any] = Field(
         {}, max_length=64, description="of rollouts and trials"
     )
@@ -146,6 +152,8 @@ class Study(Model):
         """Hash of everything but texts and values of axes: studies that share cells share it."""
         data = self.model_dump(mode="json", exclude={"name", "description", "axes"})
         data["axes"] = [axis.name for axis in self.axes]
+        if self.diagnose == "last" and self.boundary_axis is not None:
+            data["diagnose"] = ["last", self.boundary_axis.points[-1]]
         if self.compute == "plan":
             for name in ("controller", "seed", "trials"):
                 data.pop(name)

@@ -2,8 +2,9 @@
 
 Orders come as JSON lines: ``{"run": id, "study": {...}, "path": "...", "retry": false}`` and
 ``{"cancel": id}``. Reports go out the same way, one a line: ``{"id", "done", "total", "left",
-"cells": block or null}`` while it is at a study, and ``{"id", "state", "error"}`` at the end. When
-the orders end, whoever gave them has gone: this process ends too, and what is written stays.
+"cells": block or null}`` while it is at a study (a total of 0: not known yet), and ``{"id",
+"state", "error"}`` at the end. When the orders end, whoever gave them has gone: this process ends
+too, and what is written stays.
 """
 
 from __future__ import annotations
@@ -77,7 +78,7 @@ class Runner:
         told = 0
         for block in blocks_of(store):  # what was known before
             told += len(block["cell"])
-            self._tell({"id": name, "done": told, "total": told, "left": None, "cells": block})
+            self._tell({"id": name, "done": told, "total": 0, "left": None, "cells": block})
 
         def report(progress: Progress) -> None:
             cells = block_of(progress.new) if progress.new else None

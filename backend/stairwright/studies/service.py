@@ -51,7 +51,7 @@ class Following:
     def hear(self, report: Mapping[str, Any]) -> None:
         """Take in what the runner tells while it is at it."""
         self.done = int(report["done"])
-        self.total = max(self.total, int(report["total"]))
+        self.total = int(report["total"]) or self.total
         self.left = report["left"]
         if report["cells"] is not None:
             self.blocks.append(orjson.dumps(report["cells"]))

@@ -2755,6 +2755,13 @@ export interface components {
              */
             compute: "plan" | "rollout" | "trials";
             /**
+             * Diagnose
+             * @description of which cells without a way is found out what would open it, which takes most of their time: all, those at the last value of the boundary axis, or none
+             * @default all
+             * @enum {string}
+             */
+            diagnose: "all" | "last" | "none";
+            /**
              * Controller
              * @description of rollouts and trials
              * @default {}

@@ -34,7 +34,7 @@ const range = (name: string): Range => {
 const SLICES = [0.3, 0.45, 0.6, 0.8];
 /** Friction is searched between this and the page's, to this tolerance. */
 const LEAST_FRICTION = 0.1;
-const TOLERANCE = 0.025;
+const TOLERANCE = 0.05;
 
 const asked = (x: string, y: string): Form => ({
   x: range(x),
@@ -56,7 +56,12 @@ export const PRESETS: readonly Preset[] = [
   {
     title: "Stairs, least friction",
     note: "tread × rise, by bisection",
-    form: { ...asked("stairs.tread", "stairs.rise"), friction: "least" },
+    form: {
+      ...asked("stairs.tread", "stairs.rise"),
+      x: { ...range("stairs.tread"), count: 14 },
+      y: { ...range("stairs.rise"), count: 16 },
+      friction: "least",
+    },
   },
   { title: "Step", note: "friction × height", form: asked("friction", "step.height") },
   {
@@ -125,6 +130,7 @@ export function documentOf(now: Form): StudyDocument | null {
       boundary: [LEAST_FRICTION, page.friction],
       tolerance: TOLERANCE,
     });
+    rest.diagnose = "last"; // with less friction, it is friction that is missing
     delete rest.friction;
   }
   const groups = axesOf(now).map((name) => axisKind(name).group);

@@ -6,7 +6,7 @@ import type { Method, RobotDocument, SettingValues, TerrainDocument } from "../a
 import { fit } from "../profile-editor/viewport";
 import { report } from "../state/connection";
 import { open } from "../state/drawing";
-import { method, robotName, robots, weights } from "../state/setup";
+import { method, robotName, robots, settings, weights } from "../state/setup";
 import { toast } from "../state/toast";
 import { workspace } from "../state/workspace";
 import { factsAt } from "./cell";
@@ -35,10 +35,16 @@ export async function openCell(place: Place): Promise<void> {
     const question = plan as unknown as Question;
     const robot = await known(question.robot, facts.title);
     batch(() => {
-      open({ ...question.terrain, name: facts.title, friction: question.friction }, null);
+      open(
+        { ...question.terrain, name: plainName(facts.title), friction: question.friction },
+        null,
+      );
       robotName.value = robot;
       method.value = question.method;
-      weights.value = { ...weights.peek(), [question.method]: question.weights };
+      weights.value = {
+        ...weights.peek(),
+        [question.method]: changed(question.method, question.weights),
+      };
       workspace.value = "plan";
     });
     fit(question.terrain.points);
@@ -50,12 +56,26 @@ export async function openCell(place: Place): Promise<void> {
 
 const LONGEST = 60;
 
+/** A cell's title as a name that terrains and robots may have. */
+const plainName = (title: string): string =>
+  title
+    .replaceAll(/[^\w .+-]+/g, "")
+    .replaceAll(/ +/g, " ")
+    .trim();
+
+/** The page keeps only what differs from the default. */
+function changed(by: Method, values: SettingValues): SettingValues {
+  const schema = settings.peek()?.weights[by]?.properties ?? {};
+  return Object.fromEntries(
+    Object.entries(values).filter(([name, value]) => value !== schema[name]?.default),
+  );
+}
+
 /** The robot's name; one that a map has changed is stored first, under a name that says how. */
 async function known(robot: RobotDocument, title: string): Promise<string> {
   const same = robots.peek().find((each) => each.name === robot.name);
   if (same && alike(same, robot)) return robot.name;
-  const tail = title.replaceAll(/[^a-z0-9.]+/gi, "-").replaceAll(/-+$/g, "");
-  const name = `${robot.name}-${tail}`.slice(0, LONGEST);
+  const name = `${robot.name} ${plainName(title)}`.slice(0, LONGEST);
   const { readonly: _, ...file } = { ...robot, name } as RobotDocument & { readonly?: boolean };
   const stored = await callJson<RobotDocument>("PUT", `robots/${encodeURIComponent(name)}`, file);
   robots.value = [...robots.peek().filter((each) => each.name !== name), stored];

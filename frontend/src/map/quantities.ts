@@ -83,7 +83,7 @@ export const LEAST = "least_friction";
 export const QUANTITIES: readonly Quantity[] = [
   {
     name: LEAST,
-    title: "Least friction needed",
+    title: "Friction needed",
     unit: "μ",
     digits: 2,
     scale: 1,
@@ -123,6 +123,7 @@ export const quantityOf = (name: string): Quantity =>
 
 /** What stops the robot: a letter and a word, as on the map. */
 const REASONS: Record<string, readonly [string, string]> = {
+  "": ["–", "not looked into"],
   reach: ["R", "reach"],
   clearance: ["C", "clearance"],
   joint_limit: ["J", "joint limit"],

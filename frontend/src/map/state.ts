@@ -27,7 +27,8 @@ export const missing = signal<string | null>(null);
 export const refusal = signal<string | null>(null);
 export const earlier = signal<StudyState[]>([]);
 
-export const quantity = signal(LEAST);
+/** What cells are coloured by. Friction is worth it once the least that does is searched for. */
+export const quantity = signal("margin_com");
 /** Chosen values of axes that are neither x nor y, as indices. */
 export const slices = signal<Readonly<Record<string, number>>>({});
 /** Two robots: which picture is drawn. */
@@ -84,6 +85,7 @@ function say(error: unknown): void {
 export async function start(): Promise<void> {
   const document = documentOf(form.peek());
   if (!document) return;
+  if (form.peek().friction === "least") quantity.value = LEAST;
   await submit(document);
 }
 

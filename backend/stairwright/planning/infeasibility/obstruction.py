@@ -255,20 +255,31 @@ def _confirmed(
     return candidate, ratio
 
 
-def _problem(planner: PathPlanner, reached: Place | None, cause: Cause | None) -> Problem:
-    """In words: what stops the wheels where they end, and what would be enough."""
+def undiagnosed(planner: PathPlanner, blocked: Blocked) -> Problem:
+    """Where the wheels end, without looking for what would open the way."""
+    at, progress, stop = _end(planner, blocked.reached)
+    return Problem(kind="reach", at=at, progress=progress, message=f"{stop}; not looked into")
+
+
+def _end(planner: PathPlanner, reached: Place | None) -> tuple[tuple[float, float], float, str]:
+    """Where the wheels end: the place (x, z) and the progress up to there [m], and in words."""
     begin, end = planner.ends
     front, rear = reached or begin.wheels
     stopped, wheel = (rear, "rear") if front >= end.wheels[0] - 1e-6 else (front, "front")
     x, z = planner.path.contacts(np.array([stopped]))[0].tolist()
     progress = max(0.0, 0.5 * (front + rear - sum(begin.wheels)))
-    stop = f"the {wheel} wheels stop at x = {x:.2f} m, z = {z:.2f} m"
+    return (x, z), progress, f"the {wheel} wheels stop at x = {x:.2f} m, z = {z:.2f} m"
+
+
+def _problem(planner: PathPlanner, reached: Place | None, cause: Cause | None) -> Problem:
+    """In words: what stops the wheels where they end, and what would be enough."""
+    at, progress, stop = _end(planner, reached)
     if cause is None:
         message = (
             f"{stop}, and neither legs of {LONGEST:g} times the length with friction {AMPLE:g} nor "
             "a profile of a fiftieth of the height would change that"
         )
-        return Problem(kind="reach", at=(x, z), progress=progress, message=message)
+        return Problem(kind="reach", at=at, progress=progress, message=message)
     candidate, ratio = cause
     value = candidate.at(ratio)
     unit = "" if candidate.unit == "1" else f" {candidate.unit}"
@@ -277,7 +288,7 @@ def _problem(planner: PathPlanner, reached: Place | None, cause: Cause | None) -
         f"has {candidate.available:.3g}{unit}: {stop}"
     )
     return Problem(
-        kind=candidate.kind, at=(x, z), progress=progress, message=message,
+        kind=candidate.kind, at=at, progress=progress, message=message,
         limit=Limit(
             needed=value, available=candidate.available,
             quantity=candidate.quantity + candidate.given, unit=candidate.unit,

@@ -1,0 +1,173 @@
+"""The Map workspace: cells arrive, are read and opened by pointer and keys, shared and exported."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import httpx
+import pytest
+
+from tests.conftest import TAB, Server, _serve
+
+from .conftest import PATIENCE, Product
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Locator, Page
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+AXE = Path(__file__).parents[2] / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A server of these tests' own, with one process for studies: it needs no cluster."""
+    with _serve(tmp_path_factory.mktemp("maps") / "data", STAIRWRIGHT_STUDY_WORKERS="1") as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def room(browser: Browser, service: Server) -> Iterator[Product]:
+    """The Map with a small study that is done: 4 treads, 3 rises, the highest not possible."""
+    with browser.new_context(**TAB, base_url=service.url) as context:
+        product = Product(context.new_page()).open()
+        _small_map(product)
+        yield product
+        assert product.errors == []
+
+
+def _small_map(product: Product) -> None:
+    page = product.page
+    page.get_by_role("button", name=re.compile("^Map")).click()
+    for label, value in (
+        ("Tread from", "0.26"),
+        ("Tread to", "0.32"),
+        ("Tread, number of values", "4"),
+        ("Rise from", "0.15"),
+        ("Rise to", "1.05"),
+        ("Rise, number of values", "3"),
+    ):
+        page.get_by_label(label, exact=True).fill(value)
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.get_by_text("12 of 12 cells; done").wait_for(timeout=PATIENCE)
+
+
+def _canvas(page: Page) -> Locator:
+    return page.get_by_role("application", name=re.compile("^Capability map"))
+
+
+def test_the_table_says_what_the_service_computed(room: Product, service: Server) -> None:
+    page = room.page
+    page.get_by_role("button", name="Table").click()
+    rows = page.locator(".map-table tbody tr")
+    assert [rows.nth(k).locator("th").inner_text() for k in range(3)] == ["1.05", "0.60", "0.15"]
+    assert re.fullmatch(r"[\d.]+", rows.nth(2).locator("td").first.inner_text())
+    study = httpx.get(f"{service.url}/api/v1/studies").json()[0]
+    cells = httpx.get(f"{service.url}{study['links']['cells']}").json()
+    numbers = page.locator(".map-table td:not(.no)").filter(has_text=re.compile(r"^[\d.]+$"))
+    assert numbers.count() == sum(cells["feasible"])
+    assert page.locator(".map-table td.no").count() == 12 - sum(cells["feasible"]) > 0
+    page.get_by_role("button", name="Table").click()
+
+
+def test_arrows_read_cells_and_space_keeps_one(room: Product) -> None:
+    page = room.page
+    canvas = _canvas(page)
+    canvas.focus()
+    for key in ("ArrowLeft", "ArrowLeft", "ArrowLeft", "ArrowDown", "ArrowDown"):
+        page.keyboard.press(key)
+    said = canvas.locator("[aria-live]")
+    assert said.inner_text().startswith("rise 0.15 m, tread 0.26 m: feasible, com margin")
+    page.locator(".map-card").get_by_text("Feasible").wait_for()
+    page.keyboard.press("Space")
+    kept = page.locator(".kept")
+    kept.get_by_text("Torque margin", exact=True).wait_for()
+    page.keyboard.press("ArrowUp")
+    page.keyboard.press("ArrowUp")
+    assert said.inner_text().startswith("rise 1.05 m, tread 0.26 m: not possible")
+    page.keyboard.press("Escape")
+    assert page.locator(".map-card").count() == 0
+    page.get_by_role("button", name="Let go of the cell").click()
+
+
+def test_codes_tell_the_share_that_is_climbed(room: Product) -> None:
+    row = room.page.locator("table.codes tr", has_text="IRC")
+    assert row.locator("td").first.inner_text() == "100 %"
+
+
+def test_a_cell_opens_as_a_plan(room: Product) -> None:
+    page = room.page
+    box = _canvas(page).bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] - 130)
+    page.locator(".app[data-workspace=plan]").wait_for()
+    room.planned()
+    assert room.status == "feasible"
+    assert room.corners() == 8  # three steps
+    title = page.get_by_role("button", name=re.compile(r"^Terrain\s")).inner_text()
+    assert "rise 0.15 m tread 0." in title
+    page.keyboard.press("2")
+    _canvas(page).wait_for()
+
+
+def test_pictures_and_data_can_be_taken_along(room: Product) -> None:
+    page = room.page
+
+    def taken(name: str) -> bytes:
+        page.get_by_role("button", name="Export").click()
+        with page.expect_download() as download:
+            page.get_by_role("menuitem", name=re.compile(f"^{name}")).click()
+        return Path(download.value.path()).read_bytes()
+
+    svg = taken("SVG").decode()
+    assert "url(#hatch)" in svg
+    assert "Tread, m" in svg
+    assert taken("PNG").startswith(b"\x89PNG")
+    assert len(taken("CSV").decode().splitlines()) == 13
+    assert taken("NetCDF")[:4] in (b"\x89HDF", b"CDF\x01", b"CDF\x02")
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_nothing_is_inaccessible(room: Product, theme: str) -> None:
+    page = room.page
+    page.evaluate("theme => { document.documentElement.dataset.theme = theme }", theme)
+    page.evaluate(AXE.read_text())
+    found = page.evaluate("() => axe.run('.map-room')")
+    serious = [v for v in found["violations"] if v["impact"] in ("serious", "critical")]
+    assert [(v["id"], [n["html"] for n in v["nodes"]]) for v in serious] == []
+
+
+def test_the_link_shows_the_same_map(room: Product, browser: Browser, service: Server) -> None:
+    page = room.page
+    page.wait_for_function("location.hash.includes('m=')")
+    with browser.new_context(**TAB, base_url=service.url) as context:
+        other = Product(context.new_page())
+        other.page.goto(page.url)
+        other.page.get_by_text("12 of 12 cells; done").wait_for(timeout=PATIENCE)
+        assert other.page.get_by_label("Rise to", exact=True).input_value() == "1.05"
+        assert other.errors == []
+
+
+def test_paused_and_gone_on_with(room: Product) -> None:
+    page = room.page
+    page.get_by_label("Tread, number of values", exact=True).fill("40")
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.get_by_role("button", name="Pause").click()
+    page.get_by_text("paused, what was computed stays").wait_for(timeout=PATIENCE)
+    page.get_by_role("button", name="Go on").click()
+    page.get_by_role("button", name="Pause").wait_for(timeout=PATIENCE)
+    page.get_by_role("button", name="Pause").click()
+    page.get_by_role("button", name="Go on").wait_for(timeout=PATIENCE)
+
+
+def test_without_the_packages_it_says_so(room: Product) -> None:
+    page = room.page
+    answer = {"title": "Not there", "detail": "studies need: pip install 'stairwright[studies]'"}
+    page.route("**/studies", lambda route: route.fulfill(status=501, json=answer))
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.get_by_text("This service cannot compute maps.").wait_for()
+    page.get_by_text("pip install 'stairwright[studies]'").wait_for()
+    page.unroute("**/studies")
