@@ -12,6 +12,7 @@ void bind_smoothing(nanobind::module_& m);
 void bind_poses(nanobind::module_& m);
 void bind_control(nanobind::module_& m);
 void bind_estimation(nanobind::module_& m);
+void bind_timing(nanobind::module_& m);
 void bind_rollout(nanobind::module_& m);
 void bind_lattice(nanobind::module_& m);
 void bind_lattice_sweeps(nanobind::module_& m);

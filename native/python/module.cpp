@@ -15,6 +15,7 @@ NB_MODULE(_core, m) {
     bind_poses(m);
     bind_control(m);
     bind_estimation(m);
+    bind_timing(m);
     bind_rollout(m);
     bind_lattice(m);
     bind_lattice_sweeps(m);

@@ -14,6 +14,7 @@ from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
 Method = Literal["path", "critical", "nominal"]
+PlanTiming = Literal["steady", "fast"]
 Vector2 = tuple[float, float]
 ProblemKind = Literal["reach", "clearance", "statics", "torque", "joint_limit", "start", "goal"]
 Vector4 = tuple[float, float, float, float]
@@ -73,7 +74,14 @@ class Timing(Model):
     """Planned duration, and the time of every pose."""
 
     total: float = Field(description="[s]")
-    rule: Literal["limits", "paper"] = Field("limits", description="paper: eqs 25-26")
+    rule: Literal["limits", "paper", "fast"] = Field(
+        "limits",
+        description="limits: steady, within limits of speed; paper: eqs 25-26; fast: time-optimal "
+        "under dynamic limits",
+    )
+    limits: list[str] | None = Field(
+        None, description="of a fast plan: at each pose what keeps it from being faster there"
+    )
 
 
 class Check(Model):
@@ -178,7 +186,12 @@ class Plan(Model):
 
 
 def plan_id(
-    terrain: Terrain, robot: Robot, friction: float, method: Method, weights: dict[str, Any]
+    terrain: Terrain,
+    robot: Robot,
+    friction: float,
+    method: Method,
+    weights: dict[str, Any],
+    rule: str = "limits",
 ) -> str:
     """Content hash that names a plan: the same question has the same id.
 
@@ -186,4 +199,6 @@ def plan_id(
     """
     texts = [terrain.name, terrain.description, robot.name, robot.description]
     key = [terrain.hash, robot.hash, *texts, friction, method, weights]
+    if rule == "fast":
+        key.append(rule)
     return "p-" + content_hash(key).removeprefix("sha256:")

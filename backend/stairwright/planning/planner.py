@@ -13,7 +13,7 @@ from stairwright.documents import Model
 from stairwright.errors import InputError
 from stairwright.library import load_robot, load_terrain
 from stairwright.planning.knees import configurations, knees_of
-from stairwright.planning.plan import Method, Plan, plan_id
+from stairwright.planning.plan import Method, Plan, PlanTiming, plan_id
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -33,6 +33,7 @@ def plan(
     method: Method = "path",
     weights: Mapping[str, float] | Model | None = None,
     *,
+    timing: PlanTiming = "steady",
     certified: bool = True,
     diagnose: bool = True,
     solver: PoseSolver | None = None,
@@ -48,6 +49,8 @@ def plan(
         method: ``path`` (dense certified path), ``critical`` (the paper's poses) or ``nominal``
             (standing pose kept).
         weights: Cost weights by name, see `stairwright.planning.weights`.
+        timing: ``steady``, or of a ``path`` ``fast``: time-optimal under friction, torque and speed
+            limits with the dynamics in them, as hard as the weight ``aggressiveness`` says.
         certified: Check single poses and the motion between them; without, ``critical`` is sooner.
             A path is always certified.
         diagnose: Find out what would open the way where there is none, which takes most of the time
@@ -72,6 +75,10 @@ def plan(
     tyre = machine.wheel.friction or math.inf
     mu = min(ground.friction, tyre) if friction is None else as_friction(friction)
     chosen = parse_weights(method, weights)
+    if timing not in get_args(PlanTiming):
+        raise InputError(f"must be one of: {', '.join(get_args(PlanTiming))}", ("timing",))
+    if timing == "fast" and method != "path":
+        raise InputError("fast belongs to the method path", ("timing",))
     if solver not in (None, *get_args(PoseSolver)):
         there = ", ".join(get_args(PoseSolver))
         raise InputError(f"unknown solver {solver!r}; there are: {there}", ("solver",))
@@ -87,6 +94,10 @@ def plan(
         from stairwright.planning.path import plan_path
 
         found = plan_path(ground, configured, mu, chosen, diagnose=diagnose)
+        if timing == "fast" and found.feasible:
+            from stairwright.planning.timing.fast import hastened
+
+            found = hastened(found, chosen.aggressiveness)
     elif method == "critical":
         from stairwright.planning.poses.critical_poses import plan_critical
 
@@ -99,7 +110,7 @@ def plan(
         found = _first_feasible(plan_nominal(ground, one, mu, chosen) for one in configured)
     if len(configured) == 1 and configured[0] is machine:
         return found
-    identity = plan_id(ground, machine, mu, method, found.weights)
+    identity = plan_id(ground, machine, mu, method, found.weights, found.timing.rule)
     return found.model_copy(update={"id": identity, "knees": knees_of(found.robot_description)})
 
 

@@ -103,6 +103,15 @@ class PathWeights(Model):
         "[rad, rms along the path]",
     )
     speed: float = _SPEED
+    aggressiveness: float = Field(
+        0.5,
+        ge=0.0,
+        le=1.0,
+        title="Aggressiveness",
+        description="How hard a plan with fast timing is driven: accelerations, joint speeds and "
+        "the share of the CoM margin that inertia may take",
+        json_schema_extra={"unit": "1", "scale": "linear", "timing": "fast"},
+    )
 
 
 class NominalWeights(Model):

@@ -11,7 +11,6 @@ a robot that runs ahead only a little faster than planned, because it must not j
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,20 +35,18 @@ from stairwright.control.setpoint import (
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
 from stairwright.planning.poses.pose_reference import Reference
+from stairwright.planning.timing.limits import WHEEL_SPEED_SHARE
+from stairwright.planning.timing.way import even_grid, way_of
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
 Floats = NDArray[np.float64]
 
 LONGEST_WAY = 500.0  # m; the longest level terrain is 200 m
-STEP = 0.0025  # m of way between the rows of a track
-SWING = 0.3  # of the trunk's motion counts as way, where that is more than the progress
-TURN = 0.25  # m that a radian of the trunk's pitch counts as
 RATE_REACH = 0.005  # m; rates are differences over this far, both ways
 LIMIT_REACH = 0.03  # m; a speed limit holds this far before and after its place
 ACCELERATION = 0.4  # m/s^2, along the plan
 MIN_SPEED = 0.01  # m/s
-WHEEL_SPEED_SHARE = 0.6  # of the no-load speed: the rest leaves torque
 
 
 @dataclass(frozen=True)
@@ -85,6 +82,8 @@ def track(
     path: WheelPath,
     friction: float,
     settings: ControllerSettings,
+    *,
+    fast: bool = False,
 ) -> Track:
     """Resample `reference` and find the static forces and the allowed speed along it.
 
@@ -94,17 +93,18 @@ def track(
         path: Its wheel-centre curve.
         friction: The plan's Coulomb friction.
         settings: Speed and joint speed are limited by them.
+        fast: The plan's times respect all limits; only the speed that `settings` may name counts.
 
     Raises:
         InputError: If the poses are too far apart for any rollout to end.
     """
-    way = _way(reference)
+    way = way_of(reference)
     first, last = float(way[0]), float(way[-1])
     if not last - first <= LONGEST_WAY:
         text = f"the poses are {last - first:.3g} m apart in all; at most {LONGEST_WAY:g} m can be"
         raise InputError(f"{text} carried out", ("plan", "poses"))
-    count = max(3, math.ceil((last - first) / STEP) + 1)
-    grid = np.linspace(first, last, count)
+    grid = even_grid(way)
+    count = len(grid)
     columns = np.column_stack(
         [
             reference.wheel_progress,
@@ -138,28 +138,28 @@ def track(
     resting = _core.static_forces(path.native, weight, friction, places, com)
     rows[:, FORCES], rows[:, SHARE], rows[:, LEANS] = resting[:, :4], resting[:, 4], resting[:, 5:]
     rows[:, PROGRESS] = np.interp(grid, way, reference.progress)
-    speeds = _speeds(np.interp(grid, way, reference.time), grid, rows, robot, settings)
+    time = np.interp(grid, way, reference.time)
+    speeds = _planned(time, grid)
+    if fast:
+        if settings.speed is not None:
+            speeds = np.minimum(speeds, settings.speed)
+    else:
+        speeds = _limited(speeds, grid, rows, robot, settings)
     return Track(first, grid[1] - grid[0], rows, speeds)
 
 
-def _way(reference: Reference) -> Floats:
-    """(n,) what the plan advances along [m]; it rises strictly, as the progress does."""
-    trunk = np.diff(reference.trunk, axis=0)
-    moved = np.hypot(trunk[:, 0], trunk[:, 1]) + TURN * np.abs(trunk[:, 2])
-    steps = np.maximum(np.diff(reference.progress), SWING * moved)
-    way: Floats = reference.progress[0] + np.concatenate([[0.0], np.cumsum(steps)])
-    return way
+def _planned(time: Floats, grid: Floats) -> Floats:
+    """Speed along the way (n,) by the plan's own times, the smaller one of either side."""
+    step = np.diff(grid) / np.maximum(np.diff(time), 1e-9)
+    return np.minimum(np.append(step, step[-1]), np.append(step[0], step))
 
 
-def _speeds(
-    time: Floats, grid: Floats, rows: Floats, robot: Robot, settings: ControllerSettings
+def _limited(
+    speeds: Floats, grid: Floats, rows: Floats, robot: Robot, settings: ControllerSettings
 ) -> Floats:
     """Allowed speed along the way (n,): timing, joint and wheel speed limits, acceleration."""
     if settings.speed is not None:
         speeds = np.full(len(grid), settings.speed)
-    else:
-        step = np.diff(grid) / np.maximum(np.diff(time), 1e-9)
-        speeds = np.minimum(np.append(step, step[-1]), np.append(step[0], step))
     joint_rates = np.abs(rows[:, RATES + JOINTS.start : RATES + JOINTS.stop]).max(axis=1)
     wheel_rates = np.abs(rows[:, RATES + WHEELS.start : RATES + WHEELS.stop]).max(axis=1)
     wheel_limit = WHEEL_SPEED_SHARE * robot.wheel_speed * robot.wheel.radius

@@ -41,6 +41,7 @@ _PIECE = re.compile(r"(?<=trunk|thigh|_calf)_\d+$")  # of a part that is several
 CONTROL_STEPS = 2  # physics steps per control step: 500 Hz
 SETTLE = 0.4  # s at rest before the plan starts and after it ends
 DRIFT = 0.01  # of the way: what wheels that roll without slip may be off by
+FAST_LEAD = 4.0  # of the usual lead, for plans that are driven fast
 STANDS = 1.0  # s that a robot which gave up must stand
 STOPS = {  # why it gives up, see control/safe_stop.hpp
     1: "the wheels did not follow the plan for 3 s",
@@ -86,7 +87,7 @@ class Run:
         self.limit = 2.5 * self.track.duration + 5.0
         self.sensors = Sensors(disturbance, self.dt, seed, plan.poses[0].x_c)
         self.way = self.track.start
-        self.follower = follower(self.track, settings.maximum_lead)
+        self.follower = follower(self.track, self._lead)
         self.places = np.full(4, np.nan)
         self.target = np.zeros(self.track.rows.shape[1])
         self.wanted = np.zeros(12)
@@ -116,19 +117,30 @@ class Run:
         names = [self.model.geom(i).name for i in range(self.model.ngeom)]
         return [_PIECE.sub("", name) for name in names]
 
+    @property
+    def _fast(self) -> bool:
+        """Whether the plan's times are those of a moving robot."""
+        return self.plan.timing.rule == "fast"
+
+    @property
+    def _lead(self) -> float:
+        """How far the plan may be ahead of the wheels [m]: they lag the more the faster it is."""
+        return self.settings.maximum_lead * (FAST_LEAD if self._fast else 1.0)
+
     def _track(self) -> Track:
         plan, settings = self.plan, self.settings
-        if plan.method == "path" and settings.form == "contact" and settings.speed is not None:
+        steady = plan.method == "path" and settings.form == "contact" and not self._fast
+        if steady and settings.speed is not None:
             # Another speed keeps what slows a plan down where margins are thin.
             plan = retimed(plan, settings.speed)
             settings = settings.model_copy(update={"speed": None})
         course = reference(plan, joint_rate=None)
-        return track(course, self.robot, self.path, plan.friction, settings)
+        return track(course, self.robot, self.path, plan.friction, settings, fast=self._fast)
 
     def _native(self, every: int) -> _core.Rollout:
         controller = native_controller(self.robot, self.path, self.plan.friction, self.settings)
         model, data = int(self.model._address), int(self.data._address)  # noqa: SLF001
-        line = follower(self.track, self.settings.maximum_lead)
+        line = follower(self.track, self._lead)
         bandwidth = self.disturbance.bandwidth
         perception = self._perception()
         scale = 1.0 + self.disturbance.torque_scale

@@ -1,0 +1,76 @@
+"""Plans as fast as dynamics, motors and the pace that is asked for allow."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright import _core
+from stairwright.planning.plan import Plan, Timing, plan_id
+from stairwright.planning.poses.interpolation import reference
+from stairwright.terrain.wheel_path import wheel_path
+
+from .limits import LimitName, Limits, Pace, limits_of
+from .moving_robot import MovingRobot, moving_robot
+from .way import way_of
+
+Floats = NDArray[np.float64]
+
+SLOWEST = 0.01  # m/s along the way, where a plan starts and ends
+_BINDS = 0.02  # of a cap or of a row's room
+
+
+def hastened(plan: Plan, aggressiveness: float) -> Plan:
+    """A certified path at the times in which it is driven fastest.
+
+    Args:
+        plan: A feasible plan of method ``path``; its poses stay.
+        aggressiveness: 0..1, see `limits.Pace`.
+    """
+    robot = plan.robot_description
+    path = wheel_path(plan.terrain, robot.wheel.radius)
+    line = reference(plan, joint_rate=None)
+    motion = moving_robot(line, robot)
+    poses = np.array([pose.progress for pose in plan.poses])
+    least = float(robot.torque_limits[:, :2].min())
+    efforts = 1.0 - np.array([pose.margins.torque for pose in plan.poses]) / least
+    effort = np.interp(motion.progress, poses, efforts)
+    limits = limits_of(motion, robot, path, plan.friction, effort, Pace.of(aggressiveness))
+    squares = fastest(motion, limits)
+    at = np.interp(poses, line.progress, way_of(line))
+    times = np.interp(at, motion.way, _times(motion, squares)).tolist()
+    names = binding(motion, limits, squares)
+    places = np.searchsorted(motion.way, at).clip(0, len(names) - 1)
+    timed = [
+        pose.model_copy(update={"time": time})
+        for pose, time in zip(plan.poses, times, strict=True)
+    ]
+    timing = Timing(total=times[-1], rule="fast", limits=[names[k] for k in places])
+    asked = (plan.terrain, robot, plan.friction, plan.method, plan.weights, timing.rule)
+    return plan.model_copy(update={"id": plan_id(*asked), "poses": timed, "timing": timing})
+
+
+def fastest(motion: MovingRobot, limits: Limits) -> Floats:
+    """Squared speeds (n,) along the way [m^2/s^2], from rest to rest."""
+    caps = np.minimum.reduce(list(limits.caps.values()))
+    return _core.fastest_squares(limits.rows, caps, motion.step)
+
+
+def _times(motion: MovingRobot, squares: Floats) -> Floats:
+    """When each sample is reached (n,) [s]: constant acceleration between two."""
+    speeds = np.maximum(np.sqrt(squares), SLOWEST)
+    steps = 2.0 * motion.step / (speeds[:-1] + speeds[1:])
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def binding(motion: MovingRobot, limits: Limits, squares: Floats) -> list[LimitName]:
+    """What keeps the robot from being faster at each sample."""
+    u = np.append(np.diff(squares), 0.0) / (2.0 * motion.step)
+    a, b, c = np.moveaxis(limits.rows, -1, 0)
+    room = (a * squares[:, None] + b * u[:, None] + c) / np.maximum(c, 1e-6)
+    row = room.argmin(axis=1)
+    names = [limits.names[k] for k in row]
+    for name, cap in limits.caps.items():
+        for i in np.flatnonzero(squares >= (1.0 - _BINDS) * cap):
+            names[i] = name
+    return names

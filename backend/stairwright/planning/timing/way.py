@@ -1,0 +1,40 @@
+"""What a plan advances along when it is carried out, and derivatives by it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stairwright.planning.poses.pose_reference import Reference
+
+Floats = NDArray[np.float64]
+
+STEP = 0.0025  # m of way between samples
+SWING = 0.3  # of the trunk's motion counts as way, where that is more than the progress
+TURN = 0.25  # m that a radian of the trunk's pitch counts as
+
+
+def way_of(reference: Reference) -> Floats:
+    """(n,) the plan's progress, and where the trunk swings above wheels that hardly roll, a share
+    of the trunk's motion [m]: a swing takes its time. It rises strictly, as the progress does."""
+    trunk = np.diff(reference.trunk, axis=0)
+    moved = np.hypot(trunk[:, 0], trunk[:, 1]) + TURN * np.abs(trunk[:, 2])
+    steps = np.maximum(np.diff(reference.progress), SWING * moved)
+    way: Floats = reference.progress[0] + np.concatenate([[0.0], np.cumsum(steps)])
+    return way
+
+
+def even_grid(way: Floats) -> Floats:
+    """(m,) from the first way to the last, about `STEP` apart [m]."""
+    return np.linspace(way[0], way[-1], max(3, math.ceil((way[-1] - way[0]) / STEP) + 1))
+
+
+def slopes(grid: Floats, at: Floats, values: Floats, reach: float) -> Floats:
+    """Derivatives (m, ...) at `grid` of `values` (n, ...) given `at` (n,), over `reach` both ways."""
+    low, high = np.maximum(grid - reach, grid[0]), np.minimum(grid + reach, grid[-1])
+    columns = values.reshape(len(at), -1).T
+    rise = [np.interp(high, at, each) - np.interp(low, at, each) for each in columns]
+    slope: Floats = (np.array(rise) / (high - low)).T.reshape(len(grid), *values.shape[1:])
+    return slope
