@@ -135,6 +135,7 @@ def _add_planning(command: argparse.ArgumentParser) -> None:
     command.add_argument("--robot", metavar="R", help="a robot's name or file (a1_wheeled)")
     command.add_argument("--friction", type=float, metavar="F", help="the terrain's by default")
     command.add_argument("--method", choices=METHODS, help="(path)")
+    command.add_argument("--timing", choices=("steady", "fast"), help="of a path (steady)")
     command.add_argument(
         "--solver", choices=("native", "ipopt"), help="of the poses of critical (native)"
     )

@@ -21,7 +21,7 @@ import httpx
 
 from stairwright.answers import JobState, ServiceError, ask
 from stairwright.documents import Model, parse
-from stairwright.planning.plan import Method, Plan
+from stairwright.planning.plan import Method, Plan, PlanTiming
 from stairwright.robot.description import Robot
 from stairwright.robot.importing.report import Imported
 from stairwright.terrain.profile import Terrain
@@ -140,9 +140,10 @@ class Client:
         friction: float | None = None,
         method: Method = "path",
         weights: Mapping[str, float] | None = None,
+        timing: PlanTiming = "steady",
     ) -> Plan:
         """Plan; an infeasible terrain gives a plan with a problem, no error."""
-        body = _question(terrain, robot, friction, method, weights)
+        body = {**_question(terrain, robot, friction, method, weights), "timing": timing}
         return parse(Plan, self._json("POST", "/plans", json=body))
 
     def get_plan(self, plan_id: str) -> Plan:

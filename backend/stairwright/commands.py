@@ -199,6 +199,7 @@ def _plan(source: str, given: Arguments) -> Plan:
         method=method,
         weights=_settings(given.weight, "weights"),
         solver=given.solver,
+        timing=given.timing or "steady",
     )
 
 
@@ -212,7 +213,7 @@ def _plan_or_file(given: Arguments) -> Plan:
         if path.suffix.lower() == ".npz" or _schema(path) != "terrain":
             document = load(path)
             if isinstance(document, Plan):
-                for name in ("robot", "method", "solver", "weight"):
+                for name in ("robot", "method", "solver", "weight", "timing"):
                     if getattr(given, name):
                         raise InputError("the plan says it already", (name,))
                 return document

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag
 from stairwright.arguments import MOST_SEED
 from stairwright.documents import Model
 from stairwright.export.table import Kind as Exported
-from stairwright.planning.plan import Method, Plan
+from stairwright.planning.plan import Method, Plan, PlanTiming
 from stairwright.robot.description import Robot
 from stairwright.simulation.disturbance import Disturbance
 from stairwright.simulation.ranges import Ranges
@@ -70,6 +70,9 @@ Controller = Annotated[dict[SettingName, SettingValue], Field(max_length=64)] | 
 Id = Annotated[str, Field(min_length=1, max_length=64)]
 
 
+TIMING = "fast: a path as fast as friction, torques and speeds allow, see `aggressiveness`"
+
+
 class PlanRequest(Model):
     """A question to the planner."""
 
@@ -92,6 +95,7 @@ class PlanRequest(Model):
     friction: Friction | None = Field(None, description="the terrain's own by default")
     method: Method = "path"
     weights: Weights = Field(None, description="cost weights by name, see GET /settings")
+    timing: PlanTiming = Field("steady", description=TIMING)
 
 
 class Simulation(Model):
@@ -103,6 +107,7 @@ class Simulation(Model):
     robot: RobotSource = Field("a1_wheeled", description="with `terrain`")
     method: Method = Field("path", description="with `terrain`")
     weights: Weights = Field(None, description="with `terrain`")
+    timing: PlanTiming = Field("steady", description="with `terrain`")
     friction: Friction | None = Field(
         None, description="friction in the simulation (and of the plan, with `terrain`)"
     )

@@ -14,6 +14,7 @@ from stairwright.documents import parse
 from stairwright.errors import StairwrightError
 from stairwright.jobs.planning import Answer, Planning
 from stairwright.jobs.questions import PlanQuestion
+from stairwright.planning.plan import PlanTiming
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
@@ -74,7 +75,8 @@ class Replanning:
 def _question(plan: Mapping[str, Any], weights: Weights) -> PlanQuestion:
     terrain = parse(Terrain, plan["terrain"])
     robot = parse(Robot, plan["robot_description"])
-    return PlanQuestion.of(terrain, robot, plan["friction"], plan["method"], weights)
+    timing: PlanTiming = "fast" if plan["timing"]["rule"] == "fast" else "steady"
+    return PlanQuestion.of(terrain, robot, plan["friction"], plan["method"], weights, timing)
 
 
 def _document(answer: Answer) -> Mapping[str, Any]:

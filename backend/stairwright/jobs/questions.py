@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Literal
 
 from stairwright.documents import content_hash, parse
 from stairwright.errors import InputError
-from stairwright.planning.plan import Method, Plan
+from stairwright.planning.plan import Method, Plan, PlanTiming
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -24,6 +24,7 @@ class PlanQuestion:
     friction: float
     method: Method
     weights: Mapping[str, float]
+    timing: PlanTiming = "steady"
 
     @classmethod
     def of(
@@ -33,16 +34,18 @@ class PlanQuestion:
         friction: float | None,
         method: Method,
         weights: Mapping[str, float] | None,
+        timing: PlanTiming = "steady",
     ) -> PlanQuestion:
         """Fill in defaults.
 
         Raises:
-            InputError: If a weight is unknown or out of bounds.
+            InputError: If a weight is unknown or out of bounds, or the timing is not the method's.
         """
+        if timing == "fast" and method != "path":
+            raise InputError("fast belongs to the method path", ("timing",))
         complete = parse_weights(method, weights).model_dump(mode="json")
-        return cls(
-            terrain, robot, terrain.friction if friction is None else friction, method, complete
-        )
+        mu = terrain.friction if friction is None else friction
+        return cls(terrain, robot, mu, method, complete, timing)
 
     @classmethod
     def restored(cls, data: Mapping[str, Any]) -> PlanQuestion:
@@ -52,7 +55,8 @@ class PlanQuestion:
             InputError: If it was made by other code and is none any more.
         """
         terrain, robot = parse(Terrain, data["terrain"]), parse(Robot, data["robot"])
-        return cls.of(terrain, robot, data["friction"], data["method"], data["weights"])
+        timing = data.get("timing", "steady")
+        return cls.of(terrain, robot, data["friction"], data["method"], data["weights"], timing)
 
     @cached_property
     def data(self) -> dict[str, Any]:
@@ -63,6 +67,7 @@ class PlanQuestion:
             "friction": self.friction,
             "method": self.method,
             "weights": dict(self.weights),
+            "timing": self.timing,
         }
 
     @cached_property

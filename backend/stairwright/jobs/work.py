@@ -62,9 +62,10 @@ def preview(question: Question) -> bytes:
 def _plan(question: Question, certified: bool = True) -> Plan:
     from stairwright.planning.planner import plan
 
-    keys = ("terrain", "friction", "method", "weights")
+    asked = {key: question[key] for key in ("terrain", "friction", "method", "weights")}
     machine = _robot(orjson.dumps(question["robot"]))
-    return plan(robot=machine, certified=certified, **{key: question[key] for key in keys})
+    timing = question.get("timing", "steady")
+    return plan(robot=machine, certified=certified, timing=timing, **asked)
 
 
 @lru_cache(maxsize=16)

@@ -151,7 +151,8 @@ def track(
 def _planned(time: Floats, grid: Floats) -> Floats:
     """Speed along the way (n,) by the plan's own times, the smaller one of either side."""
     step = np.diff(grid) / np.maximum(np.diff(time), 1e-9)
-    return np.minimum(np.append(step, step[-1]), np.append(step[0], step))
+    speeds: Floats = np.minimum(np.append(step, step[-1]), np.append(step[0], step))
+    return speeds
 
 
 def _limited(

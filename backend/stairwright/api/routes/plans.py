@@ -51,7 +51,7 @@ def plan_question(services: Services, body: PlanRequest) -> PlanQuestion:
     """The question behind a request, names resolved and defaults filled in."""
     terrain = resolve_terrain(services, body.terrain)
     robot = resolve_robot(services, body.robot)
-    return PlanQuestion.of(terrain, robot, body.friction, body.method, body.weights)
+    return PlanQuestion.of(terrain, robot, body.friction, body.method, body.weights, body.timing)
 
 
 @router.post(

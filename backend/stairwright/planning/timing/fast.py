@@ -42,8 +42,7 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
     names = binding(motion, limits, squares)
     places = np.searchsorted(motion.way, at).clip(0, len(names) - 1)
     timed = [
-        pose.model_copy(update={"time": time})
-        for pose, time in zip(plan.poses, times, strict=True)
+        pose.model_copy(update={"time": time}) for pose, time in zip(plan.poses, times, strict=True)
     ]
     timing = Timing(total=times[-1], rule="fast", limits=[names[k] for k in places])
     asked = (plan.terrain, robot, plan.friction, plan.method, plan.weights, timing.rule)

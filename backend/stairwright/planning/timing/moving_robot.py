@@ -58,7 +58,8 @@ def moving_robot(reference: Reference, robot: Robot) -> MovingRobot:
 
     joints, trunk = sampled(reference.q), sampled(reference.trunk)
     wheels, com = sampled(reference.wheel_progress), sampled(reference.com)
-    frames = kinematics.forward(robot, *trunk[0].T, joints[0])
+    x, z, pitch = trunk[0].T
+    frames = kinematics.forward(robot, x, z, pitch, joints[0])
     momentum = _momentum(robot, grid, wheels[0], joints[0], trunk[0], com[0])
     return MovingRobot(
         way=grid,
@@ -76,8 +77,8 @@ def _momentum(
     robot: Robot, grid: Floats, wheels: Floats, joints: Floats, trunk: Floats, com: Floats
 ) -> Floats:
     """Angular momentum (n,) of all bodies about the CoM per speed along the way [kg m]."""
-    pitch = trunk[:, 2]
-    frames = kinematics.forward(robot, *trunk.T, joints)
+    x, z, pitch = trunk.T
+    frames = kinematics.forward(robot, x, z, pitch, joints)
 
     def part(mass: float, inertia: float, place: Floats, angle: Floats) -> Floats:
         r, v = place - com, slopes(grid, grid, place, REACH)

@@ -17,8 +17,10 @@ TURN = 0.25  # m that a radian of the trunk's pitch counts as
 
 
 def way_of(reference: Reference) -> Floats:
-    """(n,) the plan's progress, and where the trunk swings above wheels that hardly roll, a share
-    of the trunk's motion [m]: a swing takes its time. It rises strictly, as the progress does."""
+    """(n,) the plan's progress [m], and a share of the trunk's motion where that is more.
+
+    So a trunk that swings above wheels that hardly roll takes its time. It rises strictly.
+    """
     trunk = np.diff(reference.trunk, axis=0)
     moved = np.hypot(trunk[:, 0], trunk[:, 1]) + TURN * np.abs(trunk[:, 2])
     steps = np.maximum(np.diff(reference.progress), SWING * moved)
@@ -32,7 +34,7 @@ def even_grid(way: Floats) -> Floats:
 
 
 def slopes(grid: Floats, at: Floats, values: Floats, reach: float) -> Floats:
-    """Derivatives (m, ...) at `grid` of `values` (n, ...) given `at` (n,), over `reach` both ways."""
+    """Derivatives (m, ...) at `grid` of `values` (n, ...) given `at`, over `reach` both ways."""
     low, high = np.maximum(grid - reach, grid[0]), np.minimum(grid + reach, grid[-1])
     columns = values.reshape(len(at), -1).T
     rise = [np.interp(high, at, each) - np.interp(low, at, each) for each in columns]
