@@ -25,7 +25,8 @@ def test_trials_are_those_of_python(server: Server, api: httpx.Client) -> None:
         plan = service.plan(CURB)
         found = service.trials(plan.id, 4, "laboratory", seed=3, progress=told.append)
     assert found == sw.trials(plan, 4, bundle="laboratory", seed=3)
-    assert found.count == 4 and told[-1] == 1.0
+    assert found.count == 4
+    assert told[-1] == 1.0
     listed = api.get("/trials").json()[0]
     assert listed["id"] == found.id
     assert listed["summary"]["successes"] == found.successes

@@ -17,6 +17,7 @@ from stairwright.robot.description import Robot
 from stairwright.robot.parts import optional
 from stairwright.terrain.profile import Terrain
 
+GRAVITY = 9.81  # m/s^2
 Floats = NDArray[np.float64]
 Outcome = Literal["success", "fell", "stuck", "collided", "diverged", "timeout", "stopped"]
 
@@ -151,6 +152,12 @@ class Rollout(Model):
     def success(self) -> bool:
         """Whether the robot arrived as planned."""
         return self.outcome == "success"
+
+    def cost_of_transport(self, plan: Plan) -> float | None:
+        """Energy per weight and way of the plan that was carried out; None if it did not move."""
+        way = plan.poses[-1].progress * self.metrics.progress
+        weight = plan.robot_description.mass * GRAVITY
+        return self.metrics.energy / (weight * way) if way > 0.0 else None
 
     def save(self, path: str) -> None:
         """Write the rollout; the ending picks the format (html, json, csv, npz, mcap)."""

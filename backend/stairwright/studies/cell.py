@@ -16,8 +16,6 @@ from .document import Study
 from .question import CellQuestion, Questions
 from .variables import DONE, FAILED, REFUSED, Record, complete
 
-GRAVITY = 9.81  # m/s^2
-
 
 def evaluate(questions: Questions, point: tuple[Value, ...]) -> Record:
     """What is to be known of the cell at `point`; never raises for what a cell can be.
@@ -99,14 +97,12 @@ def _rolled_out(study: Study, question: CellQuestion, plan: Plan) -> Record:
         record_hz=5.0,
         keep_plan=False,
     )
-    way = plan.poses[-1].progress * run.metrics.progress
-    weight = plan.robot_description.mass * GRAVITY
     low, high = clopper_pearson(int(run.success), 1)
     return {
         "outcome": run.outcome,
         "duration": run.metrics.duration,
         "energy": run.metrics.energy,
-        "cost_of_transport": run.metrics.energy / (weight * way) if way > 0.0 else None,
+        "cost_of_transport": run.cost_of_transport(plan),
         "success": int(run.success),
         "trials": 1,
         "success_low": low,
