@@ -2,6 +2,7 @@
 
 import type { ComponentType } from "preact";
 import { Plan } from "./plan/plan";
+import { Runs } from "./runs/runs";
 import { type Workspace, workspace } from "./state/workspace";
 
 interface Room {
@@ -10,7 +11,10 @@ interface Room {
   room: ComponentType;
 }
 
-export const WORKSPACES: readonly Room[] = [{ name: "plan", title: "Plan", room: Plan }];
+export const WORKSPACES: readonly Room[] = [
+  { name: "plan", title: "Plan", room: Plan },
+  { name: "runs", title: "Runs", room: Runs },
+];
 
 /** The one that is open; Plan where the address names one that is not there. */
 export const openRoom = (): Room =>

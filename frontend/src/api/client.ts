@@ -32,7 +32,7 @@ function sentence(problem: ProblemDetail, status: number): string {
   return problem.detail ?? problem.title ?? `The service answered ${status}.`;
 }
 
-async function call(
+export async function call(
   method: string,
   path: string,
   body?: unknown,
@@ -57,7 +57,7 @@ async function call(
   throw new ApiError(response.status, problem);
 }
 
-async function json<T>(
+export async function json<T>(
   method: string,
   path: string,
   body?: unknown,
@@ -104,6 +104,7 @@ export interface RolloutRequest {
   friction: number;
   controller: SettingValues;
   seed: number;
+  disturbance: SettingValues;
 }
 
 export const postRollout = (request: RolloutRequest) => json<Job>("POST", "rollouts", request);

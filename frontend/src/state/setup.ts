@@ -23,6 +23,8 @@ export const seed = signal(0);
 /** Only what differs from the default, by method. */
 export const weights = signal<Partial<Record<Method, SettingValues>>>({});
 export const controller = signal<SettingValues>({});
+/** How the real world differs from what plan and controller believe: only what is not 0. */
+export const disturbance = signal<SettingValues>({});
 
 export const robot = computed<RobotShape | null>(() => {
   const document = robots.value.find((r) => r.name === robotName.value) ?? robots.value[0];
@@ -34,6 +36,9 @@ export const weightSchema = computed<Record<string, SettingSchema>>(
 );
 export const controllerSchema = computed<Record<string, SettingSchema>>(
   () => settings.value?.controller.properties ?? {},
+);
+export const disturbanceSchema = computed<Record<string, SettingSchema>>(
+  () => settings.value?.disturbance.properties ?? {},
 );
 export const changedWeights = computed(() => weights.value[method.value] ?? {});
 export const changedCount = computed(
@@ -57,6 +62,10 @@ export function setWeight(name: string, value: SettingChange): void {
 
 export function setController(name: string, value: SettingChange): void {
   controller.value = withValue(controller.peek(), controllerSchema.peek()[name], name, value);
+}
+
+export function setDisturbance(name: string, value: SettingChange): void {
+  disturbance.value = withValue(disturbance.peek(), disturbanceSchema.peek()[name], name, value);
 }
 
 /** All that undo brings back besides the drawing. */
