@@ -4,6 +4,7 @@ import type { ComponentType } from "preact";
 import { MapRoom } from "./map/map";
 import { Plan } from "./plan/plan";
 import { RobotRoom } from "./robot/room";
+import { Runs } from "./runs/runs";
 import { type Workspace, workspace } from "./state/workspace";
 
 interface Room {
@@ -16,6 +17,7 @@ export const WORKSPACES: readonly Room[] = [
   { name: "plan", title: "Plan", room: Plan },
   { name: "robot", title: "Robot", room: RobotRoom },
   { name: "map", title: "Map", room: MapRoom },
+  { name: "runs", title: "Runs", room: Runs },
 ];
 
 /** The one that is open; Plan where the address names one that is not there. */

@@ -180,12 +180,27 @@ class SettingsDocument(Model):
 
 
 class StoredEntry(Model):
-    """A stored plan or rollout in a list."""
+    """A stored plan, rollout or set of trials in a list."""
 
     id: str
     digest: str = Field(description="SHA-256 of its JSON")
     created: float = Field(description="seconds since 1970")
-    summary: dict[str, Any]
+    name: str = Field(description="the user's own; empty if there is none")
+    note: str = Field(description="the user's own")
+    pinned: bool = Field(description="stays when room is made for newer results")
+    summary: dict[str, Any] = Field(
+        description="what it was asked, as far as that differs from the defaults, and its figures"
+    )
+
+
+class EntryChanges(Model):
+    """What to change in what is noted about a stored result; what is left out stays."""
+
+    model_config = {"json_schema_extra": {"examples": [{"name": "before the fix", "pinned": True}]}}
+
+    name: str | None = Field(None, max_length=100)
+    note: str | None = Field(None, max_length=2000)
+    pinned: StrictBool | None = Field(None, description="stays when room is made")
 
 
 class JobDocument(Model):

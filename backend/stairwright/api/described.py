@@ -21,6 +21,7 @@ _OPERATIONS = {
     "post_rollout": "create_rollout",
     "post_session": "create_session",
     "post_study": "create_study",
+    "post_trials": "create_trials",
     "put_playback": "set_playback",
     "put_robot": "save_robot",
     "put_scene": "set_scene",
@@ -36,6 +37,7 @@ TAGS = {
     "terrains": "Presets and saved terrains; import and generation.",
     "plans": "How a robot gets over a terrain.",
     "rollouts": "Plans carried out in simulation.",
+    "trials": "A plan carried out many times under random deviations.",
     "studies": "One question over whole ranges of terrains, frictions and robots.",
     "jobs": "Work that takes longer than a request.",
     "sessions": "3D scenes of the page.",
@@ -82,6 +84,7 @@ _MADE = {  # by operation and status
     ("save_robot", "200"): ("ETag",),
     ("save_robot", "201"): ("ETag", "Location"),
     ("create_study", "202"): ("Location", "Retry-After"),
+    ("create_trials", "202"): ("Location", "Retry-After"),
     ("save_terrain", "200"): ("ETag",),
     ("save_terrain", "201"): ("ETag", "Location"),
 }

@@ -8,9 +8,10 @@ from .middleware import PREFIX
 from .problems import Problem
 
 _STORED = tuple(
-    f"{PREFIX}/{kind}/" for kind in ("terrains", "robots", "plans", "rollouts", "jobs", "studies")
+    f"{PREFIX}/{kind}/"
+    for kind in ("terrains", "robots", "plans", "rollouts", "trials", "jobs", "studies")
 )
-_WORK = (f"{PREFIX}/rollouts", f"{PREFIX}/studies")
+_WORK = (f"{PREFIX}/rollouts", f"{PREFIX}/trials", f"{PREFIX}/studies")
 
 
 class ReadOnly:

@@ -140,7 +140,7 @@ class RolloutQuestion:
 class TrialsQuestion(RolloutQuestion):
     """The same many times over, each with deviations drawn from ranges."""
 
-    kind = "trials"
+    kind: ClassVar[Literal["rollout", "trials"]] = "trials"
     count: int = 1
     ranges: Mapping[str, Any] = field(default_factory=dict)
 

@@ -19,6 +19,7 @@ from stairwright.library import load_robot, robots
 from stairwright.robot.description import Robot
 from stairwright.storage.artefacts import Artefacts, name_of
 
+from . import summaries
 from .gauge import Gauge
 from .live import Broadcast
 
@@ -83,13 +84,7 @@ def _artefacts(folder: str) -> Artefacts:
 def _keep_plan(plan: Plan, artefacts: str | None) -> Product:
     content = plan.model_dump_json().encode()
     digest = _artefacts(artefacts).put(content) if artefacts else name_of(content)
-    summary = {
-        "terrain": plan.terrain.name,
-        "robot": plan.robot,
-        "method": plan.method,
-        "status": plan.status,
-    }
-    return Product(plan.id, digest, len(content), summary, content)
+    return Product(plan.id, digest, len(content), summaries.of_plan(plan), content)
 
 
 def simulate(question: Question, artefacts: str, gauge_path: str, live_path: str) -> Product:
@@ -124,13 +119,7 @@ def simulate(question: Question, artefacts: str, gauge_path: str, live_path: str
     )
     content = run.model_dump_json().encode()
     digest = _artefacts(artefacts).put(content)
-    summary = {
-        "terrain": plan.terrain.name,
-        "robot": plan.robot,
-        "plan_id": plan.id,
-        "outcome": run.outcome,
-        "metrics": run.metrics.model_dump(mode="json"),
-    }
+    summary = summaries.of_rollout(run, plan)
     made = replace(_keep_plan(plan, artefacts), content=b"") if question.get("ask") else None
     return Product(run.id, digest, len(content), summary, plan=made)
 
@@ -159,14 +148,7 @@ def try_out(question: Question, artefacts: str, gauge_path: str, _: str) -> Prod
     )
     content = found.model_dump_json().encode()
     digest = _artefacts(artefacts).put(content)
-    summary = {
-        "terrain": plan.terrain.name,
-        "robot": plan.robot,
-        "plan_id": plan.id,
-        "count": found.count,
-        "successes": found.successes,
-        "interval": found.clopper_pearson,
-    }
+    summary = summaries.of_trials(found, plan)
     made = replace(_keep_plan(plan, artefacts), content=b"") if question.get("ask") else None
     return Product(found.id, digest, len(content), summary, plan=made)
 

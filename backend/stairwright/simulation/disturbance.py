@@ -14,12 +14,15 @@ Error = Annotated[float, Field(ge=-0.1, le=0.1)]  # m
 Friction = Annotated[float, Field(gt=0.0, le=5.0)]
 
 
-def _field(low: float, high: float, text: str) -> Any:
-    return Field(0.0, ge=low, le=high, description=text)
+def _field(low: float, high: float, unit: str, title: str, text: str) -> Any:
+    extra: dict[str, Any] = {"unit": unit, "scale": "linear"}
+    return Field(0.0, ge=low, le=high, title=title, description=text, json_schema_extra=extra)
 
 
-def _deviation(text: str) -> Any:
-    return Field(0.0, description=f"{text}: standard deviation, or one after the other [m]")
+def _deviation(title: str, text: str) -> Any:
+    extra: dict[str, Any] = {"unit": "m", "scale": "linear", "minimum": 0.0, "maximum": 0.1}
+    description = f"{text}: standard deviation, or one after the other [m]"
+    return Field(0.0, title=title, description=description, json_schema_extra=extra)
 
 
 class Payload(Model):
@@ -34,8 +37,10 @@ class Payload(Model):
 class ImuErrors(Model):
     """The inertial sensor's errors, beside those that the usual one has."""
 
-    gyro_bias: float = _field(-0.5, 0.5, "about each axis [rad/s]")
-    accelerometer_bias: float = _field(-5.0, 5.0, "along each axis [m/s^2]")
+    gyro_bias: float = _field(-0.5, 0.5, "rad/s", "Gyroscope bias", "about each axis [rad/s]")
+    accelerometer_bias: float = _field(
+        -5.0, 5.0, "m/s^2", "Accelerometer bias", "along each axis [m/s^2]"
+    )
     gyro_noise: float | None = Field(
         None, ge=0.0, le=1.0, description="of a reading; the usual one if empty [rad/s]"
     )
@@ -47,33 +52,62 @@ class ImuErrors(Model):
 class Disturbance(Model):
     """Deviations of one rollout from what the plan and the controller believe."""
 
-    friction: float = _field(-5.0, 5.0, "added to the true friction")
-    friction_front: float = _field(-5.0, 5.0, "added to that, at the front wheels")
-    friction_rear: float = _field(-5.0, 5.0, "added to that, at the rear wheels")
+    friction: float = _field(-5.0, 5.0, "1", "Friction", "added to the true friction")
+    friction_front: float = _field(
+        -5.0, 5.0, "1", "Friction, front", "added to that, at the front wheels"
+    )
+    friction_rear: float = _field(
+        -5.0, 5.0, "1", "Friction, rear", "added to that, at the rear wheels"
+    )
     friction_wheels: tuple[Friction, Friction, Friction, Friction] | None = Field(
         None, description="the true friction of the wheels FL, FR, RL, RR instead"
     )
-    mass: float = _field(-0.5, 1.0, "share of the robot's mass, on the trunk")
+    mass: float = _field(-0.5, 1.0, "1", "Mass", "share of the robot's mass, on the trunk")
     payload: Annotated[float, Field(ge=0.0, le=100.0)] | Payload = Field(
-        0.0, description="on top of the trunk's middle [kg], or a mass and its place"
+        0.0,
+        title="Payload",
+        description="on top of the trunk's middle [kg], or a mass and its place",
+        json_schema_extra={"unit": "kg", "scale": "linear", "minimum": 0.0, "maximum": 100.0},
     )
-    com_x: float = _field(-0.2, 0.2, "the robot's CoM moves forward [m]")
-    com_z: float = _field(-0.2, 0.2, "the robot's CoM moves up [m]")
-    height: float = _field(-0.2, 0.2, "added to the terrain's rise [m]")
-    step_height_error: Error | list[Error] = _deviation("each rise or descent is off")
-    face_place_error: Error | list[Error] = _deviation("each face is moved along")
-    heading: float = _field(-0.5, 0.5, "the robot starts turned to the left of the course [rad]")
-    cross_slope: float = _field(-0.3, 0.3, "the terrain rises to the left [rad]")
+    com_x: float = _field(-0.2, 0.2, "m", "CoM forward", "the robot's CoM moves forward [m]")
+    com_z: float = _field(-0.2, 0.2, "m", "CoM up", "the robot's CoM moves up [m]")
+    height: float = _field(-0.2, 0.2, "m", "Rise", "added to the terrain's rise [m]")
+    step_height_error: Error | list[Error] = _deviation(
+        "Step heights", "each rise or descent is off"
+    )
+    face_place_error: Error | list[Error] = _deviation("Face places", "each face is moved along")
+    heading: float = _field(
+        -0.5, 0.5, "rad", "Heading", "the robot starts turned to the left of the course [rad]"
+    )
+    cross_slope: float = _field(
+        -0.3, 0.3, "rad", "Cross slope", "the terrain rises to the left [rad]"
+    )
     x_offset: float = _field(
-        -0.2, 0.2, "the robot believes to start farther ahead than it does [m]"
+        -0.2,
+        0.2,
+        "m",
+        "Start, believed",
+        "the robot believes to start farther ahead than it does [m]",
     )
-    odometry_scale: float = _field(-0.2, 0.2, "share by which a way seems longer than it is")
-    pitch_bias: float = _field(-0.2, 0.2, "added to the pitch: the IMU is mounted pitched [rad]")
-    noise: float = _field(0.0, 20.0, "sensor noise, in units of the sensors' own")
-    delay: float = _field(0.0, 0.1, "from sensing to torque [s]")
-    bandwidth: float = _field(0.0, 500.0, "of the torques [Hz]; 0: they act at once")
-    torque_scale: float = _field(-0.5, 0.5, "share by which motors give more than asked for")
-    stiction: float = _field(0.0, 20.0, "dry friction of each leg joint and wheel [Nm]")
+    odometry_scale: float = _field(
+        -0.2, 0.2, "1", "Odometry", "share by which a way seems longer than it is"
+    )
+    pitch_bias: float = _field(
+        -0.2, 0.2, "rad", "Pitch bias", "added to the pitch: the IMU is mounted pitched [rad]"
+    )
+    noise: float = _field(
+        0.0, 20.0, "1", "Sensor noise", "sensor noise, in units of the sensors' own"
+    )
+    delay: float = _field(0.0, 0.1, "s", "Delay", "from sensing to torque [s]")
+    bandwidth: float = _field(
+        0.0, 500.0, "Hz", "Torque bandwidth", "of the torques [Hz]; 0: they act at once"
+    )
+    torque_scale: float = _field(
+        -0.5, 0.5, "1", "Motor torque", "share by which motors give more than asked for"
+    )
+    stiction: float = _field(
+        0.0, 20.0, "Nm", "Stiction", "dry friction of each leg joint and wheel [Nm]"
+    )
     rotor_inertia: float | None = Field(
         None, ge=0.0, le=1.0, description="of every motor, as its joint feels it [kg m^2]"
     )

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, cast
 
-from sqlalchemy import Engine, Select, Table, bindparam, delete, func, select, update
+from sqlalchemy import Engine, Select, Table, bindparam, delete, func, or_, select, update
 from sqlalchemy.dialects.sqlite import insert
 from sqlalchemy.orm import sessionmaker
 
@@ -17,6 +17,7 @@ from .clock import UseClock
 from .tables import StoredDocument
 
 Kind = Literal["plan", "rollout", "trials"]
+_SEARCHED = ("terrain", "robot", "method", "status", "outcome")  # of summaries
 _FRESH = 3600.0  # s; a use is written down again only after this time
 
 
@@ -28,10 +29,12 @@ _BY_QUESTION = (
     .where(*(_ROWS.c[name] == bindparam(name) for name in ("question", "engine", "kind")))
     .limit(1)
 )
-_NEW = insert(_ROWS).values({column.name: bindparam(column.name) for column in _ROWS.c})
+_USERS = ("name", "note", "pinned")  # what users say of it: not part of the answer
+_ANSWER = [column.name for column in _ROWS.c if column.name not in _USERS]
+_NEW = insert(_ROWS).values({name: bindparam(name) for name in _ANSWER})
 _PUT = _NEW.on_conflict_do_update(
     index_elements=["id"],
-    set_={column.name: _NEW.excluded[column.name] for column in _ROWS.c if column.name != "id"},
+    set_={name: _NEW.excluded[name] for name in _ANSWER if name != "id"},
 )
 
 
@@ -45,10 +48,15 @@ class Entry:
     size: int
     summary: Mapping[str, Any]
     created: float
+    name: str = ""
+    note: str = ""
+    pinned: bool = False
 
 
 def _entry(row: Any) -> Entry:
-    return Entry(row.id, row.kind, row.digest, row.size, json.loads(row.summary), row.created)
+    summary = json.loads(row.summary)
+    users = (getattr(row, name) for name in _USERS)
+    return Entry(row.id, row.kind, row.digest, row.size, summary, row.created, *users)
 
 
 class Documents:
@@ -128,13 +136,42 @@ class Documents:
                 mine = StoredDocument.digest == digest
                 session.execute(update(StoredDocument).where(mine).values(size=size))
 
-    def page(self, kind: Kind, limit: int, offset: int) -> tuple[Sequence[Entry], int]:
-        """Newest first: `limit` entries after `offset`, and how many there are in all."""
-        mine = StoredDocument.kind == kind
+    def annotate(self, kind: Kind, document_id: str, **said: str | bool) -> Entry | None:
+        """Note `name`, `note` or `pinned`; the entry as it is then, None if there is none."""
+        mine = (StoredDocument.id == document_id, StoredDocument.kind == kind)
+        with self._sessions.begin() as session:
+            row = session.scalar(select(StoredDocument).where(*mine))
+            if row is None:
+                return None
+            for name in said.keys() & set(_USERS):
+                setattr(row, name, said[name])
+            return _entry(row)
+
+    def page(
+        self,
+        kind: Kind,
+        limit: int,
+        offset: int,
+        search: str = "",
+        pinned: bool | None = None,
+    ) -> tuple[Sequence[Entry], int]:
+        """Newest first: `limit` entries after `offset`, and how many there are in all.
+
+        Each word of `search` stands in a name, a note, or one of the summary's words.
+        """
+        mine = [StoredDocument.kind == kind]
+        if pinned is not None:
+            mine.append(StoredDocument.pinned == pinned)
+        for word in search.split():
+            places: list[Any] = [StoredDocument.name, StoredDocument.note]
+            places += [func.json_extract(StoredDocument.summary, f"$.{key}") for key in _SEARCHED]
+            mine.append(or_(*(place.icontains(word, autoescape=True) for place in places)))
         newest = (StoredDocument.created.desc(), StoredDocument.id)
         with self._sessions() as session:
-            query = select(StoredDocument).where(mine).order_by(*newest).limit(limit).offset(offset)
-            total = session.scalar(select(func.count()).where(mine)) or 0
+            query = select(StoredDocument).where(*mine).order_by(*newest)
+            query = query.limit(limit).offset(offset)
+            counted = select(func.count()).select_from(StoredDocument).where(*mine)
+            total = session.scalar(counted) or 0
             return [_entry(row) for row in session.scalars(query)], total
 
     def totals(self) -> tuple[dict[str, int], int]:

@@ -14,17 +14,19 @@ _ORDER = literal_column("rowid", Integer)  # in which rows came, whatever the cl
 
 
 def make_room(sessions: sessionmaker[Session], keep_bytes: int) -> set[str]:
-    """Remove the results that were not used for longest until the rest fits.
+    """Remove the results that were not used for longest until the rest fits; pinned ones stay.
 
     Returns the digests of their contents that nobody refers to any more.
     """
     gone: list[StoredDocument] = []
     kept = 0
     with sessions.begin() as session:
-        latest = select(StoredDocument).order_by(StoredDocument.used.desc())
+        latest = select(StoredDocument).order_by(
+            StoredDocument.pinned.desc(), StoredDocument.used.desc()
+        )
         rows = session.scalars(latest).all()
         for row in rows:
-            if kept + row.size > keep_bytes:
+            if kept + row.size > keep_bytes and not row.pinned:
                 session.delete(row)
                 gone.append(row)
             else:

@@ -52,6 +52,9 @@ class StoredDocument(Base):
     summary: Mapped[str]  # JSON
     created: Mapped[float]
     used: Mapped[float]
+    name: Mapped[str] = mapped_column(server_default="")  # the user's
+    note: Mapped[str] = mapped_column(server_default="")
+    pinned: Mapped[bool] = mapped_column(server_default="0")  # stays when room is made
 
 
 class StoredJob(Base):

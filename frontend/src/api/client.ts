@@ -34,7 +34,7 @@ function sentence(problem: ProblemDetail, status: number): string {
   return problem.detail ?? problem.title ?? `The service answered ${status}.`;
 }
 
-async function call(
+export async function call(
   method: string,
   path: string,
   body?: unknown,
@@ -59,7 +59,7 @@ async function call(
   throw new ApiError(response.status, problem);
 }
 
-async function json<T>(
+export async function json<T>(
   method: string,
   path: string,
   body?: unknown,
@@ -125,6 +125,7 @@ export interface RolloutRequest {
   friction: number;
   controller: SettingValues;
   seed: number;
+  disturbance: SettingValues;
 }
 
 export const postRollout = (request: RolloutRequest) => json<Job>("POST", "rollouts", request);

@@ -287,7 +287,11 @@ export interface paths {
         delete: operations["delete_plan"];
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Save Plan Notes
+         * @description Name a plan, note something about it, or pin it.
+         */
+        patch: operations["save_plan_notes"];
         trace?: never;
     };
     "/api/v1/plans/{plan_id}/export": {
@@ -355,7 +359,11 @@ export interface paths {
         delete: operations["delete_rollout"];
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Save Rollout Notes
+         * @description Name a rollout, note something about it, or pin it.
+         */
+        patch: operations["save_rollout_notes"];
         trace?: never;
     };
     "/api/v1/rollouts/{rollout_id}/export": {
@@ -395,7 +403,7 @@ export interface paths {
          * Post Trials
          * @description Start a set of trials; the answer is its job. A known result makes a job that is done.
          */
-        post: operations["post_trials"];
+        post: operations["create_trials"];
         delete?: never;
         options?: never;
         head?: never;
@@ -425,7 +433,11 @@ export interface paths {
         delete: operations["delete_trials"];
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Save Trials Notes
+         * @description Name a set of trials, note something about it, or pin it.
+         */
+        patch: operations["save_trials_notes"];
         trace?: never;
     };
     "/api/v1/jobs": {
@@ -1179,13 +1191,13 @@ export interface components {
              */
             friction: number;
             /**
-             * Friction Front
+             * Friction, front
              * @description added to that, at the front wheels
              * @default 0
              */
             friction_front: number;
             /**
-             * Friction Rear
+             * Friction, rear
              * @description added to that, at the rear wheels
              * @default 0
              */
@@ -1203,31 +1215,31 @@ export interface components {
              */
             payload: number;
             /**
-             * Com X
+             * CoM forward
              * @description the robot's CoM moves forward [m]
              * @default 0
              */
             com_x: number;
             /**
-             * Com Z
+             * CoM up
              * @description the robot's CoM moves up [m]
              * @default 0
              */
             com_z: number;
             /**
-             * Height
+             * Rise
              * @description added to the terrain's rise [m]
              * @default 0
              */
             height: number;
             /**
-             * Step Height Error
+             * Step heights
              * @description each rise or descent is off by at most this, at random [m]
              * @default 0
              */
             step_height_error: number;
             /**
-             * Face Place Error
+             * Face places
              * @description each face is moved along by at most this, at random [m]
              * @default 0
              */
@@ -1239,31 +1251,31 @@ export interface components {
              */
             heading: number;
             /**
-             * Cross Slope
+             * Cross slope
              * @description the terrain rises to the left [rad]
              * @default 0
              */
             cross_slope: number;
             /**
-             * X Offset
+             * Start, believed
              * @description the robot believes to start farther ahead than it does [m]
              * @default 0
              */
             x_offset: number;
             /**
-             * Odometry Scale
+             * Odometry
              * @description share by which a way seems longer than it is
              * @default 0
              */
             odometry_scale: number;
             /**
-             * Pitch Bias
+             * Pitch bias
              * @description added to the pitch: the IMU is mounted pitched [rad]
              * @default 0
              */
             pitch_bias: number;
             /**
-             * Noise
+             * Sensor noise
              * @description sensor noise, in units of the sensors' own
              * @default 0
              */
@@ -1275,11 +1287,30 @@ export interface components {
              */
             delay: number;
             /**
-             * Bandwidth
+             * Torque bandwidth
              * @description of the torques [Hz]; 0: they act at once
              * @default 0
              */
             bandwidth: number;
+        };
+        /**
+         * EntryChanges
+         * @description What to change in what is noted about a stored result; what is left out stays.
+         * @example {
+         *       "name": "before the fix",
+         *       "pinned": true
+         *     }
+         */
+        EntryChanges: {
+            /** Name */
+            name?: string | null;
+            /** Note */
+            note?: string | null;
+            /**
+             * Pinned
+             * @description stays when room is made
+             */
+            pinned?: boolean | null;
         };
         /**
          * ExportFormat
@@ -2669,7 +2700,7 @@ export interface components {
         };
         /**
          * StoredEntry
-         * @description A stored plan or rollout in a list.
+         * @description A stored plan, rollout or set of trials in a list.
          */
         StoredEntry: {
             /** Id */
@@ -2684,7 +2715,25 @@ export interface components {
              * @description seconds since 1970
              */
             created: number;
-            /** Summary */
+            /**
+             * Name
+             * @description the user's own; empty if there is none
+             */
+            name: string;
+            /**
+             * Note
+             * @description the user's own
+             */
+            note: string;
+            /**
+             * Pinned
+             * @description stays when room is made for newer results
+             */
+            pinned: boolean;
+            /**
+             * Summary
+             * @description what it was asked, as far as that differs from the defaults, and its figures
+             */
             summary: {
                 [key: string]: unknown;
             };
@@ -4522,6 +4571,10 @@ export interface operations {
                 limit?: number;
                 /** @description after this many */
                 offset?: number;
+                /** @description words in name, note, terrain, robot or outcome */
+                search?: string;
+                /** @description only those pinned, or not */
+                pinned?: boolean | null;
             };
             header?: never;
             path?: never;
@@ -4857,6 +4910,96 @@ export interface operations {
             };
         };
     };
+    save_plan_notes: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                plan_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["EntryChanges"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StoredEntry"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unsupported Media Type: `media-type` */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
     export_plan: {
         parameters: {
             query?: {
@@ -4972,6 +5115,10 @@ export interface operations {
                 limit?: number;
                 /** @description after this many */
                 offset?: number;
+                /** @description words in name, note, terrain, robot or outcome */
+                search?: string;
+                /** @description only those pinned, or not */
+                pinned?: boolean | null;
             };
             header?: never;
             path?: never;
@@ -5316,6 +5463,96 @@ export interface operations {
             };
         };
     };
+    save_rollout_notes: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                rollout_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["EntryChanges"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StoredEntry"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unsupported Media Type: `media-type` */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
     export_rollout: {
         parameters: {
             query?: {
@@ -5429,6 +5666,10 @@ export interface operations {
                 limit?: number;
                 /** @description after this many */
                 offset?: number;
+                /** @description words in name, note, terrain, robot or outcome */
+                search?: string;
+                /** @description only those pinned, or not */
+                pinned?: boolean | null;
             };
             header?: never;
             path?: never;
@@ -5496,7 +5737,7 @@ export interface operations {
             };
         };
     };
-    post_trials: {
+    create_trials: {
         parameters: {
             query?: never;
             header?: {
@@ -5517,6 +5758,8 @@ export interface operations {
             /** @description Successful Response */
             202: {
                 headers: {
+                    Location: components["headers"]["Location"];
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
@@ -5753,6 +5996,96 @@ export interface operations {
             };
             /** @description Request Entity Too Large: `too-large` */
             413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    save_trials_notes: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                trials_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["EntryChanges"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StoredEntry"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unsupported Media Type: `media-type` */
+            415: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -135,6 +135,9 @@ export interface SettingsGroup {
 export interface Settings {
   weights: Partial<Record<Method, SettingsGroup>>;
   controller: SettingsGroup;
+  disturbance: SettingsGroup;
+  /** Deviations that trials draw from, by name. */
+  bundles: Record<string, Schemas["Ranges"]>;
   exports: Record<"plan" | "rollout" | "robot", ExportFormat[]>;
 }
 

@@ -17,7 +17,7 @@ import type { Job, Plan, PlanRequest, Rollout } from "../api/types";
 import { report } from "./connection";
 import { type Chunk, endLive, grow, livePlan, startLive } from "./live";
 import { plan, request, settled, stale, unoptimised } from "./planning";
-import { compare, controller, seed } from "./setup";
+import { compare, controller, disturbance, seed } from "./setup";
 
 export type Activity = "idle" | "running" | "cancelled" | "failed";
 
@@ -46,13 +46,17 @@ const BLINK = 300;
 const POLL = 400;
 
 /** What a rollout is asked besides its plan. */
-type Setup = Pick<RolloutRequest, "seed" | "controller">;
-const setup = computed<Setup>(() => ({ seed: seed.value, controller: controller.value }));
+type Setup = Pick<RolloutRequest, "seed" | "controller" | "disturbance">;
+const setup = computed<Setup>(() => ({
+  seed: seed.value,
+  controller: controller.value,
+  disturbance: disturbance.value,
+}));
 const runSetup = signal<Setup>(setup.peek());
 
-const sameSetup = (a: Setup, b: Setup) =>
-  JSON.stringify([a.seed, Object.entries(a.controller).sort()]) ===
-  JSON.stringify([b.seed, Object.entries(b.controller).sort()]);
+const inOrder = ({ seed, controller, disturbance }: Setup) =>
+  JSON.stringify([seed, Object.entries(controller).sort(), Object.entries(disturbance).sort()]);
+const sameSetup = (a: Setup, b: Setup) => inOrder(a) === inOrder(b);
 
 /** A change came after the rollout: what results and plots describe is not what is set up now. */
 export const runOf = computed(() => {

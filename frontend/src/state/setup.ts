@@ -24,6 +24,8 @@ export const seed = signal(0);
 /** Only what differs from the default, by method. */
 export const weights = signal<Partial<Record<Method, SettingValues>>>({});
 export const controller = signal<SettingValues>({});
+/** How the real world differs from what plan and controller believe: only what is not 0. */
+export const disturbance = signal<SettingValues>({});
 
 /** Robots that were changed or imported and are not saved as they are now, by name. */
 export const robotEdits = signal<Readonly<Record<string, RobotDocument>>>({});
@@ -65,6 +67,9 @@ export const weightSchema = computed<Record<string, SettingSchema>>(
 export const controllerSchema = computed<Record<string, SettingSchema>>(
   () => settings.value?.controller.properties ?? {},
 );
+export const disturbanceSchema = computed<Record<string, SettingSchema>>(
+  () => settings.value?.disturbance.properties ?? {},
+);
 export const changedWeights = computed(() => weights.value[method.value] ?? {});
 export const changedCount = computed(
   () => Object.keys(changedWeights.value).length + Object.keys(controller.value).length,
@@ -87,6 +92,10 @@ export function setWeight(name: string, value: SettingChange): void {
 
 export function setController(name: string, value: SettingChange): void {
   controller.value = withValue(controller.peek(), controllerSchema.peek()[name], name, value);
+}
+
+export function setDisturbance(name: string, value: SettingChange): void {
+  disturbance.value = withValue(disturbance.peek(), disturbanceSchema.peek()[name], name, value);
 }
 
 /** All that undo brings back besides the drawing. */

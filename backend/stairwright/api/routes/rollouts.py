@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
-from stairwright.api.bodies import JobDocument, RolloutRequest, StoredEntry
-from stairwright.api.deps import JSON_BODY, Idempotent, Limit, Offset, Owner, Service
+from stairwright.api.bodies import EntryChanges, JobDocument, RolloutRequest, StoredEntry
+from stairwright.api.deps import JSON_BODY, Idempotent, Owner, Service
 from stairwright.api.problems import describe
 from stairwright.api.services import Services
 from stairwright.export.table import ROLLOUT_FORMATS
@@ -47,17 +47,28 @@ def _question(services: Services, body: RolloutRequest) -> RolloutQuestion:
 
 
 @router.get("", response_model=list[StoredEntry])
-async def list_rollouts(
-    request: Request, services: Service, limit: Limit = 100, offset: Offset = 0
-) -> Response:
+async def list_rollouts(request: Request, services: Service, listed: stored.Listing) -> Response:
     """Stored rollouts, newest first."""
-    return await stored.listing(request, services, "rollout", limit, offset)
+    return await stored.listing(request, services, "rollout", listed)
 
 
 @router.get("/{rollout_id}", response_model=Rollout, responses=describe(404))
 async def get_rollout(request: Request, services: Service, rollout_id: RolloutId) -> Response:
     """One rollout with all its series; may be several MB."""
     return await stored.document(request, services, "rollout", rollout_id)
+
+
+@router.patch(
+    "/{rollout_id}",
+    response_model=StoredEntry,
+    dependencies=[JSON_BODY],
+    responses=describe(404, 415),
+)
+async def save_rollout_notes(
+    services: Service, rollout_id: RolloutId, changes: EntryChanges
+) -> StoredEntry:
+    """Name a rollout, note something about it, or pin it."""
+    return await stored.annotate(services, "rollout", rollout_id, changes)
 
 
 @router.delete("/{rollout_id}", status_code=204, responses=describe(404))

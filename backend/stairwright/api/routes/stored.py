@@ -6,12 +6,13 @@ import asyncio
 import gzip
 import hashlib
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 from urllib.parse import quote
 
-from fastapi import Request, Response
+from fastapi import Depends, Query, Request, Response
 
-from stairwright.api.bodies import StoredEntry
+from stairwright.api.bodies import EntryChanges, StoredEntry
+from stairwright.api.deps import Limit, Offset
 from stairwright.api.problems import not_found
 from stairwright.api.responses import models_json, not_modified, stored_json
 from stairwright.api.services import EXPORT_DEADLINE, Services
@@ -30,16 +31,53 @@ def files(formats: Mapping[str, Format[Any]]) -> dict[int | str, dict[str, Any]]
     return {200: {"description": "The file", "content": content}}
 
 
-async def listing(
-    request: Request, services: Services, kind: Kind, limit: int, offset: int
-) -> Response:
+class Listed:
+    """Which stored results a list shows."""
+
+    def __init__(
+        self,
+        limit: Limit = 100,
+        offset: Offset = 0,
+        search: Annotated[
+            str,
+            Query(max_length=200, description="words in name, note, terrain, robot or outcome"),
+        ] = "",
+        pinned: Annotated[bool | None, Query(description="only those pinned, or not")] = None,
+    ) -> None:
+        self.limit, self.offset, self.search, self.pinned = limit, offset, search, pinned
+
+
+Listing = Annotated[Listed, Depends(Listed)]
+
+
+async def listing(request: Request, services: Services, kind: Kind, listed: Listed) -> Response:
     """Newest first."""
-    entries, total = await asyncio.to_thread(services.store.documents.page, kind, limit, offset)
-    shown = [
-        StoredEntry(id=each.id, digest=each.digest, created=each.created, summary=each.summary)
-        for each in entries
-    ]
-    return models_json(request, shown, total=total, limit=limit, offset=offset)
+    limit, offset = listed.limit, listed.offset
+    entries, total = await asyncio.to_thread(
+        services.store.documents.page, kind, limit, offset, listed.search, listed.pinned
+    )
+    return models_json(
+        request, [_shown(each) for each in entries], total=total, limit=limit, offset=offset
+    )
+
+
+def _shown(entry: Entry) -> StoredEntry:
+    return StoredEntry(**{name: getattr(entry, name) for name in StoredEntry.model_fields})
+
+
+async def annotate(
+    services: Services, kind: Kind, document_id: str, changes: EntryChanges
+) -> StoredEntry:
+    """Note a name, a note, or that it is pinned.
+
+    Raises:
+        Problem: 404 if there is no such document (any more).
+    """
+    said = changes.model_dump(exclude_none=True)
+    entry = await asyncio.to_thread(services.store.documents.annotate, kind, document_id, **said)
+    if entry is None:
+        raise not_found(kind, document_id)
+    return _shown(entry)
 
 
 async def load(services: Services, kind: Kind, document_id: str) -> tuple[Entry, bytes]:

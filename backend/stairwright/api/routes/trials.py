@@ -7,8 +7,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Request, Response
 
-from stairwright.api.bodies import JobDocument, StoredEntry, TrialsRequest
-from stairwright.api.deps import JSON_BODY, Idempotent, Limit, Offset, Owner, Service
+from stairwright.api.bodies import EntryChanges, JobDocument, StoredEntry, TrialsRequest
+from stairwright.api.deps import JSON_BODY, Idempotent, Owner, Service
 from stairwright.api.problems import describe
 from stairwright.api.services import Services
 from stairwright.jobs.questions import TrialsQuestion
@@ -45,11 +45,9 @@ def _question(services: Services, body: TrialsRequest) -> TrialsQuestion:
 
 
 @router.get("", response_model=list[StoredEntry])
-async def list_trials(
-    request: Request, services: Service, limit: Limit = 100, offset: Offset = 0
-) -> Response:
+async def list_trials(request: Request, services: Service, listed: stored.Listing) -> Response:
     """Stored sets of trials, newest first."""
-    return await stored.listing(request, services, "trials", limit, offset)
+    return await stored.listing(request, services, "trials", listed)
 
 
 @router.get("/{trials_id}", response_model=Trials, responses=describe(404))
@@ -59,6 +57,19 @@ async def get_trials(request: Request, services: Service, trials_id: TrialsId) -
     A rollout of the same plan with a trial's seed and `disturbance` replays it.
     """
     return await stored.document(request, services, "trials", trials_id)
+
+
+@router.patch(
+    "/{trials_id}",
+    response_model=StoredEntry,
+    dependencies=[JSON_BODY],
+    responses=describe(404, 415),
+)
+async def save_trials_notes(
+    services: Service, trials_id: TrialsId, changes: EntryChanges
+) -> StoredEntry:
+    """Name a set of trials, note something about it, or pin it."""
+    return await stored.annotate(services, "trials", trials_id, changes)
 
 
 @router.delete("/{trials_id}", status_code=204, responses=describe(404))

@@ -1,0 +1,98 @@
+"""What a list tells of a result without opening it: what was asked, and the figures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from stairwright.planning.plan import Plan, Pose
+    from stairwright.simulation.result import Rollout
+    from stairwright.simulation.trials import Trials
+
+OUTLINE = 32  # points of a terrain that a thumbnail shows
+_MARGINS = ("clearance", "com", "friction", "torque")
+
+
+def of_plan(plan: Plan) -> dict[str, Any]:
+    """Question, verdict, least margins [m, m, 1, Nm], duration [s], and what a thumbnail needs."""
+    from stairwright.planning.weights import MODELS
+
+    usual = MODELS[plan.method]().model_dump()
+    changed = {name: value for name, value in plan.weights.items() if value != usual.get(name)}
+    return {
+        **_question(plan),
+        "status": plan.status,
+        "problem": None if plan.problem is None else plan.problem.message,
+        "friction": plan.friction,
+        "weights": changed,
+        "timing": "fast" if plan.timing.rule == "fast" else "steady",
+        "margins": _least(plan.poses),
+        "duration": plan.timing.total if plan.feasible else None,
+        **_thumbnail(plan),
+    }
+
+
+def of_rollout(run: Rollout, plan: Plan) -> dict[str, Any]:
+    """The same of a rollout and the plan that it carried out, with outcome and metrics."""
+    return {
+        **of_plan(plan),
+        "plan_id": plan.id,
+        "outcome": run.outcome,
+        "reason": run.reason,
+        "friction": run.friction,
+        "controller": run.controller.model_dump(mode="json", exclude_defaults=True),
+        "seed": run.seed,
+        "disturbance": {name: value for name, value in run.disturbance.items() if value},
+        "metrics": run.metrics.model_dump(mode="json"),
+        "duration": run.metrics.duration,
+        "cost_of_transport": run.metrics.cost_of_transport,
+    }
+
+
+def of_trials(found: Trials, plan: Plan) -> dict[str, Any]:
+    """The same of a set of trials, with successes and their 95 % interval."""
+    from stairwright.simulation.ranges import BUNDLES
+
+    named = (name for name, ranges in BUNDLES.items() if ranges == found.ranges)
+    return {
+        **of_plan(plan),
+        "plan_id": plan.id,
+        "friction": found.friction,
+        "controller": found.controller.model_dump(mode="json", exclude_defaults=True),
+        "seed": found.seed,
+        "bundle": next(named, None),
+        "count": found.count,
+        "successes": found.successes,
+        "interval": found.clopper_pearson,
+        "outcomes": found.outcomes,
+    }
+
+
+def _question(plan: Plan) -> dict[str, Any]:
+    return {"terrain": plan.terrain.name, "robot": plan.robot, "method": plan.method}
+
+
+def _least(poses: Sequence[Pose]) -> Mapping[str, float] | None:
+    if not poses:
+        return None
+    return {name: min(getattr(pose.margins, name) for pose in poses) for name in _MARGINS}
+
+
+def _thumbnail(plan: Plan) -> dict[str, Any]:
+    """Outline of the terrain, and the pose where the least margin or the obstruction is."""
+    points = plan.terrain.points
+    step = max(1, -(-len(points) // OUTLINE))
+    outline = [*points[:-1:step], points[-1]]
+    place = plan.problem or plan.binding
+    pose = None
+    if plan.poses:
+        at = plan.poses[-1].progress if place is None else place.progress
+        worst = min(plan.poses, key=lambda each: abs(each.progress - at))
+        pose = {
+            "x": round(worst.x_c, 3),
+            "z": round(worst.z_c, 3),
+            "pitch": round(worst.pitch, 3),
+            "q": [round(angle, 3) for angle in worst.q],
+        }
+    return {"outline": [[round(x, 3), round(z, 3)] for x, z in outline], "pose": pose}

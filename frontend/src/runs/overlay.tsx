@@ -1,0 +1,9 @@
+/** Pinned results over each other. */
+
+export function Overlay({ back }: { back: () => void }) {
+  return (
+    <button type="button" class="t back" onClick={back}>
+      List
+    </button>
+  );
+}
