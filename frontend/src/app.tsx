@@ -6,9 +6,10 @@ import { isField, onPageKey, onPageKeyUp } from "./profile-editor/commands";
 import { assertive, polite } from "./state/announce";
 import { connected } from "./state/connection";
 import { isEmpty } from "./state/drawing";
+import { inspectorOpen, maximised, swapped } from "./state/layout";
 import { plan, refusal, stale } from "./state/planning";
 import { activity, run } from "./state/rollouts";
-import { inspectorOpen, swapped, tab } from "./state/view";
+import { tab } from "./state/view";
 import { Status } from "./status";
 import { ImportZone } from "./topbar/import-zone";
 import { TopBar } from "./topbar/topbar";
@@ -45,6 +46,7 @@ export function App() {
       data-workspace={open.name}
       data-offline={connected.value ? undefined : ""}
       data-swapped={swapped.value ? "" : undefined}
+      data-max={maximised.value ?? undefined}
       data-inspector={inspectorOpen.value ? "open" : "shut"}
       data-tab={tab.value}
       data-plan={planState()}

@@ -1,6 +1,7 @@
 /** What toolbar and keyboard do to the drawing. */
 
 import { commit, drawing, redo, selection, undo } from "../state/drawing";
+import { onLayoutKey, restore } from "../state/layout";
 import { togglePlay } from "../state/playback";
 import { type Tool, tool } from "../state/view";
 import { addVertex, moveVertices, removeVertices } from "./edits";
@@ -89,7 +90,8 @@ export function onPageKey(event: KeyboardEvent): void {
   if (event.altKey) return;
   const next = TOOL_KEYS[key];
   if (next) tool.value = next;
-  else if (event.key === "Escape" && !cancelGesture()) {
+  else if (onLayoutKey(key)) event.preventDefault();
+  else if (event.key === "Escape" && !cancelGesture() && !restore()) {
     tool.value = "select";
     selection.value = [];
   } else if (event.key === " " && !isButton(event.target)) {

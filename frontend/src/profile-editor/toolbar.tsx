@@ -1,9 +1,8 @@
 /** Tools, edits, snapping, presets, layers and zoom. */
 
+import { PanelTools } from "../plan/panel-tools";
 import { canRedo, canUndo, drawing, isEmpty, redo, selection, undo } from "../state/drawing";
-import { terrains } from "../state/setup";
 import { LAYERS, type Layer, layers, type Tool, toggleLayer, tool } from "../state/view";
-import { openStored } from "../topbar/terrain-actions";
 import { Icon } from "../ui/icon";
 import { IconButton } from "../ui/icon-button";
 import { Menu, MenuItem } from "../ui/menu";
@@ -28,11 +27,12 @@ function gridName(step: number): string {
 export function Toolbar() {
   return (
     <div class="bar" role="toolbar" aria-label="Profile tools">
+      <h2>Profile</h2>
       {TOOLS.map(([name, label, key, hint]) => (
         <button
           key={name}
           type="button"
-          class={tool.value === name ? "t on" : "t"}
+          class={tool.value === name ? "t ico on" : "t ico"}
           aria-pressed={tool.value === name}
           aria-keyshortcuts={key}
           title={`${label} (${key}): ${hint}`}
@@ -41,7 +41,7 @@ export function Toolbar() {
           }}
         >
           <Icon name={name} />
-          <span class="lb">{label}</span> <kbd>{key}</kbd>
+          <span class="sr">{label}</span>
         </button>
       ))}
       <div class="sep" />
@@ -56,7 +56,6 @@ export function Toolbar() {
       <IconButton action={redo} label="Redo" icon="redo" off={!canRedo.value} />
       <div class="sep" />
       <SnapMenu />
-      <PresetMenu />
       <div class="grow" />
       <LayerMenu />
       <IconButton
@@ -65,7 +64,8 @@ export function Toolbar() {
         icon="fit"
         off={false}
       />
-      <span class="zoom wide">{zoomPercent.value} %</span>
+      <span class="zoom">{zoomPercent.value} %</span>
+      <PanelTools panel="editor" title="profile" />
     </div>
   );
 }
@@ -104,7 +104,7 @@ function SnapMenu() {
           >
             Other corners' x and z
           </MenuItem>
-          <div class="head">Stairs by the code</div>
+          <div class="head">Building codes</div>
           <MenuItem checked={code.value === null} onChoose={() => setCode(null, close)}>
             Free rise and run
           </MenuItem>
@@ -129,51 +129,10 @@ function setCode(next: (typeof CODES)[number] | null, close: () => void): void {
   close();
 }
 
-function PresetMenu() {
-  const button = (
-    <>
-      Presets
-      <Icon name="down" />
-    </>
-  );
-  return (
-    <Menu label="Presets" named button={button} buttonClass="t" panelClass="tall">
-      {(close) =>
-        terrains.value
-          .filter((terrain) => terrain.readonly)
-          .map((terrain) => (
-            <MenuItem
-              key={terrain.name}
-              checked={drawing.value.name === terrain.name}
-              onChoose={() => {
-                openStored(terrain);
-                close();
-              }}
-            >
-              <span class="two">
-                {terrain.name}
-                <small>{terrain.description}</small>
-              </span>
-            </MenuItem>
-          ))
-      }
-    </Menu>
-  );
-}
-
 function LayerMenu() {
   const all = Object.keys(LAYERS) as Layer[];
-  const button = (
-    <>
-      <Icon name="eye" />
-      <span class="lb">Layers</span>{" "}
-      <kbd class="wide">
-        {layers.value.size} of {all.length}
-      </kbd>
-    </>
-  );
   return (
-    <Menu label="Layers" named button={button} buttonClass="t" align="right">
+    <Menu label="Layers" button={<Icon name="eye" />} buttonClass="t ico" align="right">
       {() =>
         all.map((layer) => (
           <button

@@ -2,12 +2,12 @@
 
 import { hasFailed } from "../api/types";
 import { fixed } from "../geometry/format";
+import { PanelTools } from "../plan/panel-tools";
 import { connected } from "../state/connection";
 import { isEmpty } from "../state/drawing";
 import { livePlan } from "../state/live";
 import { plan } from "../state/planning";
 import { duration, shownRun, shownTime } from "../state/playback";
-import { swapped } from "../state/view";
 import { Icon } from "../ui/icon";
 import { Menu, MenuItem } from "../ui/menu";
 import { session, setCamera } from "./drive";
@@ -24,9 +24,7 @@ export function Scene() {
   return (
     <>
       <div class="ph">
-        <h2>
-          3-D scene<small class="wide">viser</small>
-        </h2>
+        <h2>3-D scene</h2>
         <Menu label="Camera" button={<Icon name="camera" />} buttonClass="t ico" align="right">
           {(close) =>
             CAMERAS.map(([preset, title]) => (
@@ -61,18 +59,7 @@ export function Scene() {
         >
           <Icon name="open" />
         </a>
-        <button
-          type="button"
-          class="t ico"
-          aria-label="Swap with the editor"
-          title="Swap with the editor"
-          aria-pressed={swapped.value}
-          onClick={() => {
-            swapped.value = !swapped.value;
-          }}
-        >
-          <Icon name="swap" />
-        </button>
+        <PanelTools panel="scene" title="scene" />
       </div>
       <div class="v3">
         {address && (
