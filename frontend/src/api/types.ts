@@ -28,6 +28,8 @@ export type Pose = Omit<
   contacts: Vec2[];
   com: Vec2;
   collision_points: Vec2[];
+  /** Static force of each wheel pair, tangential and normal [N]. */
+  forces?: Vec2[] | null;
 };
 
 export type Problem = Omit<Schemas["Problem"], "at"> & { at: Vec2 };

@@ -8,6 +8,7 @@ import { Scene } from "../scene/scene";
 import { DOCK, dock, lastPanel, maximised, SPLIT, type StagePanel, split } from "../state/layout";
 import { type Tab, tab } from "../state/view";
 import { Transport } from "../transport/transport";
+import { PoseRow } from "./pose-row";
 import { Splitter } from "./splitter";
 
 const TABS: [Tab, string][] = [
@@ -74,6 +75,7 @@ export function Plan() {
         )}
         <Inspector />
         <section class="dock" aria-label="Playback and results">
+          <PoseRow />
           <Transport />
           <Splitter
             label="Height of results and plots"

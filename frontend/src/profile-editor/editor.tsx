@@ -23,7 +23,6 @@ import { Banner, FirstHint, Legend, Refusal, Veil } from "./notices";
 import { Obstruction } from "./obstruction";
 import { Current, Ghosts } from "./poses";
 import { Readout } from "./readout";
-import { MarginStrip } from "./strip";
 import { Dimensions, Ground, WheelPath } from "./terrain-layer";
 import { Toolbar } from "./toolbar";
 import { Guides, Stretches, Vertices } from "./vertices";
@@ -140,7 +139,6 @@ function Canvas() {
         <Vertices />
       </g>
       <Rulers />
-      <MarginStrip />
     </svg>
   );
 }

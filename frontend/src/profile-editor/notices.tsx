@@ -100,7 +100,7 @@ export function FirstHint() {
   return (
     <div class="hint">
       <b>Drag a corner: the poses follow.</b>
-      <span>Then press Run rollout to see it driven.</span>
+      <span>Then run it.</span>
       <button type="button" onClick={dismissHint}>
         Got it
       </button>

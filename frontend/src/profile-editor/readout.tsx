@@ -4,7 +4,9 @@ import { fixed } from "../geometry/format";
 import { segmentKind } from "../geometry/profile";
 import { commit, draft, drawing, revert, selection } from "../state/drawing";
 import { tool } from "../state/view";
+import { IconButton } from "../ui/icon-button";
 import { NumberField } from "../ui/number-field";
+import { deleteSelected, insertVertex } from "./commands";
 import { moveVertices } from "./edits";
 import { card } from "./obstruction";
 import { placeNear } from "./place";
@@ -12,7 +14,7 @@ import { names } from "./vertices";
 import { canvasBox, projection } from "./viewport";
 
 /** With room for its longest words, on two lines [px]. */
-const SIZE = { width: 214, height: 78 };
+const SIZE = { width: 258, height: 78 };
 /** From its corner to the read-out, past the number of a rise [px]. */
 const GAP: [number, number] = [64, 28];
 
@@ -73,6 +75,8 @@ export function Readout() {
       {field(0)}
       <small aria-hidden="true">z</small>
       {field(1)}
+      <IconButton action={insertVertex} label="Add a corner after it" icon="plus" off={false} />
+      <IconButton action={deleteSelected} label="Delete it" icon="trash" off={false} />
       <em>{chosen.length > 1 ? `${chosen.length} corners move together` : facts(i)}</em>
     </div>
   );

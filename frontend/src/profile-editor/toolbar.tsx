@@ -45,13 +45,15 @@ export function Toolbar() {
         </button>
       ))}
       <div class="sep" />
-      <IconButton action={insertVertex} label="Add vertex" icon="plus" off={isEmpty.value} />
-      <IconButton
-        action={deleteSelected}
-        label="Delete vertex"
-        icon="trash"
-        off={selection.value.length === 0}
-      />
+      <span class="wide-bar">
+        <IconButton action={insertVertex} label="Add a corner" icon="plus" off={isEmpty.value} />
+        <IconButton
+          action={deleteSelected}
+          label="Delete the corner"
+          icon="trash"
+          off={selection.value.length === 0}
+        />
+      </span>
       <IconButton action={undo} label="Undo" icon="undo" off={!canUndo.value} />
       <IconButton action={redo} label="Redo" icon="redo" off={!canRedo.value} />
       <div class="sep" />
@@ -74,7 +76,8 @@ function SnapMenu() {
   const button = (
     <>
       <Icon name="snap" />
-      <span class="sr">Snapping</span> {code.value ? code.value.note : gridName(grid.value)}
+      <span class="sr">Snapping</span>
+      <span class="lb">{code.value ? code.value.note : gridName(grid.value)}</span>
       <Icon name="down" />
     </>
   );

@@ -6,7 +6,6 @@ import { extent, type Points } from "../geometry/profile";
 
 export const RULER_X = 20;
 export const RULER_Z = 36;
-export const STRIP = 76;
 
 export const size = signal({ width: 0, height: 0 });
 /** World point at the canvas's lower left corner, and pixels per metre. */
@@ -19,7 +18,7 @@ export const canvasBox = computed(() => ({
   left: RULER_Z,
   top: RULER_X,
   right: size.value.width,
-  bottom: Math.max(RULER_X + 40, size.value.height - STRIP),
+  bottom: Math.max(RULER_X + 40, size.value.height),
 }));
 
 export const zoomPercent = computed(() => Math.round((view.value.scale / fitted.value) * 100));
