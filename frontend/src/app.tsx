@@ -13,6 +13,8 @@ import { tab } from "./state/view";
 import { Status } from "./status";
 import { ImportZone } from "./topbar/import-zone";
 import { TopBar } from "./topbar/topbar";
+import { Shortcuts, shortcutsOpen } from "./ui/shortcuts";
+import { SkipLinks } from "./ui/skip-links";
 import { Toast } from "./ui/toast";
 import { openByKey, openRoom } from "./workspaces";
 
@@ -26,6 +28,11 @@ function planState(): string {
 /** The number keys choose a workspace, all others belong to Plan while it is open. */
 function onKey(event: KeyboardEvent): void {
   if (isField(event.target) || event.defaultPrevented) return;
+  if (shortcutsOpen.peek()) return;
+  if (event.key === "?") {
+    shortcutsOpen.value = true;
+    return;
+  }
   const plain = !(event.ctrlKey || event.metaKey || event.altKey);
   if (!(plain && openByKey(event.key)) && openRoom().name === "plan") onPageKey(event);
 }
@@ -52,6 +59,7 @@ export function App() {
       data-plan={planState()}
       data-run={activity.value === "idle" ? (run.value?.outcome ?? "none") : activity.value}
     >
+      {open.name === "plan" && <SkipLinks />}
       <TopBar />
       <div class="room" hidden={open.name !== "plan"}>
         <Plan />
@@ -63,6 +71,7 @@ export function App() {
       )}
       <Status />
       <ImportZone />
+      <Shortcuts />
       <Toast />
       <div class="sr" aria-live="polite">
         {polite.value}

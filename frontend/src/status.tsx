@@ -6,11 +6,11 @@ import { connected, latency } from "./state/connection";
 import { outdated, plan } from "./state/planning";
 
 const KEYS = [
-  ["Arrows", "1 cm"],
-  ["Shift", "10 cm"],
-  ["Del", "remove"],
-  ["Ctrl Z", "undo"],
+  ["X", "swap"],
+  ["M", "maximise"],
+  ["I", "inspector"],
   ["Space", "play"],
+  ["?", "all keys"],
 ];
 
 export function Status() {

@@ -80,7 +80,7 @@ export interface Series {
 
 /** What can be played: a rollout, or as much of it as there is yet. */
 export interface Drive {
-  outcome: Outcome | "running";
+  outcome: Outcome | "running" | "cancelled";
   series: Series;
 }
 

@@ -29,8 +29,10 @@ const growing = computed(() => running.value === "a");
 const source = computed<Source>(() => {
   const limit = robot.value?.limit;
   const result = growing.value ? null : run.value;
-  const driven = growing.value ? livePlan.value : runPlan.value;
-  const drive = growing.value ? live.value : run.value;
+  // A cancelled run stays as far as it came, until there is another.
+  const part = growing.value || (!run.value && shownRun.value !== null);
+  const driven = part ? livePlan.value : runPlan.value;
+  const drive = part ? live.value : run.value;
   return {
     plan: (drive && driven) ?? plan.value,
     run: drive,

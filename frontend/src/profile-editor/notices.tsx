@@ -35,7 +35,7 @@ export function Legend() {
       {planB.value && (
         <span>
           <i class="dash" />
-          B: without
+          B: nominal pose
         </span>
       )}
     </div>

@@ -1,14 +1,16 @@
 /** Tools, edits, snapping, presets, layers and zoom. */
 
+import { useRef } from "preact/hooks";
 import { PanelTools } from "../plan/panel-tools";
 import { canRedo, canUndo, drawing, isEmpty, redo, selection, undo } from "../state/drawing";
 import { LAYERS, type Layer, layers, type Tool, toggleLayer, tool } from "../state/view";
 import { Icon } from "../ui/icon";
 import { IconButton } from "../ui/icon-button";
 import { Menu, MenuItem } from "../ui/menu";
+import { useRoving } from "../ui/roving";
 import { CODES } from "./codes";
 import { deleteSelected, insertVertex } from "./commands";
-import { code, GRIDS, grid, toNeighbours } from "./snap";
+import { code, GRIDS, grid, riserTolerance, TOLERANCES, toNeighbours } from "./snap";
 import { fit, zoomPercent } from "./viewport";
 
 const TOOLS: [Tool, string, string, string][] = [
@@ -16,7 +18,7 @@ const TOOLS: [Tool, string, string, string][] = [
   ["stair", "Stair", "S", "Drag up for one riser; with a stair code, along for a flight"],
   ["ramp", "Ramp", "R", "Drag from the foot to the top"],
   ["flat", "Flat", "F", "Drag along to level the ground"],
-  ["free", "Free", "P", "Draw a line"],
+  ["free", "Free", "P", "Click corner by corner, or drag a line; Escape ends it"],
 ];
 
 function gridName(step: number): string {
@@ -25,8 +27,10 @@ function gridName(step: number): string {
 }
 
 export function Toolbar() {
+  const bar = useRef<HTMLDivElement>(null);
+  useRoving(bar);
   return (
-    <div class="bar" role="toolbar" aria-label="Profile tools">
+    <div ref={bar} class="bar" role="toolbar" aria-label="Profile tools">
       <h2>Profile</h2>
       {TOOLS.map(([name, label, key, hint]) => (
         <button
@@ -107,6 +111,19 @@ function SnapMenu() {
           >
             Other corners' x and z
           </MenuItem>
+          <div class="head">Drawn risers become upright</div>
+          {TOLERANCES.map((off) => (
+            <MenuItem
+              key={off}
+              checked={riserTolerance.value === off}
+              onChoose={() => {
+                riserTolerance.value = off;
+                close();
+              }}
+            >
+              {off === 0 ? "Never" : `Within ${off * 100} cm`}
+            </MenuItem>
+          ))}
           <div class="head">Building codes</div>
           <MenuItem checked={code.value === null} onChoose={() => setCode(null, close)}>
             Free rise and run

@@ -1,5 +1,6 @@
 /** The 3-D scene: viser's page in a frame, with our header. */
 
+import { useRef } from "preact/hooks";
 import { hasFailed } from "../api/types";
 import { fixed } from "../geometry/format";
 import { PanelTools } from "../plan/panel-tools";
@@ -10,6 +11,7 @@ import { plan } from "../state/planning";
 import { duration, shownRun, shownTime } from "../state/playback";
 import { Icon } from "../ui/icon";
 import { Menu, MenuItem } from "../ui/menu";
+import { useRoving } from "../ui/roving";
 import { session, setCamera } from "./drive";
 
 const CAMERAS: [string, string][] = [
@@ -21,9 +23,11 @@ const CAMERAS: [string, string][] = [
 
 export function Scene() {
   const address = session.value?.scene;
+  const bar = useRef<HTMLDivElement>(null);
+  useRoving(bar);
   return (
     <>
-      <div class="ph">
+      <div ref={bar} class="ph" role="toolbar" aria-label="Scene tools">
         <h2>3-D scene</h2>
         <Menu label="Camera" button={<Icon name="camera" />} buttonClass="t ico" align="right">
           {(close) =>
@@ -93,14 +97,15 @@ function Tag() {
     return (
       <div class="tag2">
         <span class="live bad" />
-        {rollout.outcome} · t {t} s
+        {rollout.outcome} · {t} s
       </div>
     );
   }
   return (
     <div class="tag2">
-      {livePlan.value && <span class="live" />}
-      {rollout ? "rollout" : "plan"} · t {t} s
+      {livePlan.value && rollout?.outcome !== "cancelled" && <span class="live" />}
+      {rollout?.outcome === "cancelled" ? "cancelled rollout" : rollout ? "rollout" : "plan"} · {t}{" "}
+      s
     </div>
   );
 }

@@ -79,6 +79,9 @@ export function Timeline() {
   );
 }
 
+/** A number further to the right would not have room. */
+const LAST = 0.9;
+
 /** Numbers under the timeline: seconds or metres. */
 export function Ticks() {
   const step = (ticks.value[1] ?? 1) - (ticks.value[0] ?? 0);
@@ -89,7 +92,7 @@ export function Ticks() {
     <div class="ticks" aria-hidden="true">
       {ticks.value.map((value) => (
         <span key={value} style={{ left: `${shareOf(value) * 100}%` }}>
-          {fixed(value, step < 0.1 ? 2 : step < 1 ? 1 : 0)} {unit}
+          {shareOf(value) < LAST && `${fixed(value, step < 0.1 ? 2 : step < 1 ? 1 : 0)} ${unit}`}
         </span>
       ))}
     </div>
