@@ -6,12 +6,15 @@ import { isField, onPageKey, onPageKeyUp } from "./profile-editor/commands";
 import { assertive, polite } from "./state/announce";
 import { connected } from "./state/connection";
 import { isEmpty } from "./state/drawing";
+import { inspectorOpen, maximised, swapped } from "./state/layout";
 import { plan, refusal, stale } from "./state/planning";
 import { activity, run } from "./state/rollouts";
-import { inspectorOpen, swapped, tab } from "./state/view";
+import { tab } from "./state/view";
 import { Status } from "./status";
 import { ImportZone } from "./topbar/import-zone";
 import { TopBar } from "./topbar/topbar";
+import { Shortcuts, shortcutsOpen } from "./ui/shortcuts";
+import { SkipLinks } from "./ui/skip-links";
 import { Toast } from "./ui/toast";
 import { openByKey, openRoom } from "./workspaces";
 
@@ -25,6 +28,11 @@ function planState(): string {
 /** The number keys choose a workspace, all others belong to Plan while it is open. */
 function onKey(event: KeyboardEvent): void {
   if (isField(event.target) || event.defaultPrevented) return;
+  if (shortcutsOpen.peek()) return;
+  if (event.key === "?") {
+    shortcutsOpen.value = true;
+    return;
+  }
   const plain = !(event.ctrlKey || event.metaKey || event.altKey);
   if (!(plain && openByKey(event.key)) && openRoom().name === "plan") onPageKey(event);
 }
@@ -45,11 +53,13 @@ export function App() {
       data-workspace={open.name}
       data-offline={connected.value ? undefined : ""}
       data-swapped={swapped.value ? "" : undefined}
+      data-max={maximised.value ?? undefined}
       data-inspector={inspectorOpen.value ? "open" : "shut"}
       data-tab={tab.value}
       data-plan={planState()}
       data-run={activity.value === "idle" ? (run.value?.outcome ?? "none") : activity.value}
     >
+      {open.name === "plan" && <SkipLinks />}
       <TopBar />
       <div class="room" hidden={open.name !== "plan"}>
         <Plan />
@@ -61,6 +71,7 @@ export function App() {
       )}
       <Status />
       <ImportZone />
+      <Shortcuts />
       <Toast />
       <div class="sr" aria-live="polite">
         {polite.value}

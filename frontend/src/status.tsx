@@ -9,11 +9,11 @@ import { openRoom } from "./workspaces";
 
 const KEYS: Partial<Record<Workspace, string[][]>> = {
   plan: [
-    ["Arrows", "1 cm"],
-    ["Shift", "10 cm"],
-    ["Del", "remove"],
-    ["Ctrl Z", "undo"],
+    ["X", "swap"],
+    ["M", "maximise"],
+    ["I", "inspector"],
     ["Space", "play"],
+    ["?", "all keys"],
   ],
   robot: [
     ["Drag", "a dimension"],

@@ -227,8 +227,16 @@ def test_tools_draw_on_an_empty_canvas(product: Product, key: str, corners: int)
     assert product.corners() >= 2 + corners
 
 
+def _alone(product: Product) -> None:
+    """The editor has the whole stage."""
+    product.page.keyboard.press("m")
+    product.page.wait_for_function("() => document.querySelector('.ed').clientWidth > 1000")
+
+
 def test_the_ground_grows_with_a_drawn_line_from_either_side(product: Product) -> None:
     drawn = []
+    product.page.locator(".edit").hover()
+    _alone(product)  # lines this long need the whole stage
     for a, b in [((60, 380), (960, 330)), ((960, 330), (60, 380))]:
         _empty(product)
         product.page.keyboard.press("p")
@@ -239,7 +247,8 @@ def test_the_ground_grows_with_a_drawn_line_from_either_side(product: Product) -
     (x0, z0), foot, top, (x3, z3) = drawn[0]
     assert foot == (pytest.approx(x0 + 1), z0)
     assert top == (pytest.approx(x3 - 1), z3)
-    product.fresh("flat").page.keyboard.press("p")
+    _alone(product.fresh("flat"))
+    product.page.keyboard.press("p")
     _stroke(product, (600, 400), (960, 360))
     assert product.corner(product.corners() - 1)[0] > 2.0
 

@@ -31,6 +31,8 @@ export type Pose = Omit<
   contacts: Vec2[];
   com: Vec2;
   collision_points: Vec2[];
+  /** Static force of each wheel pair, tangential and normal [N]. */
+  forces?: Vec2[] | null;
 };
 
 export type Problem = Omit<Schemas["Problem"], "at"> & { at: Vec2 };
@@ -81,7 +83,7 @@ export interface Series {
 
 /** What can be played: a rollout, or as much of it as there is yet. */
 export interface Drive {
-  outcome: Outcome | "running";
+  outcome: Outcome | "running" | "cancelled";
   series: Series;
 }
 

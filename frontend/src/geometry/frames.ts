@@ -34,6 +34,14 @@ export function interpolate(
   return f === 0 ? a : a + (values[i + 1]! - a) * f;
 }
 
+/** How much later than planned a rollout was at the place where it ended [s]. */
+export function delay(plan: Plan, { series }: Drive): number {
+  const n = series.time.length;
+  if (n === 0) return 0;
+  const along = plan.poses.map((pose) => pose.progress);
+  return series.time[n - 1]! - interpolate(along, poseTimes(plan), series.progress[n - 1]!);
+}
+
 const mix = (a: number, b: number, f: number) => a + (b - a) * f;
 
 const planTimesCache = new WeakMap<Plan, number[]>();

@@ -14,6 +14,8 @@ export type SegmentKind = "flat" | "upright" | "slope";
 
 export function segmentKind(a: Vec2, b: Vec2): SegmentKind {
   const run = Math.abs(b[0] - a[0]);
+  // Two corners on one spot are no face.
+  if (run < UPRIGHT && Math.abs(b[1] - a[1]) < LEVEL) return "flat";
   if (run < UPRIGHT || Math.abs(b[1] - a[1]) > STEEP * run) return "upright";
   return Math.abs(b[1] - a[1]) < LEVEL ? "flat" : "slope";
 }

@@ -75,10 +75,10 @@ export function Inspector() {
             <span class="lab">Compare</span>
             <div class="ab">
               <span>
-                <i />A pose optimised
+                <i />A planned
               </span>
               <span>
-                <i />B without
+                <i />B nominal pose
               </span>
             </div>
             <Switch

@@ -1,7 +1,7 @@
 /** What plots are made of: lines on one time axis, from plan and rollout. */
 
 import type { Drive, Plan, Rollout } from "../api/types";
-import { interpolate, poseTimes } from "../geometry/frames";
+import { delay, interpolate, poseTimes } from "../geometry/frames";
 
 export type LineKind = "band" | "line" | "dash";
 export type Color = "tx" | "tx2" | "tx3" | "front" | "rear" | "third" | "fourth";
@@ -56,8 +56,13 @@ export type PanelId = keyof typeof PANELS;
 export function timeAxis({ plan, run }: Source): Float64Array {
   if (!run) return Float64Array.from(plan ? poseTimes(plan) : []);
   const end = run.series.time[run.series.time.length - 1] ?? 0;
+  const late = plan ? delay(plan, run) : 0;
   const tail =
-    run.outcome === "success" || !plan ? [] : poseTimes(plan).filter((t) => t > end + 1e-6);
+    run.outcome === "success" || !plan
+      ? []
+      : poseTimes(plan)
+          .map((t) => t + late)
+          .filter((t) => t > end + 1e-6);
   return Float64Array.from([...run.series.time, ...tail]);
 }
 
@@ -71,18 +76,20 @@ export function sampled(
   return time.map((_, i) => (i < n ? value(i) : Number.NaN));
 }
 
+/** The plan's values on the time axis, `late` seconds after they were planned. */
 export function planned(
   time: Float64Array,
   plan: Plan,
   value: (i: number) => number,
+  late = 0,
 ): Float64Array {
-  const times = poseTimes(plan);
+  const times = late === 0 ? poseTimes(plan) : poseTimes(plan).map((t) => t + late);
   const values = plan.poses.map((_, i) => value(i));
   const end = times[times.length - 1] ?? 0;
   return time.map((t) => (t > end + 1e-9 ? Number.NaN : interpolate(times, values, t)));
 }
 
-/** What was asked for: by the rollout's controller while it ran, by the plan after that. */
+/** What was asked for: by the controller while it ran, by the plan as it was followed after that. */
 export function desired(
   time: Float64Array,
   source: Source,
@@ -90,7 +97,9 @@ export function desired(
   ofPlan: (plan: Plan, i: number) => number,
 ): Float64Array {
   const { plan, run } = source;
-  const rest = plan ? planned(time, plan, (i) => ofPlan(plan, i)) : time.map(() => Number.NaN);
+  const rest = plan
+    ? planned(time, plan, (i) => ofPlan(plan, i), run ? delay(plan, run) : 0)
+    : time.map(() => Number.NaN);
   if (!run) return rest;
   const n = run.series.time.length;
   return time.map((_, i) => (i < n ? ofRun(run, i) : rest[i]!));

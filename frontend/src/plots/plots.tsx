@@ -1,19 +1,20 @@
 /** The row of plots, all on one clock. */
 
 import { computed, signal } from "@preact/signals";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import { hasFailed } from "../api/types";
 import { live, livePlan } from "../state/live";
 import { plan } from "../state/planning";
 import { shownRun } from "../state/playback";
 import { progress, run, runB, running, runPlan } from "../state/rollouts";
 import { compare, robot } from "../state/setup";
-import { isNarrow } from "../state/view";
 import type { Tint } from "./chart";
 import { type Panel, type PanelId, type Source, timeAxis } from "./lines";
 import { buildPanel } from "./panels";
 import { Plot } from "./plot";
+import { roomFor, rowWidth } from "./room";
 
-/** In the order of the row. On narrow pages the last ones fall away: the strip tells the margins. */
+/** In the order of the row; the last ones fall away where there is no room for them. */
 export const shownPanels = signal<readonly PanelId[]>([
   "pitch",
   "thigh",
@@ -22,16 +23,16 @@ export const shownPanels = signal<readonly PanelId[]>([
   "margins",
 ]);
 
-const MOST_NARROW = 4;
-
 /** While a rollout runs, its lines grow on the plan's bands. */
 const growing = computed(() => running.value === "a");
 
 const source = computed<Source>(() => {
   const limit = robot.value?.limit;
   const result = growing.value ? null : run.value;
-  const driven = growing.value ? livePlan.value : runPlan.value;
-  const drive = growing.value ? live.value : run.value;
+  // A cancelled run stays as far as it came, until there is another.
+  const part = growing.value || (!run.value && shownRun.value !== null);
+  const driven = part ? livePlan.value : runPlan.value;
+  const drive = part ? live.value : run.value;
   return {
     plan: (drive && driven) ?? plan.value,
     run: drive,
@@ -43,7 +44,7 @@ const source = computed<Source>(() => {
 
 const panels = computed(() => {
   const time = timeAxis(source.value);
-  const ids = isNarrow.value ? shownPanels.value.slice(0, MOST_NARROW) : shownPanels.value;
+  const ids = shownPanels.value.slice(0, roomFor(rowWidth.value));
   return ids.map((id) => buildPanel(id, source.value, time));
 });
 
@@ -69,16 +70,33 @@ const columns = (shown: readonly Panel[]) =>
   shown.map((panel) => `minmax(0, ${panel.id === "margins" ? 1.3 : 1}fr)`).join(" ");
 
 export function Plots() {
+  const row = useRef<HTMLDivElement>(null);
+  useLayoutEffect(() => {
+    const element = row.current!;
+    const observer = new ResizeObserver(() => {
+      rowWidth.value = element.clientWidth;
+    });
+    observer.observe(element);
+    return () => observer.disconnect();
+  }, []);
   const { plan: shown, run: drive } = source.value;
   if (!drive && !shown?.poses.length) {
     const why = shown
       ? "No pose was found, so there is nothing to plot."
       : "Tracking plots appear when there is a plan.";
-    return <div class="plots none">{why}</div>;
+    return (
+      <div class="plots none" ref={row}>
+        {why}
+      </div>
+    );
   }
   const dim = run.value && !shownRun.value && !growing.value;
   return (
-    <div class={dim ? "plots older" : "plots"} style={{ "--columns": columns(panels.value) }}>
+    <div
+      ref={row}
+      class={dim ? "plots older" : "plots"}
+      style={{ "--columns": columns(panels.value) }}
+    >
       {panels.value.map((panel) => (
         <Plot key={panel.id} panel={panel} tint={tint.value} />
       ))}

@@ -2,6 +2,7 @@
 
 import { computed, effect, signal } from "@preact/signals";
 import type { Drive } from "../api/types";
+import { delay } from "../geometry/frames";
 import { live, livePlan } from "../state/live";
 import { plannedEnd } from "../state/playback";
 import { run, runPlan } from "../state/rollouts";
@@ -9,10 +10,12 @@ import { run, runPlan } from "../state/rollouts";
 const chosen = signal<[number, number] | null>(null);
 /** A rollout of the previous plan keeps its own axis. */
 const end = computed(() => {
-  if (livePlan.value) return runningEnd();
+  if (livePlan.value && live.value?.outcome !== "cancelled") return runningEnd();
   const times = run.value?.series.time;
   if (!times) return plannedEnd.value;
-  const planned = run.value?.outcome === "success" ? 0 : (runPlan.value?.timing.total ?? 0);
+  const shown = runPlan.value;
+  const planned =
+    !shown || run.value?.outcome === "success" ? 0 : shown.timing.total + delay(shown, run.value!);
   return Math.max(times[times.length - 1] ?? 0, planned);
 });
 const whole = computed<[number, number]>(() => [0, Math.max(end.value, 0.5)]);

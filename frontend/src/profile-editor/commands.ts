@@ -1,10 +1,13 @@
 /** What toolbar and keyboard do to the drawing. */
 
 import { commit, drawing, redo, selection, undo } from "../state/drawing";
+import { onLayoutKey, restore } from "../state/layout";
 import { togglePlay } from "../state/playback";
 import { type Tool, tool } from "../state/view";
+import { save } from "../topbar/terrain-actions";
 import { addVertex, moveVertices, removeVertices } from "./edits";
 import { cancelGesture, holdSpace, releaseSpace } from "./gestures";
+import { liftPen } from "./pen";
 
 export const TOOL_KEYS: Record<string, Tool> = {
   v: "select",
@@ -77,6 +80,9 @@ export function onPageKey(event: KeyboardEvent): void {
       event.preventDefault();
       if (event.shiftKey) redo();
       else undo();
+    } else if (key === "s") {
+      event.preventDefault();
+      void save();
     } else if (key === "y") {
       event.preventDefault();
       redo();
@@ -89,7 +95,8 @@ export function onPageKey(event: KeyboardEvent): void {
   if (event.altKey) return;
   const next = TOOL_KEYS[key];
   if (next) tool.value = next;
-  else if (event.key === "Escape" && !cancelGesture()) {
+  else if (onLayoutKey(key)) event.preventDefault();
+  else if (event.key === "Escape" && !cancelGesture() && !liftPen() && !restore()) {
     tool.value = "select";
     selection.value = [];
   } else if (event.key === " " && !isButton(event.target)) {

@@ -23,11 +23,10 @@ import { Banner, FirstHint, Legend, Refusal, Veil } from "./notices";
 import { Obstruction } from "./obstruction";
 import { Current, Ghosts } from "./poses";
 import { Readout } from "./readout";
-import { MarginStrip } from "./strip";
 import { Dimensions, Ground, WheelPath } from "./terrain-layer";
 import { Toolbar } from "./toolbar";
 import { Guides, Stretches, Vertices } from "./vertices";
-import { canvasBox, fit, pan, size, toWorld, zoomAt } from "./viewport";
+import { canvasBox, fit, moved, pan, size, toWorld, zoomAt } from "./viewport";
 
 function targetOf(event: Event): Target {
   const element = event.target as Element;
@@ -140,7 +139,6 @@ function Canvas() {
         <Vertices />
       </g>
       <Rulers />
-      <MarginStrip />
     </svg>
   );
 }
@@ -153,9 +151,8 @@ export function Editor() {
       const first = size.peek().width === 0;
       const { clientWidth, clientHeight } = element;
       if (clientWidth === 0) return;
-      const changed = Math.abs(clientWidth - size.peek().width) > 40;
       size.value = { width: clientWidth, height: clientHeight };
-      if (first || changed) fit(drawing.peek().points);
+      if (first || !moved.peek()) fit(drawing.peek().points);
     };
     measure();
     const observer = new ResizeObserver(measure);
@@ -165,6 +162,7 @@ export function Editor() {
   return (
     <section
       class="edit"
+      data-panel="editor"
       aria-label="Profile editor"
       data-faded={outdated.value ? "" : undefined}
       data-preview={preview.value && !outdated.value ? "" : undefined}

@@ -109,8 +109,13 @@ const STAND = 1;
  * A drawn line replaces the ground below it; what follows rises or sinks to its end. Where it
  * leads beyond the ground, or there is none yet, the ground grows with it.
  */
-export function addFree(points: Points, stroke: readonly Vec2[], tolerance: number): Vec2[] {
-  const line = simplify(fromLeft(stroke).map(tidy), tolerance);
+export function addFree(
+  points: Points,
+  stroke: readonly Vec2[],
+  tolerance: number,
+  upright = 0,
+): Vec2[] {
+  const line = plumb(simplify(fromLeft(stroke).map(tidy), tolerance), upright);
   const [a, b] = [line[0], line[line.length - 1]];
   if (!a || !b || a === b) return points as Vec2[];
   const base = points.length >= 2 ? points : line;
@@ -131,9 +136,25 @@ function fromLeft(stroke: readonly Vec2[]): Vec2[] {
   const line: Vec2[] = [];
   for (const p of stroke) {
     const end = line[line.length - 1];
-    if (!end || way * (p[0] - end[0]) > 0) line.push(p);
+    const on = end ? way * (p[0] - end[0]) : 1;
+    if (on > 0 || (on === 0 && p[1] !== end![1])) line.push(p);
   }
   return way < 0 ? line.reverse() : line;
+}
+
+/** Steeper than this, a drawn stretch is meant to be a riser (60 degrees). */
+const RISER = 1.7;
+
+/** Stretches that are nearly upright become so: no corner moves further than `within`. */
+export function plumb(line: readonly Vec2[], within: number): Vec2[] {
+  const out = line.map((p): Vec2 => [p[0], p[1]]);
+  for (let i = 1; i < out.length; i++) {
+    const [a, b] = [out[i - 1]!, out[i]!];
+    const run = b[0] - a[0];
+    // The last corner of a line holds its end; all others give way to the one before.
+    if (run > 0 && run <= within && Math.abs(b[1] - a[1]) > RISER * run) b[0] = a[0];
+  }
+  return out;
 }
 
 /** Ramer-Douglas-Peucker: the fewest corners within `tolerance` of the line. */

@@ -38,7 +38,10 @@ export function EmptyCanvas() {
   return (
     <div class="emptyc">
       <h2>Draw a profile or start from a preset</h2>
-      <p>Pick a tool and click on the grid, or drop a CSV, JSON, YAML, STL or OBJ file.</p>
+      <p>
+        With Free (P), click corner by corner or drag a line. Or drop a CSV, JSON, YAML, STL or OBJ
+        file.
+      </p>
       <div class="pres">
         {found.map(({ terrain, title, note }) => (
           <button key={terrain.name} type="button" onClick={() => openStored(terrain)}>

@@ -7,7 +7,8 @@ import { commit, draft, drawing, revert, selection } from "../state/drawing";
 import { stir } from "../state/planning";
 import { dismissHint, tool } from "../state/view";
 import { addFlat, addFree, addRamp, addStairs, addVertex, moveVertices } from "./edits";
-import { code, onGrid, type Snapped, snap } from "./snap";
+import { penCorner } from "./pen";
+import { code, onGrid, type Snapped, snap, uprightWithin } from "./snap";
 import { pan, toWorld, view, zoomAt } from "./viewport";
 
 /** Guide lines of a snapped drag. */
@@ -192,7 +193,9 @@ function drawWith(d: Drag, at: Vec2, free: boolean): void {
     case "free": {
       if (d.line.length === 0) d.line.push(from);
       d.line.push(now);
-      draft({ points: addFree(d.points, d.line, 4 / view.peek().scale) });
+      draft({
+        points: addFree(d.points, d.line, 4 / view.peek().scale, uprightWithin(view.peek().scale)),
+      });
       break;
     }
   }
@@ -203,6 +206,7 @@ function place(d: Drag): void {
   const x = onGrid(d.from[0]);
   const stair = code.peek() ?? { rise: 0.15, run: 0.3 };
   const which = tool.peek();
+  if (which === "free") penCorner([x, onGrid(d.from[1])]);
   if (which === "stair") draft({ points: addStairs(d.points, x, stair, 1) });
   if (which === "ramp") draft({ points: addRamp(d.points, x, 0.6, 0.1) });
   if (which === "flat") draft({ points: addFlat(d.points, x - 0.15, x + 0.15) });

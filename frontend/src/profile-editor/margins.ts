@@ -1,7 +1,7 @@
 /** Which margins are ample, fair, thin or critical, and how they read. */
 
 import type { Margins, Plan, Pose } from "../api/types";
-import { fixed, millimetres } from "../geometry/format";
+import { fixed } from "../geometry/format";
 
 export type MarginName = keyof Margins;
 export type MarginClass = 0 | 1 | 2 | 3;
@@ -15,8 +15,15 @@ interface MarginKind {
   bounds: [number, number, number];
   /** What counts as all there could be, for the plot in percent. */
   full: number;
-  read: (worst: number, plan: Plan) => string;
+  /** What a plan's worst is called: most where less is better. */
+  extreme: "least" | "most";
+  unit: string;
+  /** What is measured, in a sentence. */
+  hint: string;
+  read: (margin: number, plan: Plan) => string;
 }
+
+const inMillimetres = (metres: number) => fixed(metres * 1000, 0);
 
 export const MARGINS: readonly MarginKind[] = [
   {
@@ -24,22 +31,40 @@ export const MARGINS: readonly MarginKind[] = [
     title: "Clearance",
     bounds: [0.002, 0.008, 0.016],
     full: 0.05,
-    read: millimetres,
+    extreme: "least",
+    unit: "mm",
+    hint: "From the robot to the terrain, least of all collision points",
+    read: inMillimetres,
   },
-  { name: "com", title: "CoM", bounds: [0.004, 0.02, 0.04], full: 0.12, read: millimetres },
+  {
+    name: "com",
+    title: "CoM",
+    bounds: [0.004, 0.02, 0.04],
+    full: 0.12,
+    extreme: "least",
+    unit: "mm",
+    hint: "From the centre of mass to the edge of the region in which contact forces can hold it",
+    read: inMillimetres,
+  },
   {
     name: "friction",
-    title: "Friction",
+    title: "μ needed",
     bounds: [0.01, 0.06, 0.14],
     full: 0.6,
-    read: (worst, plan) => `${fixed(plan.friction - worst, 2)} / ${fixed(plan.friction, 2)}`,
+    extreme: "most",
+    unit: "",
+    hint: "Least friction coefficient at which the wheels do not slip",
+    read: (margin, plan) => fixed(plan.friction - margin, 2),
   },
   {
     name: "torque",
-    title: "Torque",
+    title: "Torque left",
     bounds: [0.5, 4, 9],
     full: 33.5,
-    read: (worst) => `${fixed(worst, 1)} Nm`,
+    extreme: "least",
+    unit: "Nm",
+    hint: "From the largest static joint torque to the motors' limit",
+    read: (margin) => fixed(margin, 1),
   },
 ];
 

@@ -4,13 +4,12 @@ import { connected, retryIn, retryNow } from "../state/connection";
 import { drawing, isEmpty, selection } from "../state/drawing";
 import { plan, planB, planKept, preview, refusal, slow } from "../state/planning";
 import { activity, run } from "../state/rollouts";
-import { dismissHint, hintSeen, isNarrow, layers } from "../state/view";
+import { dismissHint, hintSeen, layers } from "../state/view";
 import { Icon } from "../ui/icon";
-import { placeNear } from "./place";
-import { projection } from "./viewport";
+import { size } from "./viewport";
 
 export function Legend() {
-  if (isEmpty.value || isNarrow.value) return null;
+  if (isEmpty.value || size.value.width < 440) return null;
   return (
     <div class="lg" aria-hidden="true">
       <span class="front">
@@ -36,7 +35,7 @@ export function Legend() {
       {planB.value && (
         <span>
           <i class="dash" />
-          B: without
+          B: nominal pose
         </span>
       )}
     </div>
@@ -87,9 +86,7 @@ export function Refusal() {
   );
 }
 
-const HINT = { width: 236, height: 84 };
-
-/** Once, on the first visit, beside the corner that is worth dragging; not under a verdict. */
+/** Once, on the first visit, in the sky, where nothing is to be reached; not under a verdict. */
 export function FirstHint() {
   const points = drawing.value.points;
   if (
@@ -100,21 +97,10 @@ export function FirstHint() {
   )
     return null;
   if (activity.value !== "idle" || run.value || !planKept.value) return null;
-  const i = Math.min(
-    points.length - 2,
-    points.findLastIndex((p, k) => k > 0 && p[1] > points[k - 1]![1]),
-  );
-  const p = points[i];
-  if (!p) return null;
-  const { px, py } = projection.value;
-  const { left, top, width, free } = placeNear([px(p[0]), py(p[1])], HINT, [18, 14], []);
   return (
-    <div
-      class={free ? "hint" : "hint through"}
-      style={{ left: `${left}px`, top: `${top}px`, width: `${width}px` }}
-    >
+    <div class="hint">
       <b>Drag a corner: the poses follow.</b>
-      <span>Then press Run rollout to see it driven.</span>
+      <span>Then run it.</span>
       <button type="button" onClick={dismissHint}>
         Got it
       </button>

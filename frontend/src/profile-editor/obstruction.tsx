@@ -5,11 +5,10 @@ import type { Problem } from "../api/types";
 import { degrees, fixed } from "../geometry/format";
 import { canUndo, undo } from "../state/drawing";
 import { outdated, plan, preview } from "../state/planning";
-import { isNarrow } from "../state/view";
 import { Icon } from "../ui/icon";
 import { lastEdit } from "./last-edit";
 import { around, overlap, type Rect } from "./place";
-import { canvasBox, centreOn, projection, size } from "./viewport";
+import { canvasBox, centreOn, projection, size, tight } from "./viewport";
 
 /** Needed amounts above this mean: no amount is enough. */
 const HOPELESS = 100;
@@ -52,7 +51,7 @@ export const card = computed<Rect | null>(() => {
   const { left, right, top, bottom } = canvasBox.value;
   const { px, py } = projection.value;
   const ring = around([px(stop.at[0]), py(stop.at[1])], 2 * RADIUS);
-  const extent = isNarrow.value ? NARROW : WIDE;
+  const extent = tight.value ? NARROW : WIDE;
   const far = right - extent.width - 16;
   const low = bottom - extent.height - 16;
   const places = [
@@ -81,7 +80,7 @@ export function Obstruction() {
       {visible && (
         <svg class="whyline" width={size.value.width} height={size.value.height} aria-hidden="true">
           <circle cx={x} cy={y} r={RADIUS} />
-          {!isNarrow.value && x > edge + 20 && (
+          {!tight.value && x > edge + 20 && (
             <path d={`M${edge} ${from}H${bend}L${x} ${y < from ? y + RADIUS : y - RADIUS}`} />
           )}
         </svg>

@@ -1,10 +1,13 @@
 /** The selected corner in numbers, beside it. */
 
+import { signal } from "@preact/signals";
 import { fixed } from "../geometry/format";
 import { segmentKind } from "../geometry/profile";
 import { commit, draft, drawing, revert, selection } from "../state/drawing";
 import { tool } from "../state/view";
+import { IconButton } from "../ui/icon-button";
 import { NumberField } from "../ui/number-field";
+import { deleteSelected, insertVertex } from "./commands";
 import { moveVertices } from "./edits";
 import { card } from "./obstruction";
 import { placeNear } from "./place";
@@ -12,7 +15,12 @@ import { names } from "./vertices";
 import { canvasBox, projection } from "./viewport";
 
 /** With room for its longest words, on two lines [px]. */
-const SIZE = { width: 214, height: 78 };
+const SIZE = { width: 258, height: 78 };
+/** A typed x that lay beyond a neighbour, and where it stopped instead. */
+const stopped = signal<{ i: number; text: string } | null>(null);
+/** Rounding is less than this [m]. */
+const NOTED = 1e-3;
+
 /** From its corner to the read-out, past the number of a rise [px]. */
 const GAP: [number, number] = [64, 28];
 
@@ -47,7 +55,13 @@ export function Readout() {
   const points = drawing.value.points;
   const set = (axis: 0 | 1) => (value: number) => {
     const by = value - p[axis];
-    draft({ points: moveVertices(points, chosen, axis === 0 ? by : 0, axis === 1 ? by : 0) });
+    const moved = moveVertices(points, chosen, axis === 0 ? by : 0, axis === 1 ? by : 0);
+    const got = moved[i]![axis];
+    stopped.value =
+      Math.abs(got - value) < NOTED
+        ? null
+        : { i, text: `x stops at ${fixed(got, 3)} m, at the next corner` };
+    draft({ points: moved });
   };
   const field = (axis: 0 | 1) => (
     <NumberField
@@ -73,7 +87,15 @@ export function Readout() {
       {field(0)}
       <small aria-hidden="true">z</small>
       {field(1)}
-      <em>{chosen.length > 1 ? `${chosen.length} corners move together` : facts(i)}</em>
+      <IconButton action={insertVertex} label="Add a corner after it" icon="plus" off={false} />
+      <IconButton action={deleteSelected} label="Delete it" icon="trash" off={false} />
+      <em aria-live="polite">
+        {stopped.value?.i === i
+          ? stopped.value.text
+          : chosen.length > 1
+            ? `${chosen.length} corners move together`
+            : facts(i)}
+      </em>
     </div>
   );
 }

@@ -11,7 +11,18 @@ export const toNeighbours = signal(true);
 /** Rise and run that steps snap to; null for none. */
 export const code = signal<StairCode | null>(null);
 
+/** What is drawn this far from upright becomes upright [m]; 0 is off. */
+export const riserTolerance = signal(0.02);
+export const TOLERANCES = [0, 0.01, 0.02, 0.05];
+
 export const GRIDS = [0, 0.001, 0.005, 0.01, 0.05];
+
+/** No hand draws a riser straighter than this [px]. */
+const SHAKE = 6;
+
+/** How far from upright a line drawn by hand may be, at `scale` pixels per metre [m]. */
+export const uprightWithin = (scale: number) =>
+  riserTolerance.peek() && Math.max(riserTolerance.peek(), SHAKE / scale);
 
 /** Nearer than this on screen, a neighbour's x or z attracts [px]. */
 const REACH = 6;

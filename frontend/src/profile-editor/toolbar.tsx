@@ -1,15 +1,16 @@
 /** Tools, edits, snapping, presets, layers and zoom. */
 
+import { useRef } from "preact/hooks";
+import { PanelTools } from "../plan/panel-tools";
 import { canRedo, canUndo, drawing, isEmpty, redo, selection, undo } from "../state/drawing";
-import { terrains } from "../state/setup";
 import { LAYERS, type Layer, layers, type Tool, toggleLayer, tool } from "../state/view";
-import { openStored } from "../topbar/terrain-actions";
 import { Icon } from "../ui/icon";
 import { IconButton } from "../ui/icon-button";
 import { Menu, MenuItem } from "../ui/menu";
+import { useRoving } from "../ui/roving";
 import { CODES } from "./codes";
 import { deleteSelected, insertVertex } from "./commands";
-import { code, GRIDS, grid, toNeighbours } from "./snap";
+import { code, GRIDS, grid, riserTolerance, TOLERANCES, toNeighbours } from "./snap";
 import { fit, zoomPercent } from "./viewport";
 
 const TOOLS: [Tool, string, string, string][] = [
@@ -17,7 +18,7 @@ const TOOLS: [Tool, string, string, string][] = [
   ["stair", "Stair", "S", "Drag up for one riser; with a stair code, along for a flight"],
   ["ramp", "Ramp", "R", "Drag from the foot to the top"],
   ["flat", "Flat", "F", "Drag along to level the ground"],
-  ["free", "Free", "P", "Draw a line"],
+  ["free", "Free", "P", "Click corner by corner, or drag a line; Escape ends it"],
 ];
 
 function gridName(step: number): string {
@@ -26,13 +27,16 @@ function gridName(step: number): string {
 }
 
 export function Toolbar() {
+  const bar = useRef<HTMLDivElement>(null);
+  useRoving(bar);
   return (
-    <div class="bar" role="toolbar" aria-label="Profile tools">
+    <div ref={bar} class="bar" role="toolbar" aria-label="Profile tools">
+      <h2>Profile</h2>
       {TOOLS.map(([name, label, key, hint]) => (
         <button
           key={name}
           type="button"
-          class={tool.value === name ? "t on" : "t"}
+          class={tool.value === name ? "t ico on" : "t ico"}
           aria-pressed={tool.value === name}
           aria-keyshortcuts={key}
           title={`${label} (${key}): ${hint}`}
@@ -41,22 +45,23 @@ export function Toolbar() {
           }}
         >
           <Icon name={name} />
-          <span class="lb">{label}</span> <kbd>{key}</kbd>
+          <span class="sr">{label}</span>
         </button>
       ))}
       <div class="sep" />
-      <IconButton action={insertVertex} label="Add vertex" icon="plus" off={isEmpty.value} />
-      <IconButton
-        action={deleteSelected}
-        label="Delete vertex"
-        icon="trash"
-        off={selection.value.length === 0}
-      />
+      <span class="wide-bar">
+        <IconButton action={insertVertex} label="Add a corner" icon="plus" off={isEmpty.value} />
+        <IconButton
+          action={deleteSelected}
+          label="Delete the corner"
+          icon="trash"
+          off={selection.value.length === 0}
+        />
+      </span>
       <IconButton action={undo} label="Undo" icon="undo" off={!canUndo.value} />
       <IconButton action={redo} label="Redo" icon="redo" off={!canRedo.value} />
       <div class="sep" />
       <SnapMenu />
-      <PresetMenu />
       <div class="grow" />
       <LayerMenu />
       <IconButton
@@ -65,7 +70,8 @@ export function Toolbar() {
         icon="fit"
         off={false}
       />
-      <span class="zoom wide">{zoomPercent.value} %</span>
+      <span class="zoom">{zoomPercent.value} %</span>
+      <PanelTools panel="editor" title="profile" />
     </div>
   );
 }
@@ -74,7 +80,8 @@ function SnapMenu() {
   const button = (
     <>
       <Icon name="snap" />
-      <span class="sr">Snapping</span> {code.value ? code.value.note : gridName(grid.value)}
+      <span class="sr">Snapping</span>
+      <span class="lb">{code.value ? code.value.note : gridName(grid.value)}</span>
       <Icon name="down" />
     </>
   );
@@ -104,7 +111,20 @@ function SnapMenu() {
           >
             Other corners' x and z
           </MenuItem>
-          <div class="head">Stairs by the code</div>
+          <div class="head">Drawn risers become upright</div>
+          {TOLERANCES.map((off) => (
+            <MenuItem
+              key={off}
+              checked={riserTolerance.value === off}
+              onChoose={() => {
+                riserTolerance.value = off;
+                close();
+              }}
+            >
+              {off === 0 ? "Never" : `Within ${off * 100} cm`}
+            </MenuItem>
+          ))}
+          <div class="head">Building codes</div>
           <MenuItem checked={code.value === null} onChoose={() => setCode(null, close)}>
             Free rise and run
           </MenuItem>
@@ -129,51 +149,10 @@ function setCode(next: (typeof CODES)[number] | null, close: () => void): void {
   close();
 }
 
-function PresetMenu() {
-  const button = (
-    <>
-      Presets
-      <Icon name="down" />
-    </>
-  );
-  return (
-    <Menu label="Presets" named button={button} buttonClass="t" panelClass="tall">
-      {(close) =>
-        terrains.value
-          .filter((terrain) => terrain.readonly)
-          .map((terrain) => (
-            <MenuItem
-              key={terrain.name}
-              checked={drawing.value.name === terrain.name}
-              onChoose={() => {
-                openStored(terrain);
-                close();
-              }}
-            >
-              <span class="two">
-                {terrain.name}
-                <small>{terrain.description}</small>
-              </span>
-            </MenuItem>
-          ))
-      }
-    </Menu>
-  );
-}
-
 function LayerMenu() {
   const all = Object.keys(LAYERS) as Layer[];
-  const button = (
-    <>
-      <Icon name="eye" />
-      <span class="lb">Layers</span>{" "}
-      <kbd class="wide">
-        {layers.value.size} of {all.length}
-      </kbd>
-    </>
-  );
   return (
-    <Menu label="Layers" named button={button} buttonClass="t" align="right">
+    <Menu label="Layers" button={<Icon name="eye" />} buttonClass="t ico" align="right">
       {() =>
         all.map((layer) => (
           <button

@@ -8,6 +8,7 @@ import { drawing, selection } from "../state/drawing";
 import { tool } from "../state/view";
 import { onVertexKey } from "./commands";
 import { dragging, guides, marquee } from "./gestures";
+import { pen } from "./pen";
 import { canvasBox, centreOn, projection } from "./viewport";
 
 export const names = computed(() => cornerNames(drawing.value.points));
@@ -115,8 +116,10 @@ export function Guides() {
   const { left, top } = canvasBox.value;
   const box = marquee.value;
   const snapped = guides.value;
+  const drawn = pen.value[pen.value.length - 1];
   return (
     <g>
+      {drawn && <circle class="pen" cx={px(drawn[0])} cy={py(drawn[1])} r={5} />}
       {p && (
         <path
           class="guide"

@@ -6,21 +6,25 @@ import { extent, type Points } from "../geometry/profile";
 
 export const RULER_X = 20;
 export const RULER_Z = 36;
-export const STRIP = 76;
 
 export const size = signal({ width: 0, height: 0 });
 /** World point at the canvas's lower left corner, and pixels per metre. */
 export const view = signal({ x: -0.75, z: -0.13, scale: 378 });
 const fitted = signal(378);
+/** Whether the user chose the view: it then stays as it is when the canvas changes its size. */
+export const moved = signal(false);
 
 export const canvasBox = computed(() => ({
   left: RULER_Z,
   top: RULER_X,
   right: size.value.width,
-  bottom: Math.max(RULER_X + 40, size.value.height - STRIP),
+  bottom: Math.max(RULER_X + 40, size.value.height),
 }));
 
 export const zoomPercent = computed(() => Math.round((view.value.scale / fitted.value) * 100));
+
+/** A canvas with little room says less. */
+export const tight = computed(() => size.value.width <= 640);
 
 const LEAST = 20;
 const MOST = 8000;
@@ -50,6 +54,7 @@ export function toWorld(x: number, y: number): Vec2 {
 
 export function pan(dx: number, dy: number): void {
   const v = view.peek();
+  moved.value = true;
   view.value = { ...v, x: v.x - dx / v.scale, z: v.z + dy / v.scale };
 }
 
@@ -57,6 +62,7 @@ export function pan(dx: number, dy: number): void {
 export function zoomAt(x: number, y: number, factor: number): void {
   const v = view.peek();
   const box = canvasBox.peek();
+  moved.value = true;
   const scale = Math.min(MOST, Math.max(LEAST, v.scale * factor));
   const [wx, wz] = toWorld(x, y);
   view.value = { scale, x: wx - (x - box.left) / scale, z: wz - (box.bottom - y) / scale };
@@ -72,6 +78,7 @@ export function fit(points: Points): void {
   const width = box.right - box.left - 2 * SIDE;
   const height = box.bottom - box.top - BELOW;
   if (width <= 0) return;
+  moved.value = false;
   const inner = points.length > 2 ? points.slice(1, -1) : points;
   const all = points.length > 1 ? extent(points) : { x: [-0.75, 1.8] as Vec2, z: [0, 0] as Vec2 };
   const mid = points.length > 2 ? extent(inner) : all;
@@ -81,7 +88,12 @@ export function fit(points: Points): void {
   const scale = Math.min(MOST, Math.max(LEAST, Math.min(width / (x1 - x0), height / tall)));
   fitted.value = scale;
   const spare = width / scale - (x1 - x0);
-  view.value = { scale, x: x0 - SIDE / scale - spare * 0.4, z: all.z[0] - BELOW / scale };
+  const above = Math.max(0, height / scale - tall);
+  view.value = {
+    scale,
+    x: x0 - SIDE / scale - spare * 0.4,
+    z: all.z[0] - BELOW / scale - above * 0.3,
+  };
 }
 
 /** Bring a place to the middle without changing the zoom. */

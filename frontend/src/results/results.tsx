@@ -54,8 +54,8 @@ function Content() {
         </h2>
         <p>
           {poses.length > 0
-            ? `The plan stops at progress ${fixed(problem.progress, 2)} m. The plots show the planned part only; fix the marked spot to run it.`
-            : "No pose was found. Fix the marked spot to run it."}
+            ? `The plan stops after ${fixed(problem.progress, 2)} m, so the plots show only that part. Change the marked spot, then run it.`
+            : "No pose was found at the start. Change the marked spot, then run it."}
         </p>
       </>
     );
@@ -95,6 +95,14 @@ function Running() {
   );
 }
 
+function keptText(): string {
+  const times = live.value?.series.time;
+  const end = times?.[times.length - 1];
+  return end
+    ? `Its first ${fixed(end, 1)} s are kept: timeline and plots show them until the next run.`
+    : "It had not begun to move, so timeline and plots show the plan.";
+}
+
 function NotRun() {
   const cancelled = activity.value === "cancelled";
   return (
@@ -103,11 +111,7 @@ function NotRun() {
         <Icon name={cancelled ? "close" : "warning"} />
         {cancelled ? "Cancelled" : "Could not run"}
       </h2>
-      <p>
-        {cancelled
-          ? "The rollout was stopped; nothing of it is kept. Timeline and plots show the plan. Run it again when you like."
-          : failure.value}
-      </p>
+      <p>{cancelled ? `The rollout was stopped. ${keptText()}` : failure.value}</p>
     </>
   );
 }
@@ -132,31 +136,27 @@ function rows(results: Rollout[]): Row[] {
   return [
     ...(results.length > 1 ? [outcome] : []),
     {
-      title: results.some(hasFailed) ? "Ended at" : "Duration",
+      title: "Duration",
       of: (m) => `${fixed(m.duration, 1)} s`,
       bad: (_m, r) => hasFailed(r),
     },
     {
       title: "Pitch error",
-      unit: "max, rms",
-      of: (m) =>
-        `${fixed(degrees(m.pitch_error_max), 1)}°, ${fixed(degrees(m.pitch_error_rms), 1)}°`,
+      unit: "largest",
+      of: (m) => `${fixed(degrees(m.pitch_error_max), 1)}°`,
       bad: (m) => m.pitch_error_max > LOST,
     },
+    { title: "Pitch error", unit: "rms", of: (m) => `${fixed(degrees(m.pitch_error_rms), 1)}°` },
     {
-      title: "Torque",
-      ...(limit ? { unit: `of ${fixed(limit, 1)}` } : {}),
+      title: "Peak torque",
+      ...(limit ? { unit: `of ${fixed(limit, 1)} Nm` } : {}),
       of: (m) => `${fixed(m.torque_peak, 1)} Nm`,
       bad: (m) => limit !== undefined && m.torque_peak >= limit - 0.05,
     },
     { title: "Energy", of: (m) => `${fixed(m.energy, 0)} J` },
     { title: "Link contacts", of: (m) => String(m.link_contacts), bad: (m) => m.link_contacts > 0 },
-    {
-      title: "Speed",
-      unit: "m/s, real time",
-      of: (m) => `${fixed(m.speed_mean, 2)}, ${fixed(m.real_time_factor, 0)}×`,
-    },
-    { title: "Solve time", of: (_m, _r, p) => (p ? took(p.solve_time) : "–") },
+    { title: "Mean speed", of: (m) => `${fixed(m.speed_mean, 2)} m/s` },
+    { title: "Planned in", of: (_m, _r, p) => (p ? took(p.solve_time) : "–") },
   ];
 }
 
@@ -209,7 +209,7 @@ function Card({ result }: { result: Rollout }) {
         )}
         <tbody>
           {rows(other ? [result, other] : [result]).map((row) => (
-            <tr key={row.title}>
+            <tr key={`${row.title} ${row.unit}`}>
               <th scope="row">
                 {row.title} {row.unit && <small>{row.unit}</small>}
               </th>
@@ -255,8 +255,7 @@ function Figures({ of }: { of: Rollout }) {
   return (
     <>
       <span>
-        {hasFailed(of) && "ended at "}
-        {fixed(m.duration, 1)} s
+        {fixed(m.duration, 1)} s{hasFailed(of) && " until it ended"}
       </span>
       <span>
         pitch error {fixed(degrees(m.pitch_error_max), 1)}° max,{" "}
@@ -264,7 +263,7 @@ function Figures({ of }: { of: Rollout }) {
       </span>
       <span>torque {fixed(m.torque_peak, 1)} Nm</span>
       <span>{m.link_contacts} link contacts</span>
-      <span>{fixed(m.real_time_factor, 0)}× real time</span>
+      <span>mean speed {fixed(m.speed_mean, 2)} m/s</span>
     </>
   );
 }

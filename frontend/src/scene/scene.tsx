@@ -1,15 +1,17 @@
 /** The 3-D scene: viser's page in a frame, with our header. */
 
+import { useRef } from "preact/hooks";
 import { hasFailed } from "../api/types";
 import { fixed } from "../geometry/format";
+import { PanelTools } from "../plan/panel-tools";
 import { connected } from "../state/connection";
 import { isEmpty } from "../state/drawing";
 import { livePlan } from "../state/live";
 import { plan } from "../state/planning";
 import { duration, shownRun, shownTime } from "../state/playback";
-import { swapped } from "../state/view";
 import { Icon } from "../ui/icon";
 import { Menu, MenuItem } from "../ui/menu";
+import { useRoving } from "../ui/roving";
 import { session, setCamera } from "./drive";
 
 const CAMERAS: [string, string][] = [
@@ -21,12 +23,12 @@ const CAMERAS: [string, string][] = [
 
 export function Scene() {
   const address = session.value?.scene;
+  const bar = useRef<HTMLDivElement>(null);
+  useRoving(bar);
   return (
     <>
-      <div class="ph">
-        <h2>
-          3-D scene<small class="wide">viser</small>
-        </h2>
+      <div ref={bar} class="ph" role="toolbar" aria-label="Scene tools">
+        <h2>3-D scene</h2>
         <Menu label="Camera" button={<Icon name="camera" />} buttonClass="t ico" align="right">
           {(close) =>
             CAMERAS.map(([preset, title]) => (
@@ -61,18 +63,7 @@ export function Scene() {
         >
           <Icon name="open" />
         </a>
-        <button
-          type="button"
-          class="t ico"
-          aria-label="Swap with the editor"
-          title="Swap with the editor"
-          aria-pressed={swapped.value}
-          onClick={() => {
-            swapped.value = !swapped.value;
-          }}
-        >
-          <Icon name="swap" />
-        </button>
+        <PanelTools panel="scene" title="scene" />
       </div>
       <div class="v3">
         {address && (
@@ -106,14 +97,15 @@ function Tag() {
     return (
       <div class="tag2">
         <span class="live bad" />
-        {rollout.outcome} · t {t} s
+        {rollout.outcome} · {t} s
       </div>
     );
   }
   return (
     <div class="tag2">
-      {livePlan.value && <span class="live" />}
-      {rollout ? "rollout" : "plan"} · t {t} s
+      {livePlan.value && rollout?.outcome !== "cancelled" && <span class="live" />}
+      {rollout?.outcome === "cancelled" ? "cancelled rollout" : rollout ? "rollout" : "plan"} · {t}{" "}
+      s
     </div>
   );
 }

@@ -40,6 +40,12 @@ export function grow({ from, ...chunk }: Chunk): void {
   live.value = { outcome: "running", series: Object.fromEntries(joined) as Series };
 }
 
+/** The run was given up: what was driven stays, and says so. */
+export function haltLive(): void {
+  if (live.peek()) live.value = { ...live.peek()!, outcome: "cancelled" };
+  else livePlan.value = null;
+}
+
 export function endLive(): void {
   live.value = null;
   livePlan.value = null;

@@ -34,6 +34,8 @@ export const planKept = computed(
 );
 /** Why the service refused the question itself (not: why the terrain is infeasible). */
 export const refusal = signal<string | null>(null);
+/** From asking for the shown plan to having it [s]. */
+export const answered = signal(0);
 /** The newest question has waited for longer than anyone would overlook. */
 export const slow = signal(false);
 export const waited = signal(0);
@@ -172,6 +174,7 @@ function showPreview(answer: Plan, question: Question, newest: boolean): void {
 function showPlan(answer: Plan, question: Question, newest: boolean): void {
   batch(() => {
     plan.value = answer;
+    answered.value = (performance.now() - question.asked) / 1000;
     preview.value = null;
     shownKey.value = question.key;
     refusal.value = null;

@@ -1,11 +1,11 @@
 /** The one clock: time on the slider, in the plots, of the robot in 2-D and 3-D. */
 
 import { computed, effect, signal } from "@preact/signals";
-import type { Drive } from "../api/types";
-import { locate, planFrame, poseTimes, runFrame } from "../geometry/frames";
+import { type Drive, hasFailed } from "../api/types";
+import { delay, locate, planFrame, poseTimes, runFrame } from "../geometry/frames";
 import { live, livePlan } from "./live";
 import { plan, stale } from "./planning";
-import { run, runStale } from "./rollouts";
+import { activity, run, runStale } from "./rollouts";
 
 export const time = signal(0);
 export const playing = signal(false);
@@ -31,7 +31,13 @@ export const duration = computed(() => {
 });
 
 /** The planned end: longer than `duration` where the robot fell on the way. */
-export const plannedEnd = computed(() => Math.max(duration.value, plan.value?.timing.total ?? 0));
+export const plannedEnd = computed(() => {
+  const shown = plan.value;
+  if (!shown) return duration.value;
+  const drive = shownRun.value;
+  const late = drive && hasFailed(drive) ? delay(shown, drive) : 0;
+  return Math.max(duration.value, shown.timing.total + late);
+});
 
 export const shownTime = computed(() => hoverTime.value ?? Math.min(time.value, duration.value));
 
@@ -93,11 +99,33 @@ export function stepKey(direction: 1 | -1): void {
   seek(next ?? (direction > 0 ? duration.peek() : 0));
 }
 
+/** A slow machine drops frames and stays on time; a page that was hidden does not leap [s]. */
+const LONGEST_FRAME = 1;
+
+const still = matchMedia("(prefers-reduced-motion: reduce)");
+
+/** A rollout that came at once, out of the store, was not seen being driven: it plays. */
+function playStored(): void {
+  let seen = false;
+  let before = run.peek();
+  effect(() => {
+    seen ||= live.value !== null;
+    const now = run.value;
+    if (now === before) return;
+    before = now;
+    if (now && !seen && !still.matches && activity.peek() === "running") {
+      time.value = 0;
+      playing.value = true;
+    }
+    if (now) seen = false;
+  });
+}
+
 export function startClock(): void {
   let last = 0;
   const tick = (now: number) => {
     if (!playing.peek()) return;
-    const dt = Math.min(0.1, (now - last) / 1000);
+    const dt = Math.min(LONGEST_FRAME, (now - last) / 1000);
     last = now;
     const next = time.peek() + dt * speed.peek();
     time.value = Math.min(next, duration.peek());
@@ -132,6 +160,7 @@ export function startClock(): void {
     playing.value = false;
     time.value = duration.value;
   });
+  playStored();
   // A new plan may be shorter than the clock stands.
   effect(() => {
     if (time.value > duration.value) time.value = duration.value;

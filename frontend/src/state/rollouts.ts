@@ -15,7 +15,7 @@ import {
 } from "../api/client";
 import type { Job, Plan, PlanRequest, Rollout } from "../api/types";
 import { report } from "./connection";
-import { type Chunk, endLive, grow, livePlan, startLive } from "./live";
+import { type Chunk, endLive, grow, haltLive, livePlan, startLive } from "./live";
 import { plan, request, settled, stale, unoptimised } from "./planning";
 import { compare, controller, disturbance, seed } from "./setup";
 
@@ -116,13 +116,14 @@ function begin(chosen: Plan): AbortController {
   return job;
 }
 
-/** A run that did not get to its end leaves the plan on screen, not an older run. */
+/** A run that did not get to its end leaves what was driven, or the plan, but not an older run. */
 function finish(how: Activity): void {
   clearTimeout(blink);
   batch(() => {
     activity.value = how;
     showProgress.value = false;
-    endLive();
+    if (how === "cancelled") haltLive();
+    else endLive();
     if (how !== "idle") forgetResults();
   });
 }

@@ -1,6 +1,9 @@
 /** How the page looks: theme, layers, layout. Nothing here changes an answer. */
 
 import { effect, signal } from "@preact/signals";
+import { store, stored } from "./kept";
+
+export { inspectorOpen } from "./layout";
 
 export type Theme = "dark" | "light";
 export type Tool = "select" | "stair" | "ramp" | "flat" | "free";
@@ -21,25 +24,7 @@ export const theme = signal<Theme>(
 );
 export const tool = signal<Tool>("select");
 export const layers = signal<ReadonlySet<Layer>>(new Set(Object.keys(LAYERS) as Layer[]));
-export const inspectorOpen = signal(true);
-export const swapped = signal(false);
 export const tab = signal<Tab>("editor");
-
-function stored(key: string): string | null {
-  try {
-    return localStorage.getItem(`stairwright.${key}`);
-  } catch {
-    return null;
-  }
-}
-
-function store(key: string, value: string): void {
-  try {
-    localStorage.setItem(`stairwright.${key}`, value);
-  } catch {
-    // Private windows may refuse; the choice then lasts for this page only.
-  }
-}
 
 export const hintSeen = signal(stored("hint") === "seen");
 

@@ -2,10 +2,12 @@
 
 import { exportUrl } from "../api/client";
 import type { ExportFormat } from "../api/types";
+import { report } from "../state/connection";
 import { drawing, isEmpty, terrainDocument } from "../state/drawing";
 import { plan } from "../state/planning";
-import { run, runOf } from "../state/rollouts";
-import { settings } from "../state/setup";
+import { run, runOf, runPlan } from "../state/rollouts";
+import { robotName, settings } from "../state/setup";
+import { toast } from "../state/toast";
 import { isNarrow } from "../state/view";
 import { Icon } from "../ui/icon";
 import { Menu } from "../ui/menu";
@@ -85,6 +87,34 @@ function Profile({ close }: { close: () => void }) {
   );
 }
 
+/** Terrain and robot, as people look for a file. */
+function fileName(kind: "plans" | "rollouts"): string {
+  const of = kind === "plans" ? plan.peek() : runPlan.peek();
+  const terrain = of?.terrain.name ?? drawing.peek().name;
+  return `${terrain}-${of?.robot ?? robotName.peek()}-${kind.slice(0, -1)}`;
+}
+
+/** Download an export under that name, with the ending that the service gives it. */
+async function saveExport(address: string, name: string): Promise<void> {
+  try {
+    const answer = await fetch(address);
+    if (!answer.ok) throw new Error(`The service answered ${answer.status}.`);
+    const given = /filename="[^"]*?((?:\.[a-z0-9]+)+)"/i;
+    const ending = given.exec(answer.headers.get("content-disposition") ?? "")?.[1] ?? "";
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(await answer.blob());
+    link.download = name + ending;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), KEPT);
+  } catch (error) {
+    report(error);
+    toast.value = { text: `Not downloaded: ${error instanceof Error ? error.message : error}` };
+  }
+}
+
+/** Until then browsers have read what is downloaded [ms]. */
+const KEPT = 60_000;
+
 interface ExportsProps {
   title: string;
   kind: "plans" | "rollouts";
@@ -105,7 +135,11 @@ function Exports({ title, kind, id, formats, close }: ExportsProps) {
           tabIndex={-1}
           href={exportUrl(kind, id, name)}
           download=""
-          onClick={() => setTimeout(close)}
+          onClick={(event) => {
+            event.preventDefault();
+            void saveExport(exportUrl(kind, id, name), fileName(kind));
+            close();
+          }}
         >
           <b>{name.toUpperCase()}</b>
           <small>{note}</small>

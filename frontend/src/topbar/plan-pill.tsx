@@ -4,7 +4,7 @@ import { fixed, took } from "../geometry/format";
 import { nearestCorner } from "../geometry/profile";
 import { connected } from "../state/connection";
 import { drawing, isEmpty } from "../state/drawing";
-import { plan, preview, refusal, slow, waited } from "../state/planning";
+import { answered, plan, preview, refusal, slow, waited } from "../state/planning";
 import { Icon } from "../ui/icon";
 
 export function PlanPill() {
@@ -75,10 +75,16 @@ export function PlanPill() {
     );
   }
   return (
-    <div class="pill">
+    <div
+      class="pill"
+      title={`This answer came after ${took(answered.value)}; the planner took ${took(shown!.solve_time)} when it solved it`}
+    >
       <Icon name="check" />
       <b>Feasible</b>
-      <span class="wide">solved in {took(shown!.solve_time)}</span>
+      <span class="wide">
+        {shown!.certificate?.passed ? "certified, " : ""}
+        {took(answered.value)}
+      </span>
     </div>
   );
 }

@@ -23,7 +23,15 @@ export function RunButton() {
           Running {running.value === "b" && "B "}
           {percent} %{left && <small>{left}</small>}
         </span>
-        <button type="button" class="x" onClick={() => cancelRollout()}>
+        <button
+          type="button"
+          class="x"
+          onClick={() => {
+            cancelRollout();
+            // This button goes away: the focus goes to the one that takes its place.
+            requestAnimationFrame(() => document.querySelector<HTMLElement>(".top .pri")?.focus());
+          }}
+        >
           <Icon name="close" />
           Cancel
         </button>

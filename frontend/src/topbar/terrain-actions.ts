@@ -39,19 +39,40 @@ function fail(error: unknown): void {
   terrainError.value = error instanceof Error ? error.message : String(error);
 }
 
-export async function saveAs(name: string): Promise<boolean> {
+/** Save the drawing; what it replaces can be brought back. */
+export async function saveAs(name: string, description: string): Promise<boolean> {
+  const before = terrains.peek().find((t) => t.name === name && !t.readonly);
   try {
-    const saved = await putTerrain({ ...terrainDocument(committed.peek()), name });
+    const saved = await putTerrain({ ...terrainDocument(committed.peek()), name, description });
     terrains.value = await getTerrains();
     origin.value = terrains.peek().find((t) => t.name === saved.name) ?? saved;
-    drawing.value = { ...drawing.peek(), name: saved.name };
+    drawing.value = { ...drawing.peek(), name: saved.name, description };
     committed.value = drawing.peek();
     terrainError.value = null;
+    toast.value = before
+      ? { text: `${name} is replaced.`, undo: () => void putBack(before, false) }
+      : { text: `Saved as ${name}.` };
     return true;
   } catch (error) {
     fail(error);
     return false;
   }
+}
+
+/** A preset keeps its name to itself: a changed one is saved under another. */
+export function suggestedName(): string {
+  const { name } = drawing.peek();
+  const taken = terrains.peek().some((t) => t.name === name && t.readonly);
+  return taken || name === "Untitled" ? `${name === "Untitled" ? "terrain" : name}-mine` : name;
+}
+
+/** A preset's description is of the preset, not of what was made of it. */
+export const suggestedDescription = (): string =>
+  origin.peek()?.readonly ? "" : drawing.peek().description;
+
+/** Ctrl+S: under its own name, or a preset's with an ending. */
+export async function save(): Promise<void> {
+  if (drawing.peek().points.length >= 2) await saveAs(suggestedName(), suggestedDescription());
 }
 
 export async function removeStored(terrain: TerrainDocument): Promise<void> {

@@ -7,7 +7,15 @@ import { terrains } from "../state/setup";
 import { Icon } from "../ui/icon";
 import { Menu } from "../ui/menu";
 import { GenerateForm } from "./generate-form";
-import { openStored, removeStored, saveAs, takeFile, terrainError } from "./terrain-actions";
+import {
+  openStored,
+  removeStored,
+  saveAs,
+  suggestedDescription,
+  suggestedName,
+  takeFile,
+  terrainError,
+} from "./terrain-actions";
 
 export function TerrainMenu({ button }: { button: ComponentChildren }) {
   return (
@@ -112,18 +120,12 @@ function choose(terrain: Parameters<typeof openStored>[0], close: () => void): v
   close();
 }
 
-/** A preset keeps its name to itself: a changed one is saved under another. */
-function suggestion(): string {
-  const { name } = drawing.peek();
-  const taken = terrains.peek().some((t) => t.name === name && t.readonly);
-  return taken || name === "Untitled" ? `${name === "Untitled" ? "terrain" : name}-mine` : name;
-}
-
 function SaveForm({ close }: { close: () => void }) {
-  const [name, setName] = useState(suggestion);
+  const [name, setName] = useState(suggestedName);
+  const [about, setAbout] = useState(suggestedDescription);
   const save = async (event: Event) => {
     event.preventDefault();
-    if (await saveAs(name.trim())) close();
+    if (await saveAs(name.trim(), about.trim())) close();
   };
   return (
     <form class="save" onSubmit={save}>
@@ -136,6 +138,15 @@ function SaveForm({ close }: { close: () => void }) {
           pattern="[\w .+\-]*\w[\w .+\-]*"
           title="A letter or digit at least; besides those space and . + - _"
           onInput={(event) => setName(event.currentTarget.value)}
+        />
+      </label>
+      <label>
+        <span>Description</span>
+        <input
+          value={about}
+          maxLength={500}
+          placeholder="none"
+          onInput={(event) => setAbout(event.currentTarget.value)}
         />
       </label>
       <button type="submit" class="btn" disabled={isEmpty.value}>

@@ -1,0 +1,100 @@
+/** The clock as a slider, with the key poses on it. */
+
+import { hasFailed } from "../api/types";
+import { fixed } from "../geometry/format";
+import {
+  duration,
+  keyTimes,
+  plannedEnd,
+  playing,
+  seek,
+  shownRun,
+  shownTime,
+  time,
+  togglePlay,
+} from "../state/playback";
+import { progress, running } from "../state/rollouts";
+import { axisKind, cursor, ends, shareOf, shareOfTime, ticks, timeAt } from "./axis";
+
+const STEP = 0.1;
+const LEAP = 1;
+
+export function Timeline() {
+  const end = plannedEnd.value;
+  const percent = (share: number) => `${share * 100}%`;
+  const growing = running.value === "a";
+  const failed = hasFailed(shownRun.value);
+  const at = (event: PointerEvent) => {
+    const rect = (event.currentTarget as HTMLElement).getBoundingClientRect();
+    playing.value = false;
+    seek(timeAt((event.clientX - rect.left) / rect.width));
+  };
+  const onKeyDown = (event: KeyboardEvent) => {
+    const to: Record<string, number> = {
+      ArrowRight: time.peek() + STEP,
+      ArrowLeft: time.peek() - STEP,
+      ArrowUp: time.peek() + STEP,
+      ArrowDown: time.peek() - STEP,
+      PageUp: time.peek() + LEAP,
+      PageDown: time.peek() - LEAP,
+      Home: 0,
+      End: duration.peek(),
+    };
+    if (event.key === " ") {
+      event.preventDefault();
+      togglePlay();
+    }
+    const next = to[event.key];
+    if (next === undefined) return;
+    event.preventDefault();
+    playing.value = false;
+    seek(next);
+  };
+  return (
+    <div
+      class="scrub"
+      role="slider"
+      tabIndex={0}
+      aria-label="Time"
+      aria-valuemin={0}
+      aria-valuemax={end}
+      aria-valuenow={shownTime.value}
+      aria-valuetext={`${fixed(shownTime.value, 2)} s of ${fixed(end, 2)} s`}
+      onPointerDown={(event) => {
+        event.currentTarget.setPointerCapture(event.pointerId);
+        at(event);
+      }}
+      onPointerMove={(event) => event.buttons === 1 && at(event)}
+      onKeyDown={onKeyDown}
+    >
+      <s
+        class={growing ? "buf" : failed ? "fell" : ""}
+        style={{ width: percent(growing ? progress.value : cursor.value) }}
+      />
+      {keyTimes.value.map((at, k) => (
+        <i key={k} style={{ left: percent(shareOfTime(at)) }} title={`Key pose ${k + 1}`} />
+      ))}
+      {end > 0 && <em style={{ left: percent(cursor.value) }} />}
+    </div>
+  );
+}
+
+/** A number further to the right would not have room. */
+const LAST = 0.9;
+
+/** Numbers under the timeline: seconds or metres. */
+export function Ticks() {
+  const step = (ticks.value[1] ?? 1) - (ticks.value[0] ?? 0);
+  const unit = axisKind.value === "time" ? "s" : "m";
+  const [from, to] = ends.value;
+  if (!(to > from)) return <div class="ticks" />;
+  return (
+    <div class="ticks" aria-hidden="true">
+      {ticks.value.map((value) => (
+        <span key={value} style={{ left: `${shareOf(value) * 100}%` }}>
+          {shareOf(value) < LAST && `${fixed(value, step < 0.1 ? 2 : step < 1 ? 1 : 0)} ${unit}`}
+        </span>
+      ))}
+    </div>
+  );
+}

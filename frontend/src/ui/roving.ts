@@ -1,0 +1,41 @@
+/** A toolbar is one stop of the Tab key; arrows walk its buttons. */
+
+import type { RefObject } from "preact";
+import { useLayoutEffect } from "preact/hooks";
+
+const items = (bar: HTMLElement) =>
+  [...bar.querySelectorAll<HTMLElement>("button:not([disabled]), a[href]")].filter(
+    (each) => !each.closest(".panel") && each.getClientRects().length > 0,
+  );
+
+function tend(bar: HTMLElement): void {
+  const all = items(bar);
+  const active = document.activeElement as HTMLElement;
+  const one = all.includes(active) ? active : (all.find((each) => each.tabIndex === 0) ?? all[0]);
+  for (const each of all) each.tabIndex = each === one ? 0 : -1;
+}
+
+export function useRoving(root: RefObject<HTMLElement | null>): void {
+  // After each render: what can be pressed may be another.
+  useLayoutEffect(() => {
+    const bar = root.current;
+    if (!bar) return;
+    tend(bar);
+    const onFocus = () => tend(bar);
+    const onKey = (event: KeyboardEvent) => {
+      const all = items(bar);
+      const at = all.indexOf(event.target as HTMLElement);
+      const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: -1 }[event.key];
+      if (at < 0 || to === undefined) return;
+      event.preventDefault();
+      event.stopPropagation();
+      all.at(to >= all.length ? 0 : to)?.focus();
+    };
+    bar.addEventListener("focusin", onFocus);
+    bar.addEventListener("keydown", onKey);
+    return () => {
+      bar.removeEventListener("focusin", onFocus);
+      bar.removeEventListener("keydown", onKey);
+    };
+  });
+}

@@ -1,0 +1,100 @@
+"""Plan's layout: splitters that remember, swap, maximise, inspector, nothing over anything."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+
+from .conftest import Product
+
+if TYPE_CHECKING:
+    from playwright.sync_api import FloatRect, Locator
+
+pytestmark = [pytest.mark.browser]
+
+
+@pytest.fixture
+def product(shared: Product) -> Iterator[Product]:
+    """The page that these tests share."""
+    shared.errors.clear()
+    shared.page.keyboard.press("Escape")
+    yield shared
+    assert shared.errors == []
+
+
+def _box(found: Locator) -> FloatRect:
+    where = found.bounding_box()
+    assert where is not None
+    return where
+
+
+def _editor(product: Product) -> FloatRect:
+    return _box(product.page.get_by_role("region", name="Profile editor"))
+
+
+def _scene(product: Product) -> FloatRect:
+    return _box(product.page.get_by_role("region", name="3-D scene"))
+
+
+def test_profile_and_scene_are_equals_and_the_splitter_remembers(product: Product) -> None:
+    page = product.page
+    assert _editor(product)["width"] == pytest.approx(_scene(product)["width"], abs=1)
+    assert _editor(product)["height"] == pytest.approx(_scene(product)["height"], abs=1)
+    bar = page.get_by_role("separator", name="Width of profile and scene")
+    at = _box(bar)
+    x, y = at["x"] + at["width"] / 2, at["y"] + at["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 120, y, steps=4)
+    page.mouse.up()
+    wide = _editor(product)["width"]
+    assert wide == pytest.approx(_scene(product)["width"] + 240, abs=3)
+    page.reload()
+    product.planned()
+    assert _editor(product)["width"] == pytest.approx(wide, abs=1)
+    bar.press("Home")
+    assert bar.get_attribute("aria-valuenow") == "25"
+    bar.press("ArrowRight")
+    assert bar.get_attribute("aria-valuenow") == "27"
+    bar.dblclick()
+    assert bar.get_attribute("aria-valuenow") == "50"
+
+
+def test_the_dock_has_a_splitter(product: Product) -> None:
+    bar = product.page.get_by_role("separator", name="Height of results and plots")
+    plot = product.page.get_by_role("region", name="Pitch, nose-up", exact=True)
+    before = _box(plot)["height"]
+    bar.press("Shift+ArrowUp")
+    assert _box(plot)["height"] == pytest.approx(before + 90, abs=1)
+    bar.press("Enter")
+    assert _box(plot)["height"] == pytest.approx(before, abs=1)
+
+
+def test_swap_maximise_and_restore(product: Product) -> None:
+    page = product.page
+    assert _editor(product)["x"] < _scene(product)["x"]
+    page.keyboard.press("x")
+    assert _editor(product)["x"] > _scene(product)["x"]
+    page.get_by_role("button", name="Swap profile and scene").first.click()
+    assert _editor(product)["x"] < _scene(product)["x"]
+    both = _editor(product)["width"] + _scene(product)["width"]
+    page.get_by_role("button", name="Maximise the scene").click()
+    assert _scene(product)["width"] == pytest.approx(both, abs=1)
+    assert not page.get_by_role("region", name="Profile editor").is_visible()
+    page.keyboard.press("Escape")
+    page.locator(".edit").hover()
+    page.keyboard.press("m")
+    assert _editor(product)["width"] == pytest.approx(both, abs=1)
+    page.keyboard.press("m")
+    assert _scene(product)["width"] == pytest.approx(both / 2, abs=1)
+
+
+def test_a_closed_inspector_leaves_its_room_to_the_stage(product: Product) -> None:
+    page = product.page
+    before = _scene(product)["width"] + _editor(product)["width"]
+    page.keyboard.press("i")
+    assert _scene(product)["width"] + _editor(product)["width"] > before + 200
+    page.get_by_role("button", name="Expand inspector").click()
+    assert _scene(product)["width"] + _editor(product)["width"] == pytest.approx(before, abs=1)

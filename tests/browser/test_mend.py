@@ -1,0 +1,146 @@
+"""What first-time users stumbled over: the pen, limits, saving, keys, what a cancel leaves."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+
+from .conftest import TERRAIN, Product
+
+if TYPE_CHECKING:
+    from playwright.sync_api import FloatRect
+
+pytestmark = [pytest.mark.browser]
+
+
+@pytest.fixture
+def product(shared: Product) -> Iterator[Product]:
+    """The page that these tests share, showing three stairs."""
+    shared.errors.clear()
+    yield shared.fresh()
+    assert shared.errors == []
+
+
+def _canvas(product: Product) -> FloatRect:
+    box = product.page.locator(".ed").bounding_box()
+    assert box is not None
+    return box
+
+
+def test_clicks_with_the_pen_draw_corners_and_risers_stand_upright(product: Product) -> None:
+    page = product.page
+    page.get_by_role("button", name=TERRAIN).click()
+    page.get_by_role("button", name="New", exact=True).click()
+    page.keyboard.press("p")
+    box = _canvas(product)
+    for x, y in ((150, 330), (250, 330), (252, 300), (400, 300)):
+        page.mouse.click(box["x"] + x, box["y"] + y)
+    product.planned()
+    points = [product.corner(i) for i in range(product.corners())]
+    foot = next(i for i in range(1, len(points)) if points[i][1] > points[i - 1][1] + 0.02)
+    assert points[foot][0] == points[foot - 1][0]
+    page.keyboard.press("Control+z")  # the last click
+    assert product.corners() < len(points) or product.corner(product.corners() - 1) != points[-1]
+    page.keyboard.press("Escape")
+
+
+def test_a_line_drawn_by_hand_keeps_its_risers_upright(product: Product) -> None:
+    page = product.page
+    product.choose_terrain("flat")
+    page.keyboard.press("p")
+    box = _canvas(product)
+    page.mouse.move(box["x"] + 200, box["y"] + 330)
+    page.mouse.down()
+    for x, y in ((260, 330), (262, 315), (263, 290), (264, 280), (340, 280)):
+        page.mouse.move(box["x"] + x, box["y"] + y, steps=4)
+    page.mouse.up()
+    product.planned()
+    points = [product.corner(i) for i in range(product.corners())]
+    rises = [(a, b) for a, b in itertools.pairwise(points) if b[1] - a[1] > 0.05]
+    assert rises
+    assert all(a[0] == b[0] for a, b in rises)
+
+
+def test_an_x_beyond_a_neighbour_says_where_it_stopped(product: Product) -> None:
+    product.vertex(3).focus()
+    field = product.page.get_by_label("x of the corner in metres")
+    field.fill("99")
+    field.press("Enter")
+    limit = product.corner(4)[0]
+    product.page.locator(".ro em").get_by_text(f"x stops at {limit:.3f} m").wait_for()
+    words = product.vertex(3).get_attribute("aria-label") or ""
+    assert "drop" not in words
+    product.page.keyboard.press("Escape")
+
+
+def test_saving_over_a_terrain_can_be_undone_and_descriptions_can_be_edited(
+    product: Product,
+) -> None:
+    page = product.page
+    product.drag(6, 0, -20).planned()
+    page.keyboard.press("Control+s")
+    page.locator(".toast").get_by_text("Saved as three-stairs-up-mine").wait_for()
+    first = product.corner(6)
+    product.drag(6, 0, -20).planned()
+    page.get_by_role("button", name=TERRAIN).click()
+    page.get_by_label("Description").fill("higher")
+    page.get_by_role("button", name="Save", exact=True).click()
+    page.locator(".toast").get_by_text("three-stairs-up-mine is replaced").wait_for()
+    page.locator(".toast").get_by_role("button", name="Undo").click()
+    product.choose_terrain("ramp-30deg-025")
+    product.choose_terrain("three-stairs-up-mine")
+    assert product.corner(6) == first
+    page.get_by_role("button", name=TERRAIN).click()
+    page.get_by_role("button", name="Delete three-stairs-up-mine").click()
+    page.keyboard.press("Escape")
+
+
+def test_question_mark_lists_the_keys(product: Product) -> None:
+    product.page.keyboard.press("?")
+    sheet = product.page.get_by_role("dialog", name="Keys")
+    sheet.get_by_text("swap profile and scene").wait_for()
+    product.page.keyboard.press("Escape")
+    sheet.wait_for(state="detached")
+
+
+def test_skip_links_and_one_stop_for_a_toolbar(product: Product) -> None:
+    page = product.page
+    page.evaluate("document.activeElement.blur()")
+    page.get_by_role("button", name="Skip to the profile").focus()
+    page.keyboard.press("Enter")
+    assert product.focused() == 0
+    bar = page.get_by_role("toolbar", name="Profile tools")
+    stops = bar.locator("button:visible").evaluate_all("all => all.filter(b => b.tabIndex >= 0)")
+    assert len(stops) == 1
+    page.get_by_role("button", name=re.compile("^Select")).focus()
+    page.keyboard.press("ArrowRight")
+    assert page.evaluate("document.activeElement.title").startswith("Stair")
+
+
+def test_the_pose_is_told_and_copied(product: Product) -> None:
+    page = product.page
+    row = page.get_by_role("region", name="Pose at the cursor")
+    page.get_by_role("slider", name="Time").press("Home")
+    before = row.inner_text()
+    page.get_by_role("slider", name="Time").press("PageUp")
+    assert row.inner_text() != before
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    row.get_by_role("button", name="Copy the pose").click()
+    page.locator(".toast").get_by_text("Pose copied").wait_for()
+    text = page.evaluate("navigator.clipboard.readText()")
+    for words in ("nose-up", "front thigh", "rear normal force", "Clearance"):
+        assert words in text
+
+
+def test_margins_run_along_time_or_place(product: Product) -> None:
+    page = product.page
+    ticks = page.locator(".ticks")
+    assert " s" in ticks.inner_text()
+    page.get_by_role("button", name="Place", exact=True).click()
+    assert " m" in ticks.inner_text()
+    assert page.locator(".rows .bars[d]:not([d=''])").count() > 0
+    page.get_by_role("button", name="Time", exact=True).click()

@@ -1,0 +1,90 @@
+"""Nothing lies over anything and nothing is cut off, in any state, at any size, in both themes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from .conftest import DESK, PHONE, Product
+
+if TYPE_CHECKING:
+    from playwright.sync_api import ViewportSize
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+FAULTS = Path(__file__).with_name("overlap.js").read_text(encoding="utf-8")
+SIZES: list[ViewportSize] = [
+    {"width": 1280, "height": 720},
+    DESK,
+    {"width": 1920, "height": 1080},
+    PHONE,
+]
+TABS = ("Scene", "Results", "Profile")
+# Two frames: what a new size changes has been laid out then.
+DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+
+
+def _faults(product: Product) -> list[str]:
+    product.page.evaluate(DRAWN)
+    return [str(fault) for fault in product.page.evaluate(FAULTS)]
+
+
+def _everywhere(product: Product) -> list[str]:
+    """The faults at all sizes, in both themes; on a phone in each of its tabs."""
+    page = product.page
+    found = []
+    for theme in ("light", "dark"):
+        if page.evaluate("document.documentElement.dataset.theme") != theme:
+            page.locator("[aria-label*=theme]").click()
+        for size in SIZES:
+            page.set_viewport_size(size)
+            areas = page.get_by_role("navigation", name="Areas")
+            for tab in TABS if size == PHONE else ("",):
+                if tab:
+                    areas.get_by_role("button", name=tab).click()
+                found += [f"{theme} {size['width']} {tab}: {f}" for f in _faults(product)]
+    page.set_viewport_size(DESK)
+    return found
+
+
+@pytest.fixture
+def product(shared: Product) -> Iterator[Product]:
+    """The page that these tests share, showing three stairs."""
+    shared.errors.clear()
+    yield shared.fresh()
+    assert shared.errors == []
+
+
+def test_the_check_finds_what_is_cut_off_or_covered(product: Product) -> None:
+    page = product.page
+    assert _faults(product) == []
+    for style in ("width: 20px; overflow: hidden", "position: relative; left: 60px"):
+        page.locator(".bar h2").evaluate("(h, style) => { h.style.cssText = style }", style)
+        assert any("Profile" in fault for fault in _faults(product))
+    page.locator(".bar h2").evaluate("h => { h.style.cssText = '' }")
+    assert _faults(product) == []
+
+
+def test_a_planned_page_has_no_overlaps(product: Product) -> None:
+    assert _everywhere(product) == []
+
+
+def test_a_comparison_has_no_overlaps(product: Product) -> None:
+    switch = product.page.get_by_role("switch", name="Compare A with B")
+    switch.click()
+    product.run()
+    assert _everywhere(product) == []
+    switch.click()
+
+
+def test_a_refusal_has_no_overlaps(product: Product) -> None:
+    product.vertex(0).focus()
+    field = product.page.get_by_label("x of the corner in metres")
+    field.fill("-0.1")
+    field.press("Enter")
+    product.planned()
+    assert product.status == "infeasible"
+    assert _everywhere(product) == []
