@@ -93,7 +93,7 @@ Estimator::Rotation Estimator::rotation() const {
 const Estimate& Estimator::step(const Readings& readings, double dt) {
     predict(readings, dt);
     see_legs(readings, dt);
-    estimate_.searching = {};
+    estimate_.searching = {}, estimate_.hanging = false;
     for (int i = 0; i < 4; ++i) measure(i, readings, dt);
     started_ = true;
     report(readings);
@@ -184,14 +184,23 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const double motion = kForceAtRest + (1.0 - kForceAtRest) * std::min(1.0, speed / kForceSpeed);
     belief.force_deviation = motion * (noise_.force * weight_ + 0.15 * norm(w.felt));
     const CurveMatch on = match(path_, belief, w.s, kWindow);
+    const bool touching = std::max({dot(w.felt, on.point.normal), dot(w.felt, on.before), dot(w.felt, on.after)}) > kTouching * weight_ / 4;
+    const double before = w.s;
     w.s = on.s;
+    if (!touching && on.s > before) {  // in the air no wheel gets past a corner
+        const std::size_t corner = path_.corner_from(before - kNearCorner);
+        if (corner < path_.corners().size() && path_.corners()[corner] < on.s) {
+            w.s = std::max(before, path_.corners()[corner]);
+            estimate_.hanging = true;
+        }
+    }
     enter_face(i, on);
     const std::size_t next = path_.corner_from(on.s);
     const double room = next < path_.corners().size() ? path_.corners()[next] - on.s : kRoom;
     estimate_.on_tread[i / 2] = !on.corner && on.point.normal.z > kTread && room >= kRoom;
 
     w.at_corner = on.corner ? w.at_corner + dt : 0.0;
-    estimate_.touching[i] = std::max({dot(w.felt, on.point.normal), dot(w.felt, on.before), dot(w.felt, on.after)}) > kTouching * weight_ / 4;
+    estimate_.touching[i] = touching;
     if (!estimate_.touching[i]) return;
     Error error{};
     if (!on.corner || w.at_corner > kSure) measure_place(i, on, along_x, along_z, centre, dt, error);

@@ -53,7 +53,7 @@ Perceived Rollout::perceive(std::span<const double> noise) {
 const control::Reference& Rollout::target(const Perceived& seen, bool moving, double time) {
     if (safe_stop_.why() != control::Stop::none) return stand_;
     const bool searching = moving && seen.ahead.any();
-    const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt_);
+    const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt_, seen.ahead.hanging);
     if (!seen.places) return drawn;
     adapted_ = face_search_.step(leg_fit_.fit(drawn, seen.ground, dt_), searching ? seen.ahead : control::Ahead{}, *seen.places, dt_);
     const control::Reference& next = adapted_;
