@@ -212,9 +212,10 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
 void Estimator::enter_face(int i, const CurveMatch& on) {
     WheelState& w = wheels_[i];
     if (on.corner || on.piece == w.face || path_.pieces()[on.piece].arc) return;
+    const bool tread = on.point.normal.z > kTread, was_tread = path_.pieces()[w.face].at(0.0, path_.radius()).normal.z > kTread;
     w.face = on.piece, w.put_back = 0.0;
+    if (tread && was_tread) return;
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
-    const bool tread = on.point.normal.z > kTread;
     const double error = tread ? noise_.face_place : noise_.tread_height;
     covariance_.add_noise(tread ? own : own + 1, 0.5 * error * error);
 }
