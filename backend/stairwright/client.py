@@ -28,6 +28,7 @@ from stairwright.terrain.profile import Terrain
 
 if TYPE_CHECKING:
     from stairwright.simulation.result import Rollout
+    from stairwright.simulation.trials import Trials
 
 M = TypeVar("M", bound=Model)
 Progress = Callable[[float], object]
@@ -191,10 +192,37 @@ class Client:
             body |= {"plan_id": plan_id}
             if friction is not None:
                 body["friction"] = friction
+        return self._start("/rollouts", body)
+
+    def trials(
+        self,
+        plan_id: str,
+        count: int = 29,
+        bundle: str | None = None,
+        *,
+        progress: Progress | None = None,
+        timeout: float = 3600.0,
+        **question: Any,
+    ) -> Trials:
+        """Roll a stored plan out many times under random deviations, and wait.
+
+        `question` may hold friction, controller, seed, and `ranges` instead of a bundle.
+
+        Raises:
+            ServiceError: If the job fails or is cancelled.
+            TimeoutError: If it takes longer than `timeout` [s]; the job is cancelled then.
+        """
+        from stairwright.simulation.trials import Trials
+
+        body = {"plan_id": plan_id, "count": count, "bundle": bundle, **question}
+        job = self.wait(self._start("/trials", body).id, progress=progress, timeout=timeout)
+        return parse(Trials, self._json("GET", f"/trials/{_result_of(job)}"))
+
+    def _start(self, path: str, body: Mapping[str, Any]) -> JobState:
         headers = {"idempotency-key": secrets.token_hex(16)}
         for attempt in (1, 2, 3):
             try:
-                return JobState.told(self._json("POST", "/rollouts", json=body, headers=headers))
+                return JobState.told(self._json("POST", path, json=body, headers=headers))
             except httpx.TransportError:
                 if attempt == 3:
                     raise
@@ -236,9 +264,7 @@ class Client:
         Raises:
             ServiceError: If it failed or was cancelled.
         """
-        if job.result is None:
-            raise ServiceError(job.error or {"detail": f"the job is {job.state}"})
-        return self.get_rollout(job.result.rsplit("/", 1)[-1])
+        return self.get_rollout(_result_of(job))
 
     def get_rollout(self, rollout_id: str) -> Rollout:
         """A stored rollout."""
@@ -284,6 +310,12 @@ def _question(
     if friction is not None:
         body["friction"] = friction
     return {**body, "weights": dict(weights or {})}
+
+
+def _result_of(job: JobState) -> str:
+    if job.result is None:
+        raise ServiceError(job.error or {"detail": f"the job is {job.state}"})
+    return job.result.rsplit("/", 1)[-1]
 
 
 def _plain(source: str | Model | Mapping[str, Any]) -> Any:

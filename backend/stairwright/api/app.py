@@ -33,6 +33,7 @@ from .routes import (
     sessions,
     studies,
     terrains,
+    trials,
     tuning,
 )
 from .services import Services
@@ -97,6 +98,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         plans,
         live,
         rollouts,
+        trials,
         jobs,
         studies,
         sessions,

@@ -12,6 +12,8 @@ from stairwright.export.table import Kind as Exported
 from stairwright.planning.plan import Method, Plan
 from stairwright.robot.description import Robot
 from stairwright.simulation.disturbance import Disturbance
+from stairwright.simulation.ranges import Ranges
+from stairwright.simulation.trials import MOST_TRIALS
 from stairwright.terrain.generation import Friction, Name
 from stairwright.terrain.profile import Terrain
 
@@ -92,17 +94,8 @@ class PlanRequest(Model):
     weights: Weights = Field(None, description="cost weights by name, see GET /settings")
 
 
-class RolloutRequest(Model):
-    """A question to the simulator: a plan by its id or in full, or what to plan first."""
-
-    model_config = {
-        "json_schema_extra": {
-            "examples": [
-                {"terrain": "single-stair-030", "robot": "a1_wheeled_x", "seed": 1},
-                {"plan_id": "p-0123456789abcdef", "friction": 0.5},
-            ]
-        }
-    }
+class Simulation(Model):
+    """A plan by its id or in full, or what to plan first; and how to carry it out."""
 
     plan_id: Id | None = Field(None, description="a plan that POST /plans answered with")
     plan: Plan | None = Field(None, description="a whole plan document")
@@ -116,10 +109,39 @@ class RolloutRequest(Model):
     controller: Controller = Field(
         None, description="controller settings by name, see GET /settings"
     )
+    seed: int = Field(0, strict=True, ge=0, le=MOST_SEED)
+
+
+class RolloutRequest(Simulation):
+    """A question to the simulator."""
+
+    model_config = {
+        "json_schema_extra": {
+            "examples": [
+                {"terrain": "single-stair-030", "robot": "a1_wheeled_x", "seed": 1},
+                {"plan_id": "p-0123456789abcdef", "friction": 0.5},
+            ]
+        }
+    }
+
     disturbance: Disturbance | None = Field(
         None, description="how the real world differs from what plan and controller believe"
     )
-    seed: int = Field(0, strict=True, ge=0, le=MOST_SEED)
+
+
+class TrialsRequest(Simulation):
+    """The same question many times over, under random deviations."""
+
+    model_config = {
+        "json_schema_extra": {
+            "examples": [{"terrain": "single-stair-030", "count": 29, "bundle": "laboratory"}]
+        }
+    }
+
+    count: int = Field(29, strict=True, ge=1, le=1000, description="number of rollouts")
+    bundle: str | None = Field(None, max_length=40, description="of deviations, see GET /settings")
+    ranges: Ranges | None = Field(None, description="deviations in full, instead of a bundle")
+    seed: int = Field(0, strict=True, ge=0, le=MOST_SEED - MOST_TRIALS)
 
 
 class TerrainDocument(Terrain):
@@ -147,6 +169,8 @@ class SettingsDocument(Model):
 
     weights: dict[Method, dict[str, Any]]
     controller: dict[str, Any]
+    disturbance: dict[str, Any]
+    bundles: dict[str, Ranges] = Field(description="deviations that trials draw from, by name")
     exports: dict[Exported, list[ExportFormat]]
 
 
@@ -163,7 +187,7 @@ class JobDocument(Model):
     """A job's state."""
 
     id: str
-    kind: Literal["rollout"]
+    kind: Literal["rollout", "trials"]
     state: Literal["queued", "running", "done", "failed", "cancelled"]
     progress: float = Field(ge=0.0, le=1.0)
     created: float = Field(description="seconds since 1970")

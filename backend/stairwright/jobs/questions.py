@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar, Literal
 
 from stairwright.documents import content_hash, parse
 from stairwright.errors import InputError
@@ -75,6 +75,9 @@ class PlanQuestion:
 class RolloutQuestion:
     """What to roll out and how: a stored plan (its digest), a whole plan, or one to be made."""
 
+    kind: ClassVar[Literal["rollout", "trials"]] = "rollout"
+    runs: ClassVar[int] = 1  # of the simulator
+
     source: PlanQuestion | Plan | str
     friction: float | None
     controller: Mapping[str, Any]
@@ -83,7 +86,7 @@ class RolloutQuestion:
 
     @classmethod
     def restored(cls, data: Mapping[str, Any]) -> RolloutQuestion:
-        """The question that `data` was made from.
+        """The question that `data` was made from; one of trials where it asks for those.
 
         Raises:
             InputError: If it was made by other code and is none any more.
@@ -94,8 +97,10 @@ class RolloutQuestion:
                 source = PlanQuestion.restored(data["ask"])
             else:
                 source = parse(Plan, data["plan"]) if "plan" in data else data["plan_digest"]
-            deviations = data.get("disturbance", {})
-            return cls(source, data["friction"], data["controller"], data["seed"], deviations)
+            asked = (source, data["friction"], data["controller"], data["seed"])
+            if "count" in data:
+                return TrialsQuestion(*asked, count=data["count"], ranges=data["ranges"])
+            return cls(*asked, data.get("disturbance", {}))
         except KeyError as error:
             raise InputError("is missing", (str(error.args[0]),)) from None
 
@@ -124,3 +129,22 @@ class RolloutQuestion:
     def needs(self) -> str | None:
         """Digest of the stored plan that it refers to."""
         return self.source if isinstance(self.source, str) else None
+
+
+@dataclass(frozen=True)
+class TrialsQuestion(RolloutQuestion):
+    """The same many times over, each with deviations drawn from ranges."""
+
+    kind = "trials"
+    count: int = 1
+    ranges: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def runs(self) -> int:  # type: ignore[override]
+        """Of the simulator."""
+        return self.count
+
+    @cached_property
+    def data(self) -> dict[str, Any]:
+        """As plain data, for a worker."""
+        return {**super().data, "count": self.count, "ranges": dict(self.ranges)}

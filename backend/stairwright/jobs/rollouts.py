@@ -1,4 +1,4 @@
-"""Rollouts as jobs: queued, carried out by workers, cancelled, cached.
+"""Rollouts and sets of trials as jobs: queued, carried out by workers, cancelled, cached.
 
 What was accepted is done: a job outlives workers and the service itself (`resume`).
 """
@@ -11,9 +11,10 @@ import secrets
 from collections import OrderedDict
 from collections.abc import Mapping
 from functools import partial
+from typing import cast
 
 from stairwright.errors import Cancelled
-from stairwright.storage.documents import Entry
+from stairwright.storage.documents import Entry, Kind
 from stairwright.storage.store import Store
 
 from . import work
@@ -33,11 +34,11 @@ COURTESY = 0.1  # s that a worker has to stop by itself before it is killed
 REMEMBERED = 1000  # finished jobs in memory; older ones are read from the database
 MOST_DEATHS = 3  # of workers at one job: then it is the job that kills them
 MOST_LOSSES = 20  # of the service while a job ran: it may have nothing to do with it, or all
-RESULT = "/api/v1/rollouts/{}"
+RESULT = {"rollout": "/api/v1/rollouts/{}", "trials": "/api/v1/trials/{}"}  # by kind
 
 
 class Rollouts:
-    """All rollout jobs of one service. Belongs to one event loop."""
+    """All such jobs of one service. Belongs to one event loop."""
 
     def __init__(self, store: Store, pool: WorkerPool, queue_limit: int, deadline: float) -> None:
         self.queue = FairQueue(pool.workers, queue_limit, "rollouts", reserve=pool.spares)
@@ -55,7 +56,7 @@ class Rollouts:
         Raises:
             QueueFull: If too many wait.
         """
-        job = Job(f"j-{secrets.token_hex(10)}", "rollout", owner=owner, question=question.key)
+        job = Job(f"j-{secrets.token_hex(10)}", question.kind, owner=owner, question=question.key)
         if not await self._answer(job):
             if question.key not in self._runs:
                 self.queue.check(owner)
@@ -92,9 +93,9 @@ class Rollouts:
     async def _answer(self, job: Job) -> bool:
         """Finish the job if what it asks is known already."""
         find = self._store.documents.answer
-        stored = await asyncio.to_thread(find, "rollout", str(job.question), rollout_engine())
+        stored = await asyncio.to_thread(find, cast(Kind, job.kind), str(job.question), rollout_engine())
         if stored is not None:
-            job.finish("done", result=RESULT.format(stored.id))
+            job.finish("done", result=RESULT[job.kind].format(stored.id))
         return stored is not None
 
     def _attach(self, job: Job, question: RolloutQuestion) -> None:
@@ -124,8 +125,9 @@ class Rollouts:
     async def lost(self, job: Job) -> bool:
         """Whether there is nothing to be had of it, by no fault of the question's."""
         if job.state == "done" and job.result is not None:
-            rollout = job.result.rpartition("/")[2]
-            return await asyncio.to_thread(self._store.documents.get, "rollout", rollout) is None
+            result = job.result.rpartition("/")[2]
+            find = self._store.documents.get
+            return await asyncio.to_thread(find, cast(Kind, job.kind), result) is None
         return job.state == "failed" and is_lost(job.error)
 
     def known(self, job_id: str) -> Job | None:
@@ -197,12 +199,12 @@ class Rollouts:
             watcher = asyncio.create_task(run.watch())
             try:
                 product = await self._pool.run(
-                    work.simulate,
+                    work.try_out if run.question.kind == "trials" else work.simulate,
                     run.question.data,
                     str(self._store.artefacts.folder),
                     run.gauge.path,
                     run.live.path,
-                    deadline=self._deadline,
+                    deadline=self._deadline * run.question.runs,
                 )
             finally:
                 watcher.cancel()
@@ -212,7 +214,7 @@ class Rollouts:
         if product.plan is not None and isinstance(question.source, PlanQuestion):
             shelve_plan(self._store, question.source, product.plan)
         return self._store.shelve(
-            "rollout",
+            question.kind,
             product.id,
             question=question.key,
             engine=rollout_engine(),
@@ -228,7 +230,7 @@ class Rollouts:
             del self._runs[run.question.key]
         for job in run.jobs:
             if entry is not None:
-                job.finish("done", result=RESULT.format(entry.id))
+                job.finish("done", result=RESULT[job.kind].format(entry.id))
             else:
                 job.finish("failed", error=error)
         await self._note(run)

@@ -134,6 +134,42 @@ def simulate(question: Question, artefacts: str, gauge_path: str, live_path: str
     return Product(run.id, digest, len(content), summary, plan=made)
 
 
+def try_out(question: Question, artefacts: str, gauge_path: str, _: str) -> Product:
+    """Roll a plan out many times under random deviations.
+
+    `question` is that of `simulate` with ``count`` and ``ranges`` instead of a disturbance.
+
+    Raises:
+        InputError: If a value is bad or the plan has nothing that could be carried out.
+        Cancelled: If the gauge says so.
+    """
+    from stairwright.simulation.trials import trials
+
+    gauge = Gauge(gauge_path)
+    plan = _plan_of(question, artefacts)
+    found = trials(
+        plan,
+        question["count"],
+        seed=question["seed"],
+        ranges=question["ranges"],
+        friction=question["friction"],
+        controller=question["controller"] or None,
+        progress=gauge.report,
+    )
+    content = found.model_dump_json().encode()
+    digest = _artefacts(artefacts).put(content)
+    summary = {
+        "terrain": plan.terrain.name,
+        "robot": plan.robot,
+        "plan_id": plan.id,
+        "count": found.count,
+        "successes": found.successes,
+        "interval": found.clopper_pearson,
+    }
+    made = replace(_keep_plan(plan, artefacts), content=b"") if question.get("ask") else None
+    return Product(found.id, digest, len(content), summary, plan=made)
+
+
 def _plan_of(question: Question, artefacts: str) -> Plan:
     from stairwright.planning.plan import Plan
 

@@ -15,7 +15,7 @@ from pydantic import Field
 
 from stairwright.arguments import MOST_SEED, as_friction, as_model, as_whole
 from stairwright.control.settings import ControllerSettings, parse_settings
-from stairwright.documents import Model, parse
+from stairwright.documents import Model, content_hash, parse
 from stairwright.planning.plan import Plan
 from stairwright.resources import all_cores
 
@@ -48,6 +48,7 @@ class Trials(Model):
     """A set of randomised rollouts (``stairwright/trials/1``)."""
 
     schema_: Literal["stairwright/trials/1"] = Field("stairwright/trials/1", alias="schema")
+    id: str = Field(description="hash of the question")
     plan_id: str
     terrain_hash: str
     robot_hash: str
@@ -114,7 +115,9 @@ def trials(
         if progress is not None:
             progress(len(results) / n)
     successes = sum(result.outcome == "success" for result in results)
+    asked = [plan.id, nominal, settings.model_dump(), limits.model_dump(), n, seed]
     return Trials(
+        id="t-" + content_hash(asked).removeprefix("sha256:"),
         plan_id=plan.id,
         terrain_hash=plan.terrain_hash,
         robot_hash=plan.robot_hash,

@@ -1,4 +1,4 @@
-"""Plans and rollouts: found by id or by the question that they answer."""
+"""Plans, rollouts and sets of trials: found by id or by the question that they answer."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .artefacts import Artefacts
 from .clock import UseClock
 from .tables import StoredDocument
 
-Kind = Literal["plan", "rollout"]
+Kind = Literal["plan", "rollout", "trials"]
 _FRESH = 3600.0  # s; a use is written down again only after this time
 
 
@@ -142,7 +142,7 @@ class Documents:
         mine = (StoredDocument.kind, func.count(), func.sum(StoredDocument.size))
         with self._sessions() as session:
             rows = session.execute(select(*mine).group_by(StoredDocument.kind)).all()
-        counts = {"plan": 0, "rollout": 0} | {kind: number for kind, number, _ in rows}
+        counts = {"plan": 0, "rollout": 0, "trials": 0} | {kind: number for kind, number, _ in rows}
         return counts, sum(size for _, _, size in rows)
 
     def delete(self, kind: Kind, document_id: str) -> str | None:

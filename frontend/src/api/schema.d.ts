@@ -358,6 +358,56 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/trials": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Trials
+         * @description Stored sets of trials, newest first.
+         */
+        get: operations["list_trials"];
+        put?: never;
+        /**
+         * Post Trials
+         * @description Start a set of trials; the answer is its job. A known result makes a job that is done.
+         */
+        post: operations["post_trials"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/trials/{trials_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Trials
+         * @description One set: successes with their interval, and every trial with its seed and deviations.
+         *
+         *     A rollout of the same plan with a trial's seed and `disturbance` replays it.
+         */
+        get: operations["get_trials"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete Trials
+         * @description Remove a set of trials. Its plan stays.
+         */
+        delete: operations["delete_trials"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/jobs": {
         parameters: {
             query?: never;
@@ -1344,9 +1394,9 @@ export interface components {
             id: string;
             /**
              * Kind
-             * @constant
+             * @enum {string}
              */
-            kind: "rollout";
+            kind: "rollout" | "trials";
             /**
              * State
              * @enum {string}
@@ -2326,7 +2376,7 @@ export interface components {
         };
         /**
          * RolloutRequest
-         * @description A question to the simulator: a plan by its id or in full, or what to plan first.
+         * @description A question to the simulator.
          * @example {
          *       "robot": "a1_wheeled_x",
          *       "seed": 1,
@@ -2382,13 +2432,13 @@ export interface components {
             controller?: {
                 [key: string]: boolean | string | (number | null);
             } | null;
-            /** @description how the real world differs from what plan and controller believe */
-            disturbance?: components["schemas"]["Disturbance"] | null;
             /**
              * Seed
              * @default 0
              */
             seed: number;
+            /** @description how the real world differs from what plan and controller believe */
+            disturbance?: components["schemas"]["Disturbance"] | null;
         };
         /**
          * SceneRequest
@@ -2508,6 +2558,17 @@ export interface components {
             /** Controller */
             controller: {
                 [key: string]: unknown;
+            };
+            /** Disturbance */
+            disturbance: {
+                [key: string]: unknown;
+            };
+            /**
+             * Bundles
+             * @description deviations that trials draw from, by name
+             */
+            bundles: {
+                [key: string]: components["schemas"]["Ranges"];
             };
             /** Exports */
             exports: {
@@ -2852,6 +2913,26 @@ export interface components {
             rule: "limits" | "paper";
         };
         /**
+         * Trial
+         * @description One rollout of the set.
+         */
+        Trial: {
+            /** Seed */
+            seed: number;
+            disturbance: components["schemas"]["Disturbance"];
+            /**
+             * Outcome
+             * @enum {string}
+             */
+            outcome: "success" | "fell" | "stuck" | "collided" | "diverged" | "timeout" | "stopped";
+            /** Reason */
+            reason: string;
+            /** Pitch Error Max */
+            pitch_error_max: number;
+            /** Link Contacts */
+            link_contacts: number;
+        };
+        /**
          * TrialSettings
          * @description How many randomised rollouts a cell has, and what they draw from.
          */
@@ -2863,6 +2944,144 @@ export interface components {
              */
             count: number;
             /** @description of the deviations, see `sw.trials` */
+            ranges?: components["schemas"]["Ranges"] | null;
+        };
+        /**
+         * Trials
+         * @description A set of randomised rollouts (``stairwright/trials/1``).
+         */
+        Trials: {
+            /**
+             * Schema
+             * @default stairwright/trials/1
+             * @constant
+             */
+            schema: "stairwright/trials/1";
+            /**
+             * Id
+             * @description hash of the question
+             */
+            id: string;
+            /** Plan Id */
+            plan_id: string;
+            /** Terrain Hash */
+            terrain_hash: string;
+            /** Robot Hash */
+            robot_hash: string;
+            /**
+             * Friction
+             * @description nominal true friction; each trial adds its own
+             */
+            friction: number;
+            /** Seed */
+            seed: number;
+            controller: components["schemas"]["ControllerSettings"];
+            ranges: components["schemas"]["Ranges"];
+            /** Count */
+            count: number;
+            /** Successes */
+            successes: number;
+            /**
+             * Rate
+             * @description share of successes
+             */
+            rate: number;
+            /**
+             * Wilson
+             * @description 95 % confidence interval of the rate
+             */
+            wilson: number[];
+            /**
+             * Clopper Pearson
+             * @description 95 % interval, exact
+             */
+            clopper_pearson: number[];
+            /** Outcomes */
+            outcomes: {
+                [key: string]: number;
+            };
+            /**
+             * Suspects
+             * @description deviations that are larger where trials failed: how often a failed one had more of it than one that succeeded
+             * @default {}
+             */
+            suspects: {
+                [key: string]: number;
+            };
+            /** Trials */
+            trials: components["schemas"]["Trial"][];
+        };
+        /**
+         * TrialsRequest
+         * @description The same question many times over, under random deviations.
+         * @example {
+         *       "bundle": "laboratory",
+         *       "count": 29,
+         *       "terrain": "single-stair-030"
+         *     }
+         */
+        TrialsRequest: {
+            /**
+             * Plan Id
+             * @description a plan that POST /plans answered with
+             */
+            plan_id?: string | null;
+            /** @description a whole plan document */
+            plan?: components["schemas"]["Plan"] | null;
+            /**
+             * Terrain
+             * @description what to plan over first
+             */
+            terrain?: (string | components["schemas"]["Terrain"]) | null;
+            /**
+             * Robot
+             * @description with `terrain`
+             * @default a1_wheeled
+             */
+            robot: string | components["schemas"]["Robot"];
+            /**
+             * Method
+             * @description with `terrain`
+             * @default path
+             * @enum {string}
+             */
+            method: "path" | "critical" | "nominal";
+            /**
+             * Weights
+             * @description with `terrain`
+             */
+            weights?: {
+                [key: string]: boolean | number;
+            } | null;
+            /**
+             * Friction
+             * @description friction in the simulation (and of the plan, with `terrain`)
+             */
+            friction?: number | null;
+            /**
+             * Controller
+             * @description controller settings by name, see GET /settings
+             */
+            controller?: {
+                [key: string]: boolean | string | (number | null);
+            } | null;
+            /**
+             * Seed
+             * @default 0
+             */
+            seed: number;
+            /**
+             * Count
+             * @description number of rollouts
+             * @default 29
+             */
+            count: number;
+            /**
+             * Bundle
+             * @description of deviations, see GET /settings
+             */
+            bundle?: string | null;
+            /** @description deviations in full, instead of a bundle */
             ranges?: components["schemas"]["Ranges"] | null;
         };
         /**
@@ -5063,13 +5282,362 @@ export interface operations {
             };
         };
     };
+    list_trials: {
+        parameters: {
+            query?: {
+                /** @description at most this many */
+                limit?: number;
+                /** @description after this many */
+                offset?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    ETag: components["headers"]["ETag"];
+                    "X-Total-Count": components["headers"]["X-Total-Count"];
+                    Link: components["headers"]["Link"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StoredEntry"][];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    post_trials: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description an open session: sessions take turns in the queues */
+                "stairwright-session"?: string | null;
+                /** @description a repeated request with the same key does its work once */
+                "idempotency-key"?: string | null;
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TrialsRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["JobDocument"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unsupported Media Type: `media-type` */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Too Many Requests: `attempts`, `connections`, `queue-full`, `sessions` */
+            429: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            503: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    get_trials: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                trials_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    ETag: components["headers"]["ETag"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Trials"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    delete_trials: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                trials_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
     list_jobs: {
         parameters: {
             query?: {
                 /** @description only in these states */
                 state?: ("queued" | "running" | "done" | "failed" | "cancelled")[];
                 /** @description only of these kinds */
-                kind?: "rollout"[];
+                kind?: ("rollout" | "trials")[];
                 /** @description at most this many */
                 limit?: number;
                 /** @description after this many */

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import AsyncIterator
-from typing import Annotated, Literal
+from typing import Annotated, Literal, cast
 
 from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
 from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
@@ -28,7 +28,7 @@ died begins anew: its job is queued again, and its series from sample 0."""
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 
-Kind = Literal["rollout"]
+Kind = Literal["rollout", "trials"]
 QUIET = 15.0  # s after which a comment keeps proxies from closing the stream
 
 
@@ -40,7 +40,7 @@ def job_document(job: Job) -> JobDocument:
         links["result"] = job.result
     return JobDocument(
         id=job.id,
-        kind="rollout",
+        kind=cast(Kind, job.kind),
         state=job.state,
         progress=round(job.progress, 4),
         created=job.created,

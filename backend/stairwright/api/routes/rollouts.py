@@ -2,27 +2,21 @@
 
 from __future__ import annotations
 
-import asyncio
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from functools import partial
+from typing import TYPE_CHECKING, Annotated, Literal
 
-import orjson
 from fastapi import APIRouter, Path, Query, Request, Response
 
-from stairwright.api.bodies import JobDocument, PlanRequest, RolloutRequest, StoredEntry
+from stairwright.api.bodies import JobDocument, RolloutRequest, StoredEntry
 from stairwright.api.deps import JSON_BODY, Idempotent, Limit, Offset, Owner, Service
-from stairwright.api.problems import describe, not_found
+from stairwright.api.problems import describe
 from stairwright.api.services import Services
-from stairwright.control.settings import ControllerSettings
-from stairwright.documents import content_hash, parse
-from stairwright.errors import InputError
 from stairwright.export.table import ROLLOUT_FORMATS
-from stairwright.jobs.questions import PlanQuestion, RolloutQuestion
-from stairwright.planning.plan import Plan
+from stairwright.jobs.questions import RolloutQuestion
 from stairwright.simulation.result import Rollout
 
 from . import stored
-from .jobs import job_document
-from .plans import plan_question
+from .simulations import accepted, settings_of, source_of
 
 router = APIRouter(prefix="/rollouts", tags=["rollouts"])
 if TYPE_CHECKING:
@@ -43,66 +37,13 @@ async def post_rollout(
     services: Service, owner: Owner, body: RolloutRequest, once: Idempotent
 ) -> Response:
     """Start a rollout; the answer is its job. A known result makes a job that is done."""
-    job = await services.rollouts.get(once.earlier) if once.earlier else None
-    if job is None or await services.rollouts.lost(job):  # a lost job must not stick to its key
-        question = await asyncio.to_thread(_question, services, body)
-        job = await services.rollouts.submit(question, owner)
-        once.result = job.id
-    shown = job_document(job)
-    headers = {"location": shown.links["self"], "retry-after": "1"}
-    return Response(shown.model_dump_json(), 202, headers=headers, media_type="application/json")
+    return await accepted(services, owner, once, partial(_question, services, body))
 
 
 def _question(services: Services, body: RolloutRequest) -> RolloutQuestion:
-    try:
-        settings = parse(ControllerSettings, dict(body.controller or {}))
-    except InputError as error:
-        raise error.within("controller") from None
-    controller = settings.model_dump(mode="json")
     deviations = body.disturbance.model_dump(exclude_defaults=True) if body.disturbance else {}
-    source = _source(services, body)
-    return RolloutQuestion(source, body.friction, controller, body.seed, deviations)
-
-
-def _source(services: Services, body: RolloutRequest) -> PlanQuestion | Plan | str:
-    given: dict[str, Any] = {
-        name: value
-        for name in ("plan_id", "plan", "terrain")
-        if (value := getattr(body, name)) is not None
-    }
-    if len(given) != 1:
-        message = "give exactly one of plan_id, plan and terrain"
-        raise InputError(message, (list(given)[-1] if given else "plan_id",))
-    if body.plan is not None:
-        return _under_its_own_id(services, body.plan)
-    if body.terrain is not None:
-        names = ("terrain", "robot", "friction", "method", "weights")
-        values = {name: getattr(body, name) for name in names}
-        return plan_question(services, PlanRequest.model_construct(**values))
-    entry = services.store.documents.get("plan", str(body.plan_id))
-    if entry is None or not services.store.artefacts.intact(entry.digest):
-        raise not_found("plan", str(body.plan_id), field="plan_id")
-    return entry.digest
-
-
-def _under_its_own_id(services: Services, plan: Plan) -> Plan:
-    """The plan; a changed copy of a stored one gets another id, and so does its rollout."""
-    stored = _stored_plan(services, plan.id)
-    by_the_way = {"solve_time": plan.solve_time, "certificate": plan.certificate}
-    if stored is None or stored.model_copy(update=by_the_way) == plan:
-        return plan
-    return plan.model_copy(update={"id": "p-" + content_hash(plan).removeprefix("sha256:")})
-
-
-def _stored_plan(services: Services, plan_id: str) -> Plan | None:
-    entry = services.store.documents.get("plan", plan_id)
-    if entry is None:
-        return None
-    try:
-        content = services.store.artefacts.content(entry.digest)
-    except FileNotFoundError:  # removed in the meantime
-        return None
-    return parse(Plan, orjson.loads(content))
+    source, settings = source_of(services, body), settings_of(body)
+    return RolloutQuestion(source, body.friction, settings, body.seed, deviations)
 
 
 @router.get("", response_model=list[StoredEntry])

@@ -6,7 +6,7 @@ import asyncio
 import gzip
 import hashlib
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 from urllib.parse import quote
 
 from fastapi import Request, Response
@@ -76,7 +76,7 @@ async def document(request: Request, services: Services, kind: Kind, document_id
 async def export(
     request: Request,
     services: Services,
-    kind: Kind,
+    kind: Literal["plan", "rollout"],
     document_id: str,
     format_name: str,
     rate: float | None = None,

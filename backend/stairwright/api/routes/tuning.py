@@ -1,17 +1,19 @@
-"""What can be chosen: weights, controller settings, and the formats of files."""
+"""What can be chosen: weights, controller settings, disturbances, and the formats of files."""
 
 from __future__ import annotations
 
-import importlib.util
 from functools import cache
 from typing import Any
 
 from fastapi import APIRouter
 
 from stairwright.api.bodies import ExportFormat, SettingsDocument
+from stairwright.control.settings import ControllerSettings
 from stairwright.documents import Model
 from stairwright.export.table import FORMATS
 from stairwright.planning.weights import MODELS
+from stairwright.simulation.disturbance import Disturbance
+from stairwright.simulation.ranges import BUNDLES
 
 router = APIRouter(tags=["settings"])
 
@@ -32,15 +34,13 @@ def _document() -> SettingsDocument:
         kind: [ExportFormat(name=name, note=each.note) for name, each in formats.items()]
         for kind, formats in FORMATS.items()
     }
-    return SettingsDocument(weights=weights, controller=_controller(), exports=exports)
-
-
-def _controller() -> dict[str, Any]:
-    if importlib.util.find_spec("stairwright.control.settings") is None:
-        return {"type": "object", "properties": {}}
-    from stairwright.control.settings import ControllerSettings
-
-    return _flat(ControllerSettings)
+    return SettingsDocument(
+        weights=weights,
+        controller=_flat(ControllerSettings),
+        disturbance=_flat(Disturbance),
+        bundles=BUNDLES,
+        exports=exports,
+    )
 
 
 def _flat(model: type[Model]) -> dict[str, Any]:
