@@ -1033,10 +1033,9 @@ export interface components {
             joint_speed: number;
             /**
              * Leash
-             * @description How far the plan may run ahead of the wheels
-             * @default 0.012
+             * @description How far the plan may run ahead of the wheels; 30 mm if empty where the robot senses by itself, else 12 mm
              */
-            leash: number;
+            leash?: number | null;
             /**
              * Joint stiffness
              * @description K_p of eq 27; the robot's if empty
@@ -1172,6 +1171,11 @@ export interface components {
              */
             friction_rear: number;
             /**
+             * Friction Wheels
+             * @description the true friction of the wheels FL, FR, RL, RR instead
+             */
+            friction_wheels?: number[] | null;
+            /**
              * Mass
              * @description share of the robot's mass, on the trunk
              * @default 0
@@ -1179,10 +1183,10 @@ export interface components {
             mass: number;
             /**
              * Payload
-             * @description on top of the trunk's middle [kg]
+             * @description on top of the trunk's middle [kg], or a mass and its place
              * @default 0
              */
-            payload: number;
+            payload: number | components["schemas"]["stairwright__simulation__disturbance__Payload"];
             /**
              * Com X
              * @description the robot's CoM moves forward [m]
@@ -1203,16 +1207,16 @@ export interface components {
             height: number;
             /**
              * Step Height Error
-             * @description each rise or descent is off by at most this, at random [m]
+             * @description each rise or descent is off: standard deviation, or one after the other [m]
              * @default 0
              */
-            step_height_error: number;
+            step_height_error: number | number[];
             /**
              * Face Place Error
-             * @description each face is moved along by at most this, at random [m]
+             * @description each face is moved along: standard deviation, or one after the other [m]
              * @default 0
              */
-            face_place_error: number;
+            face_place_error: number | number[];
             /**
              * Heading
              * @description the robot starts turned to the left of the course [rad]
@@ -1261,6 +1265,31 @@ export interface components {
              * @default 0
              */
             bandwidth: number;
+            /**
+             * Torque Scale
+             * @description share by which motors give more than asked for
+             * @default 0
+             */
+            torque_scale: number;
+            /**
+             * Stiction
+             * @description dry friction of each leg joint and wheel [Nm]
+             * @default 0
+             */
+            stiction: number;
+            /**
+             * Rotor Inertia
+             * @description of every motor, as its joint feels it [kg m^2]
+             */
+            rotor_inertia?: number | null;
+            /**
+             * @description what the robot's own inertial sensor errs by
+             * @default {
+             *       "gyro_bias": 0,
+             *       "accelerometer_bias": 0
+             *     }
+             */
+            imu: components["schemas"]["ImuErrors"];
         };
         /**
          * ExportFormat
@@ -1384,6 +1413,34 @@ export interface components {
             locked: {
                 [key: string]: number;
             };
+        };
+        /**
+         * ImuErrors
+         * @description The inertial sensor's errors, beside those that the usual one has.
+         */
+        ImuErrors: {
+            /**
+             * Gyro Bias
+             * @description about each axis [rad/s]
+             * @default 0
+             */
+            gyro_bias: number;
+            /**
+             * Accelerometer Bias
+             * @description along each axis [m/s^2]
+             * @default 0
+             */
+            accelerometer_bias: number;
+            /**
+             * Gyro Noise
+             * @description of a reading; the usual one if empty [rad/s]
+             */
+            gyro_noise?: number | null;
+            /**
+             * Accelerometer Noise
+             * @description of a reading; the usual one if empty [m/s^2]
+             */
+            accelerometer_noise?: number | null;
         };
         /**
          * JobDocument
@@ -1683,26 +1740,6 @@ export interface components {
              * @description along y [m]
              */
             width: number;
-        };
-        /**
-         * Payload
-         * @description A load that is fixed to the trunk.
-         */
-        Payload: {
-            /**
-             * Mass
-             * @description [kg]
-             */
-            mass: number;
-            /**
-             * Place
-             * @description (x, z) in the trunk frame [m]
-             * @default [
-             *       0,
-             *       0
-             *     ]
-             */
-            place: number[];
         };
         /**
          * Plan
@@ -2097,7 +2134,7 @@ export interface components {
             payload: number[];
             /**
              * Step Height Error
-             * @description each rise or descent is off by at most this, at random [m]
+             * @description of each rise or descent, standard deviation [m]
              * @default [
              *       0,
              *       0
@@ -2106,7 +2143,7 @@ export interface components {
             step_height_error: number[];
             /**
              * Face Place Error
-             * @description each face is moved along by at most this, at random [m]
+             * @description of each face's place, standard deviation [m]
              * @default [
              *       0,
              *       0
@@ -2167,6 +2204,24 @@ export interface components {
              *     ]
              */
             bandwidth: number[];
+            /**
+             * Torque Scale
+             * @description share by which motors give more than asked for
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            torque_scale: number[];
+            /**
+             * Stiction
+             * @description dry friction of each leg joint and wheel [Nm]
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            stiction: number[];
         };
         /**
          * RearLegs
@@ -2214,7 +2269,7 @@ export interface components {
              */
             nominal_height: number;
             trunk: components["schemas"]["Trunk"];
-            payload?: components["schemas"]["Payload"] | null;
+            payload?: components["schemas"]["stairwright__robot__parts__Payload"] | null;
             hips: components["schemas"]["Hips"];
             thigh: components["schemas"]["Link"];
             calf: components["schemas"]["Link"];
@@ -2278,7 +2333,7 @@ export interface components {
              */
             nominal_height: number;
             trunk: components["schemas"]["Trunk"];
-            payload?: components["schemas"]["Payload"] | null;
+            payload?: components["schemas"]["stairwright__robot__parts__Payload"] | null;
             hips: components["schemas"]["Hips"];
             thigh: components["schemas"]["Link"];
             calf: components["schemas"]["Link"];
@@ -2354,10 +2409,11 @@ export interface components {
             controller: components["schemas"]["ControllerSettings"];
             /**
              * Disturbance
+             * @description what deviated, see Disturbance
              * @default {}
              */
             disturbance: {
-                [key: string]: number;
+                [key: string]: unknown;
             };
             /**
              * Outcome
@@ -3157,6 +3213,42 @@ export interface components {
              * @default 0
              */
             rolling_resistance: number;
+        };
+        /**
+         * Payload
+         * @description A load that is fixed to the trunk.
+         */
+        stairwright__robot__parts__Payload: {
+            /**
+             * Mass
+             * @description [kg]
+             */
+            mass: number;
+            /**
+             * Place
+             * @description (x, z) in the trunk frame [m]
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            place: number[];
+        };
+        /**
+         * Payload
+         * @description A mass that the plan does not know of.
+         */
+        stairwright__simulation__disturbance__Payload: {
+            /**
+             * Mass
+             * @description kg
+             */
+            mass: number;
+            /**
+             * Place
+             * @description of its mass centre in the trunk's frame; on top if empty [m]
+             */
+            place?: number[] | null;
         };
         /**
          * FieldError
