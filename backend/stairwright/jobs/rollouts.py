@@ -93,7 +93,9 @@ class Rollouts:
     async def _answer(self, job: Job) -> bool:
         """Finish the job if what it asks is known already."""
         find = self._store.documents.answer
-        stored = await asyncio.to_thread(find, cast(Kind, job.kind), str(job.question), rollout_engine())
+        stored = await asyncio.to_thread(
+            find, cast(Kind, job.kind), str(job.question), rollout_engine()
+        )
         if stored is not None:
             job.finish("done", result=RESULT[job.kind].format(stored.id))
         return stored is not None
