@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import mujoco
 import numpy as np
 import pytest
@@ -28,7 +30,7 @@ def plan(request: pytest.FixtureRequest) -> Plan:
     return sw.plan(STAIR, request.param)
 
 
-def sensed(plan: Plan, seed: int = 0, **deviation: float) -> tuple[Rollout, np.ndarray]:
+def sensed(plan: Plan, seed: int = 0, **deviation: Any) -> tuple[Rollout, np.ndarray]:
     """A rollout by the robot's own sensors, and the filter's errors against the truth."""
     settings = parse_settings(ROBOT)
     run = Run(plan, plan.friction, settings, Disturbance(**deviation), seed, 50.0)
@@ -44,6 +46,29 @@ def test_climbs_by_its_own_sensors(plan: Plan, start: float) -> None:
     # The stair has told it where it is.
     assert np.abs(judged[-50:, 7]).max() < 0.02
     assert np.abs(judged[:, 2]).max() < 0.03
+
+
+@pytest.mark.parametrize(
+    "deviation",
+    [
+        {"face_place_error": [0.03]},  # the plan waits, the wheels roll on until they feel it
+        {"face_place_error": [-0.03]},
+        {"step_height_error": [0.02]},
+        {"step_height_error": [-0.02]},
+        {"delay": 0.012},
+    ],
+)
+def test_climbs_what_is_not_as_drawn(plan: Plan, deviation: dict[str, object]) -> None:
+    run, _ = sensed(plan, **deviation)
+    assert run.outcome == "success", run.reason
+
+
+def test_legs_reach_for_ground_that_is_not_as_drawn(plan: Plan) -> None:
+    """Front wheels on a step that is 2 cm lower: the trunk keeps its planned pitch."""
+    run, judged = sensed(plan, step_height_error=[-0.02])
+    front, rear = judged[:, 12], judged[:, 14]
+    assert np.max(front - rear) == pytest.approx(0.02, abs=0.006)
+    assert run.metrics.pitch_error_max < np.radians(5.0)
 
 
 def test_ideal_knowledge_of_a_wrong_place_does_not_climb(plan: Plan) -> None:

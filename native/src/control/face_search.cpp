@@ -1,20 +1,29 @@
 #include "stairwright/control/face_search.hpp"
 
+#include <algorithm>
+
 namespace stairwright::control {
 
 namespace {
 
-constexpr double kSpeed = 0.04;  // m/s
+constexpr double kSpeed = 0.04;     // m/s
+constexpr double kMostLead = 0.03;  // m ahead of the wheels, which makes them push
+constexpr double kLeadTime = 0.5;   // s until it is reached
 
 }  // namespace
 
-Reference search(const Reference& waiting, const Ahead& ahead, const std::array<double, 4>& places) {
-    Reference out = waiting;
+Reference FaceSearch::step(const Reference& planned, const Ahead& ahead, const std::array<double, 4>& places, double dt) {
+    if (!ahead.any()) {
+        waited_ = std::max(0.0, waited_ - dt);
+        return planned;
+    }
+    waited_ = std::min(waited_ + dt, kLeadTime);
+    Reference out = planned;
     double body = 0.0;
     for (int pair = 0; pair < 2; ++pair) {
         if (!ahead.searching[pair] && !ahead.on_tread[pair]) continue;
         out.rate.wheels[pair] += kSpeed;
-        out.value.wheels[pair] = 0.5 * (places[2 * pair] + places[2 * pair + 1]);
+        out.value.wheels[pair] = 0.5 * (places[2 * pair] + places[2 * pair + 1]) + kMostLead * waited_ / kLeadTime;
         body += 0.5 * kSpeed;
         if (ahead.searching[pair]) out.lean[pair] = static_cast<double>(Lean::before);
     }

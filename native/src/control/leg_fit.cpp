@@ -17,9 +17,15 @@ constexpr double kLeast = 1e-5;  // m
 Reference LegFit::fit(const Reference& planned, const std::array<Vec2, 2>& ground, double dt) {
     Reference out = planned;
     const double share = dt / (kTime + dt);
+    for (int pair = 0; pair < 2; ++pair)
+        off_[pair] += share * (Vec2{std::clamp(ground[pair].x, -kMost, kMost), std::clamp(ground[pair].z, -kMost, kMost)} - off_[pair]);
+    // The mass centre keeps its place against the pair that carries it.
+    const double front = std::max(planned.forces[0].z, 0.0), rear = std::max(planned.forces[1].z, 0.0);
+    const double on_front = front / std::max(front + rear, 1e-6);
+    const Vec2 shift = on_front * off_[0] + (1.0 - on_front) * off_[1];
+    out.value.com += shift, out.value.trunk += shift;
     for (int pair = 0; pair < 2; ++pair) {
-        Vec2& off = off_[pair];
-        off += share * (Vec2{std::clamp(ground[pair].x, -kMost, kMost), std::clamp(ground[pair].z, -kMost, kMost)} - off);
+        const Vec2 off = off_[pair] - shift;
         if (norm(off) < kLeast) continue;
         const Leg& leg = robot_.legs[pair];
         const double pitch = planned.value.pitch, thigh = planned.value.joints[2 * pair], calf = planned.value.joints[2 * pair + 1];

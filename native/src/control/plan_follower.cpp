@@ -12,6 +12,7 @@ namespace stairwright::control {
 namespace {
 
 constexpr double kHurry = 1.5;            // how much faster than planned it may follow a robot that is ahead
+constexpr double kHangingLead = 0.005;    // m
 constexpr double kRateAcceleration = 1.0; // m/s^2 of the plan's rate
 
 using Row = std::array<double, kReferenceWidth>;
@@ -44,14 +45,15 @@ double PlanFollower::wheel_lag(Spot at, const std::array<double, 4>& places) con
     return lag * (0.5 * (std::abs(df) + std::abs(dr)));  // of wheels, not of a trunk that swings
 }
 
-const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool moving, double dt) {
+const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool moving, double dt, bool hanging) {
     const Spot now = spot(way_);
     lag_ = wheel_lag(now, places);
+    const double most = hanging ? std::min(kHangingLead, maximum_lead_) : maximum_lead_;
     double rate = 0.0;
     if (moving) {
         const double allowed = mix(speeds_[now.row], speeds_[now.row + 1], now.share);
         if (lag_ >= 0.0)
-            rate = allowed * std::min(1.0, std::max(-0.5, 2.0 * (maximum_lead_ - lag_) / maximum_lead_));
+            rate = allowed * std::min(1.0, std::max(-0.5, 2.0 * (most - lag_) / most));
         else
             rate = allowed * std::min(kHurry, 1.0 - lag_ / maximum_lead_ * (kHurry - 1.0));
     }

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kProgress = 0.005;   // m
 constexpr double kPatience = 3.0;     // s without that much progress
-constexpr double kMostPitch = 0.30;   // rad off the plan
-constexpr double kMostRoll = 0.30;    // rad
+constexpr double kMostPitch = 0.15;   // rad off the plan
+constexpr double kMostRoll = 0.20;    // rad
 
 }  // namespace
 

@@ -22,9 +22,11 @@ constexpr double kSure = 0.02;         // s that both faces of a corner must be 
 constexpr double kMostScale = 0.025;   // of the wheels: more is slip
 constexpr double kGripUsed = 0.25;     // share of the normal force from which on traction makes slip likely
 constexpr double kAtRest = 0.015;      // m/s of rolling
+constexpr double kRound = 3.0;          // of the noise off a face: errors last longer round an edge
 constexpr double kNearEdge = 0.015;    // m along the curve
 constexpr double kEdgeStray = 0.012;   // m that the map's edge may be off
 constexpr double kLevel = 0.95;        // cosine of the slope of a face on which the wheels' scale is learnt
+constexpr double kMissed = 0.004;       // m put back: the face is not where the map has it
 constexpr double kSearchNoise = 0.01;   // m^2 of variance for a metre that a face is farther on
 constexpr double kTread = 0.7;          // cosine of the slope of a face that is a tread
 constexpr double kGate = 9.0;           // of a normalised innovation squared
@@ -91,7 +93,7 @@ Estimator::Rotation Estimator::rotation() const {
 const Estimate& Estimator::step(const Readings& readings, double dt) {
     predict(readings, dt);
     see_legs(readings, dt);
-    estimate_.searching = {};
+    estimate_.searching = {}, estimate_.hanging = false;
     for (int i = 0; i < 4; ++i) measure(i, readings, dt);
     started_ = true;
     report(readings);
@@ -182,18 +184,27 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const double motion = kForceAtRest + (1.0 - kForceAtRest) * std::min(1.0, speed / kForceSpeed);
     belief.force_deviation = motion * (noise_.force * weight_ + 0.15 * norm(w.felt));
     const CurveMatch on = match(path_, belief, w.s, kWindow);
+    const bool touching = std::max({dot(w.felt, on.point.normal), dot(w.felt, on.before), dot(w.felt, on.after)}) > kTouching * weight_ / 4;
+    const double before = w.s;
     w.s = on.s;
+    if (!touching && on.s > before) {  // in the air no wheel gets past a corner
+        const std::size_t corner = path_.corner_from(before - kNearCorner);
+        if (corner < path_.corners().size() && path_.corners()[corner] < on.s) {
+            w.s = std::max(before, path_.corners()[corner]);
+            estimate_.hanging = true;
+        }
+    }
     enter_face(i, on);
     const std::size_t next = path_.corner_from(on.s);
     const double room = next < path_.corners().size() ? path_.corners()[next] - on.s : kRoom;
     estimate_.on_tread[i / 2] = !on.corner && on.point.normal.z > kTread && room >= kRoom;
 
     w.at_corner = on.corner ? w.at_corner + dt : 0.0;
-    estimate_.touching[i] = std::max({dot(w.felt, on.point.normal), dot(w.felt, on.before), dot(w.felt, on.after)}) > kTouching * weight_ / 4;
+    estimate_.touching[i] = touching;
     if (!estimate_.touching[i]) return;
     Error error{};
     if (!on.corner || w.at_corner > kSure) measure_place(i, on, along_x, along_z, centre, dt, error);
-    measure_rolling(i, on, readings, dt, error);
+    measure_rolling(i, on, readings, along_x, along_z, dt, error);
     correct(error);
 }
 
@@ -201,9 +212,10 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
 void Estimator::enter_face(int i, const CurveMatch& on) {
     WheelState& w = wheels_[i];
     if (on.corner || on.piece == w.face || path_.pieces()[on.piece].arc) return;
-    w.face = on.piece;
+    const bool tread = on.point.normal.z > kTread, was_tread = path_.pieces()[w.face].at(0.0, path_.radius()).normal.z > kTread;
+    w.face = on.piece, w.put_back = 0.0;
+    if (tread && was_tread) return;
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
-    const bool tread = on.point.normal.z > kTread;
     const double error = tread ? noise_.face_place : noise_.tread_height;
     covariance_.add_noise(tread ? own : own + 1, 0.5 * error * error);
 }
@@ -233,13 +245,15 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
 // pair can roll on, so is all the rest.
 void Estimator::put_back(int i, Vec2 along, double excess, Error& error) {
     const int pair = i / 2;
-    estimate_.searching[pair] = true;
+    WheelState& w = wheels_[i];
+    w.put_back += std::abs(excess);
+    estimate_.searching[pair] = estimate_.searching[pair] || w.put_back > kMissed;
     const std::size_t at = estimate_.on_tread[1 - pair] ? kPlace : pair == 0 ? kFrontOffset : kRearOffset;
     error[at] += excess * along.x, error[at + 1] += excess * along.z;
     covariance_.add_noise(at, kSearchNoise * std::abs(excess));
 }
 
-void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& readings, double dt, Error& error) {
+void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& readings, const Error& along_x, const Error& along_z, double dt, Error& error) {
     const WheelState& w = wheels_[i];
     const Rotation R = rotation();
     const double side = i % 2 == 0 ? robot_.half_track : -robot_.half_track;
@@ -299,7 +313,13 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
     // The nearer to its grip, the less a wheel's turning says.
     const double used = std::abs(w.traction) / std::max(dot(w.felt, n), 0.02 * weight_) / kGripUsed;
     update(h, (1.0 + scale_) * rolled - dot3(t, speed), std::hypot(noise_.rolling * std::max(1.0, used * used), askew));
-    update(row(off), -dot3(off, speed), std::hypot(noise_.off_face, askew));
+    h = row(off);
+    const bool round = path_.on_arc(on.s);
+    if (round) {  // where it goes says how far round the edge it is: dn/ds = t / radius
+        const double turning = (n.z * speed[0] - n.x * speed[2]) / radius;
+        for (std::size_t k = 0; k < kErrors; ++k) h[k] += turning * (n.z * along_x[k] - n.x * along_z[k]);
+    }
+    update(h, -dot3(off, speed), round ? kRound * noise_.off_face : std::hypot(noise_.off_face, askew));
 }
 
 void Estimator::correct(const Error& e) {

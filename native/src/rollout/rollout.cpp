@@ -53,10 +53,10 @@ Perceived Rollout::perceive(std::span<const double> noise) {
 const control::Reference& Rollout::target(const Perceived& seen, bool moving, double time) {
     if (safe_stop_.why() != control::Stop::none) return stand_;
     const bool searching = moving && seen.ahead.any();
-    const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt_);
+    const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt_, seen.ahead.hanging);
     if (!seen.places) return drawn;
-    const control::Reference& next = adapted_ = leg_fit_.fit(drawn, seen.ground, dt_);
-    if (searching) adapted_ = control::search(adapted_, seen.ahead, *seen.places);
+    adapted_ = face_search_.step(leg_fit_.fit(drawn, seen.ground, dt_), searching ? seen.ahead : control::Ahead{}, *seen.places, dt_);
+    const control::Reference& next = adapted_;
     const auto [w, x, y, z] = seen.state.quaternion;
     const double pitch = std::atan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y));
     const double error = std::remainder(pitch - next.value.pitch, 2 * std::numbers::pi);

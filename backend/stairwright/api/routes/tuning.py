@@ -44,15 +44,19 @@ def _document() -> SettingsDocument:
 
 
 def _flat(model: type[Model]) -> dict[str, Any]:
-    """The model's schema with references to shared enumerations put in place."""
+    """The model's schema with references to shared parts put in place."""
     schema = model.model_json_schema(by_alias=True)
     shared = schema.pop("$defs", {})
 
-    def resolve(node: dict[str, Any]) -> dict[str, Any]:
-        if "$ref" not in node:
+    def resolve(node: Any) -> Any:
+        if isinstance(node, list):
+            return [resolve(each) for each in node]
+        if not isinstance(node, dict):
             return node
-        target = shared[node["$ref"].rsplit("/", 1)[-1]]
-        return {**target, **{key: value for key, value in node.items() if key != "$ref"}}
+        kept = {key: resolve(value) for key, value in node.items() if key != "$ref"}
+        if "$ref" not in node:
+            return kept
+        return {**resolve(shared[node["$ref"].rsplit("/", 1)[-1]]), **kept}
 
     schema["properties"] = {k: resolve(v) for k, v in schema.get("properties", {}).items()}
     return schema

@@ -9,12 +9,20 @@ namespace stairwright::control {
 struct Ahead {
     std::array<bool, 2> searching{};  // a face should be here, and is not felt
     std::array<bool, 2> on_tread{};   // can roll on
+    bool hanging = false;             // wheels hang in the air before a face
 
     bool any() const { return searching[0] || searching[1]; }
 };
 
-// `waiting` is the plan's set point that waits; `places` of the wheels on the wheel-centre curve [m]. The pairs that can
-// roll on do so slowly, and the body with them; the weight stays on the treads.
-Reference search(const Reference& waiting, const Ahead& ahead, const std::array<double, 4>& places);
+class FaceSearch {
+  public:
+    // `planned` is the plan's set point, which waits during a search; `places` of the wheels on the wheel-centre curve
+    // [m]. The pairs that can roll on do so slowly, the body with them, and push the more the longer nothing moves;
+    // the weight stays on the treads.
+    Reference step(const Reference& planned, const Ahead& ahead, const std::array<double, 4>& places, double dt);
+
+  private:
+    double waited_ = 0.0;  // s
+};
 
 }  // namespace stairwright::control

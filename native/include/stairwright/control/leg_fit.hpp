@@ -1,5 +1,6 @@
 // Legs that fit the ground as it is found to be: where front and rear wheels stand higher or farther apart than drawn,
-// the legs reach differently, so that the trunk keeps its planned attitude and no joint pulls against the ground.
+// the legs reach differently, so that the trunk keeps its planned attitude, the mass centre its place against the wheels
+// that carry it, and no joint pulls against the ground.
 #pragma once
 
 #include "stairwright/control/controller.hpp"

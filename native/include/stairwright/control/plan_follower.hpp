@@ -18,8 +18,9 @@ class PlanFollower {
     // Throws std::invalid_argument unless there are two rows at least and as many speeds.
     PlanFollower(double start, double step, std::vector<Reference> rows, std::vector<double> speeds, double maximum_lead);
 
-    // One control step on; `places` of the wheels are NaN before the first measurement.
-    const Reference& advance(const std::array<double, 4>& places, bool moving, double dt);
+    // One control step on; `places` of the wheels are NaN before the first measurement. Of wheels that hang over a
+    // corner the plan is ahead by much less.
+    const Reference& advance(const std::array<double, 4>& places, bool moving, double dt, bool hanging = false);
 
     double way() const { return way_; }    // m
     bool arrived() const { return way_ >= start_ + step_ * static_cast<double>(rows_.size() - 1) - 1e-9; }

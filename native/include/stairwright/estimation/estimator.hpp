@@ -60,6 +60,7 @@ struct Estimate {
     // How much farther ahead and higher each pair's ground lies than drawn, against their mean [m].
     std::array<Vec2, 2> ground{};
     std::array<bool, 2> on_tread{};   // of each pair: it can roll on for a while
+    bool hanging = false;             // a wheel is in the air where the map has it pass a corner
     std::array<bool, 2> searching{};  // the map has a face where the pair is, and it feels none
 };
 
@@ -90,6 +91,7 @@ class Estimator {
         double traction = 0.0;    // smoothed [N]
         double s;                 // place on the curve [m]
         std::size_t face = 0;     // piece of the curve, the last straight one
+        double put_back = 0.0;    // how far it has been put back on that piece, see Estimator::put_back [m]
         double rolled = 0.0;      // by the last step [m]
         double rate_now = 0.0;    // absolute, of its turning [rad/s]
         double cruise = 0.0;      // speed that it rolls at, smoothed [m/s]
@@ -105,7 +107,7 @@ class Estimator {
     void put_back(int wheel, Vec2 along, double excess, Error& error);
     void enter_face(int wheel, const CurveMatch& on);
     void measure_place(int wheel, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error);
-    void measure_rolling(int wheel, const CurveMatch& on, const Readings& readings, double dt, Error& error);
+    void measure_rolling(int wheel, const CurveMatch& on, const Readings& readings, const Error& along_x, const Error& along_z, double dt, Error& error);
     void correct(const Error& error);
     void report(const Readings& readings);
 

@@ -83,6 +83,7 @@ class Rollout {
     std::vector<Judged> judged_;
     control::SafeStop safe_stop_;
     control::LegFit leg_fit_;
+    control::FaceSearch face_search_;
     control::Reference adapted_{};  // what is asked for, with legs that fit the ground as it is
     control::Reference stand_{};    // what is asked for after the stop
     double stopped_at_ = 0.0;
