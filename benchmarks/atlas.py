@@ -37,23 +37,30 @@ def studies_of(name: str) -> Iterator[tuple[str, dict[str, Any]]]:
     """The studies of one robot, by the name of their map."""
     mass = round(load_robot(name).mass, 1)
     friction = {"name": "friction", "values": list(FRICTIONS)}
-    yield "stairs", {
-        "axes": [
-            {"name": "stairs.tread", "values": list(TREADS)},
-            {"name": "friction", "values": [0.45, 0.6]},
-            {"name": "stairs.rise", "boundary": [0.04, 0.94], "tolerance": 0.03},
-        ]
-    }
-    yield "step", {
-        "axes": [friction, {"name": "step.height", "boundary": [0.04, 1.24], "tolerance": 0.03}]
-    }
-    yield "payload", {
-        "terrain": STAIR,
-        "axes": [
-            friction,
-            {"name": "payload", "boundary": [0.0, mass], "tolerance": mass / 24},
-        ],
-    }
+    yield (
+        "stairs",
+        {
+            "axes": [
+                {"name": "stairs.tread", "values": list(TREADS)},
+                {"name": "friction", "values": [0.45, 0.6]},
+                {"name": "stairs.rise", "boundary": [0.04, 0.94], "tolerance": 0.03},
+            ]
+        },
+    )
+    yield (
+        "step",
+        {"axes": [friction, {"name": "step.height", "boundary": [0.04, 1.24], "tolerance": 0.03}]},
+    )
+    yield (
+        "payload",
+        {
+            "terrain": STAIR,
+            "axes": [
+                friction,
+                {"name": "payload", "boundary": [0.0, mass], "tolerance": mass / 24},
+            ],
+        },
+    )
 
 
 def rows_of(map_name: str, robot: str, data: Any) -> Iterator[Row]:
@@ -88,7 +95,9 @@ def compute(names: Sequence[str], workers: int | None) -> list[Row]:
             rows = list(rows_of(map_name, name, result.dataset))
             out += rows
             cells = sum(row["asked"] for row in rows)
-            print(f"{name} {map_name}: {cells} cells, {time.perf_counter() - begun:.0f} s", flush=True)
+            print(
+                f"{name} {map_name}: {cells} cells, {time.perf_counter() - begun:.0f} s", flush=True
+            )
     return out
 
 
@@ -109,10 +118,7 @@ def load() -> list[Row]:
     """The table as it is kept."""
     with TABLE.open(newline="", encoding="utf-8") as file:
         return [
-            {
-                k: v if k in ("map", "robot", "reason", "needs") else float(v)
-                for k, v in row.items()
-            }
+            {k: v if k in ("map", "robot", "reason", "needs") else float(v) for k, v in row.items()}
             for row in csv.DictReader(file)
         ]
 

@@ -5,7 +5,7 @@ import { ApiError } from "../api/client";
 import { report } from "../state/connection";
 import { decode, encode, kept } from "../state/share";
 import { Cube, type Field, fieldOf, type Layout, layoutOf } from "./cube";
-import { documentOf, type Form, form } from "./form";
+import { documentOf, type Form, form, formOf } from "./form";
 import { LEAST } from "./quantities";
 import {
   cancelStudy,
@@ -142,7 +142,9 @@ async function readAsked(id: string): Promise<void> {
 export async function openStudy(id: string): Promise<void> {
   refusal.value = null;
   try {
-    show(await getStudy(id));
+    const state = await getStudy(id);
+    show(state);
+    form.value = formOf(state.axes, await getStudyDocument(id));
   } catch (error) {
     if (error instanceof ApiError && error.status === 404) {
       refusal.value = "This service has not computed that map. Run computes it.";
