@@ -39,7 +39,7 @@ def write(rows: Sequence[Row]) -> None:
     mpl.rcParams.update(
         {"font.size": 9, "axes.edgecolor": LINE, "text.color": INK, "axes.labelcolor": SOFT,
          "xtick.color": SOFT, "ytick.color": SOFT, "svg.hashsalt": "stairwright",
-         "svg.fonttype": "none", "font.family": ["Inter", "DejaVu Sans"]}
+         "svg.fonttype": "none", "font.family": "DejaVu Sans"}
     )  # fmt: skip
     names = [name for name in robots() if any(row["robot"] == name for row in rows)]
     draw_stairs(rows, names)
@@ -91,8 +91,11 @@ def draw_stairs(rows: Sequence[Row], names: Sequence[str]) -> None:
             panel.add_patch(Polygon(area, fill=False, ec=INK, lw=0.9, ls=dash))
         panel.set_title(name, fontsize=9.5, fontweight="bold", loc="left")
         _plain(panel)
+        panel.set_facecolor("#f1f4f7")
         panel.set_xlim(0.18, 0.42)
         panel.set_ylim(0, 0.94)
+    for spare in panels.flat[len(names) : -1]:
+        spare.axis("off")
     _key(panels.flat[-1])
     figure.supxlabel("tread, m", fontsize=9, color=SOFT)
     figure.supylabel("rise, m", fontsize=9, color=SOFT)
