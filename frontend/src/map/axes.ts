@@ -118,7 +118,8 @@ export function legendShapes(frame: Frame, look: Look, coarse: boolean): Shape[]
       anchor: "middle",
     });
   }
-  const name = look.most === null ? quantity.title : `${quantity.title}; darkest: only one passes`;
+  const unit = `${quantity.title}, ${quantity.unit}`;
+  const name = look.most === null ? unit : `${unit}; darkest: only one passes`;
   const narrow = frame.width < NARROW;
   out.push({
     kind: "text",

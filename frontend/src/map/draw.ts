@@ -100,7 +100,7 @@ const onPanel = (panel: Panel, line: readonly Point[]): Point[] =>
 
 function contourShapes(panel: Panel, { field, values }: Content, look: Look): Shape[] {
   const { scale, quantity } = look;
-  if (look.most !== null) return [];
+  if (look.most !== null || Math.min(field.nx, field.ny) < 4) return []; // too few for a line
   const even = smoothed(values, field.nx, field.ny);
   const out: Shape[] = [];
   const labels: Point[] = [];

@@ -118,7 +118,8 @@ export function documentOf(now: Form): StudyDocument | null {
     to,
     count,
   }));
-  if (now.second) axes.push({ name: "robot", values: [page.robot, now.second] });
+  if (now.second && now.second !== page.robot)
+    axes.push({ name: "robot", values: [page.robot, now.second] });
   const rest: StudyDocument = { friction: page.friction };
   if (hasFriction(now)) delete rest.friction;
   else if (now.friction === "slices") {

@@ -44,7 +44,7 @@ export function scaleOf(all: readonly Float64Array[], quantity: Quantity): Scale
     }
   }
   if (low > high) [low, high] = [0, 1];
-  const least = 10 ** -quantity.digits * 4; // narrower than this, colours would show noise
+  const least = 10 ** -quantity.digits * 10; // narrower than this, colours would show noise
   if (high - low < least) [low, high] = [low - least / 2, high + least / 2];
   const step = roundStep(high - low, 6);
   low = Math.floor(low / step + 1e-9) * step;

@@ -85,7 +85,6 @@ function say(error: unknown): void {
 export async function start(): Promise<void> {
   const document = documentOf(form.peek());
   if (!document) return;
-  if (form.peek().friction === "least") quantity.value = LEAST;
   await submit(document);
 }
 
@@ -107,6 +106,8 @@ function show(state: StudyState): void {
     if (!again) {
       asked.value = null;
       slices.value = {};
+      // At the border the margins are thin by definition.
+      if (state.axes.some((axis) => axis.boundary)) quantity.value = LEAST;
     }
     drawn.value += 1;
   });
@@ -221,6 +222,7 @@ function restore(text: string): void {
     quantity.value = String(state.q);
     if (state.i) {
       void openStudy(state.i).then(() => {
+        quantity.value = String(state.q);
         slices.value = state.s ?? {};
       });
     }
