@@ -142,10 +142,11 @@ def main() -> None:
     parser.add_argument("--cells", type=int, default=1000)
     parser.add_argument("--robot", default="a1_wheeled")
     parser.add_argument("--rise", type=float, nargs=2, default=(0.06, 0.9))
+    parser.add_argument("--diagnose", default="all", help="all or none of the cells without a way")
     parser.add_argument("--workers", type=int, nargs="+", default=[1, 2])
     parser.add_argument("what", nargs="*", help="overhead, workers, boundary, again")
     given = parser.parse_args()
-    document = study_of(given.cells, given.robot, given.rise)
+    document = study_of(given.cells, given.robot, given.rise) | {"diagnose": given.diagnose}
     chosen = given.what or ["overhead", "workers", "boundary", "again"]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import csv
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import httpx
 import pytest
@@ -30,13 +31,27 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
 
 
 @pytest.fixture(scope="module")
-def room(browser: Browser, service: Server) -> Iterator[Product]:
+def opened(browser: Browser, service: Server) -> Iterator[Product]:
     """The Map with a small study that is done: 4 treads, 3 rises, the highest not possible."""
     with browser.new_context(**TAB, base_url=service.url) as context:
         product = Product(context.new_page()).open()
         _small_map(product)
         yield product
         assert product.errors == []
+
+
+@pytest.fixture
+def room(opened: Product) -> Product:
+    """The Map as a picture, of one robot at the page's friction."""
+    page = opened.page
+    if page.locator(".app").get_attribute("data-workspace") != "map":
+        page.keyboard.press("2")
+    table = page.get_by_role("button", name="Table")
+    if table.get_attribute("aria-pressed") == "true":
+        table.click()
+    page.locator("#map-friction").select_option("page")
+    page.locator("#map-second").select_option("")
+    return opened
 
 
 def _small_map(product: Product) -> None:
@@ -55,6 +70,15 @@ def _small_map(product: Product) -> None:
     page.get_by_text("12 of 12 cells; done").wait_for(timeout=PATIENCE)
 
 
+def _get(service: Server, link: str) -> httpx.Response:
+    return httpx.get(service.url + link, timeout=60)
+
+
+def _newest(service: Server) -> dict[str, Any]:
+    newest: dict[str, Any] = _get(service, "/api/v1/studies").json()[0]
+    return newest
+
+
 def _canvas(page: Page) -> Locator:
     return page.get_by_role("application", name=re.compile("^Capability map"))
 
@@ -65,12 +89,10 @@ def test_the_table_says_what_the_service_computed(room: Product, service: Server
     rows = page.locator(".map-table tbody tr")
     assert [rows.nth(k).locator("th").inner_text() for k in range(3)] == ["1.05", "0.60", "0.15"]
     assert re.fullmatch(r"[\d.]+", rows.nth(2).locator("td").first.inner_text())
-    study = httpx.get(f"{service.url}/api/v1/studies").json()[0]
-    cells = httpx.get(f"{service.url}{study['links']['cells']}").json()
+    cells = _get(service, _newest(service)["links"]["cells"]).json()
     numbers = page.locator(".map-table td:not(.no)").filter(has_text=re.compile(r"^[\d.]+$"))
     assert numbers.count() == sum(cells["feasible"])
     assert page.locator(".map-table td.no").count() == 12 - sum(cells["feasible"]) > 0
-    page.get_by_role("button", name="Table").click()
 
 
 def test_arrows_read_cells_and_space_keeps_one(room: Product) -> None:
@@ -149,6 +171,42 @@ def test_the_link_shows_the_same_map(room: Product, browser: Browser, service: S
         other.page.get_by_text("12 of 12 cells; done").wait_for(timeout=PATIENCE)
         assert other.page.get_by_label("Rise to", exact=True).input_value() == "1.05"
         assert other.errors == []
+
+
+def test_the_least_friction_is_found_by_bisection(room: Product, service: Server) -> None:
+    page = room.page
+    page.get_by_label("Tread, number of values", exact=True).fill("2")
+    page.get_by_label("Rise to", exact=True).fill("0.45")
+    page.get_by_label("Rise, number of values", exact=True).fill("2")
+    page.locator("#map-friction").select_option("least")
+    with page.expect_response(lambda answer: answer.request.method == "POST") as started:
+        page.get_by_role("button", name="Run", exact=True).click()
+    page.get_by_text("12 of 12 cells; done").wait_for(state="detached")
+    assert started.value.status == 202
+    page.get_by_text(re.compile("cells; done")).wait_for(timeout=PATIENCE)
+    page.get_by_role("button", name="Table").click()
+    shown = page.locator(".map-table td button").all_inner_texts()
+    link = f"{_newest(service)['links']['export']}?format=csv"
+    rows = list(csv.DictReader(_get(service, link).text.splitlines()))
+    truth = [f"{float(row['boundary']):.2f}" for row in rows if row["boundary"]]
+    assert truth
+    assert sorted(word for word in shown if word[0].isdigit()) == sorted(truth)
+
+
+def test_two_robots_share_a_scale_and_a_pointer(room: Product) -> None:
+    page = room.page
+    page.locator("#map-second").select_option("go2w")
+    page.get_by_label("Rise to", exact=True).fill("1.05")
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.get_by_text("8 of 8 cells; done").wait_for(timeout=PATIENCE)
+    canvas = _canvas(page)
+    canvas.focus()
+    page.keyboard.press("ArrowRight")
+    assert page.locator(".mark.cur").count() == 2
+    page.get_by_role("radio", name="Difference").click()
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="Table").click()
+    page.locator("caption", has_text="go2w minus").wait_for()
 
 
 def test_paused_and_gone_on_with(room: Product) -> None:

@@ -88,6 +88,8 @@ const tick = (x: number, y: number, dx: number, dy: number, stroke: string): Sha
 });
 
 const BAR = 240;
+/** Below this the legend's name stands over its bar [px]. */
+const NARROW = 560;
 
 export function legendShapes(frame: Frame, look: Look, coarse: boolean): Shape[] {
   const { ink, scale, quantity } = look;
@@ -116,12 +118,14 @@ export function legendShapes(frame: Frame, look: Look, coarse: boolean): Shape[]
       anchor: "middle",
     });
   }
-  const name = look.most === null ? quantity.title : `${quantity.title}, second minus first`;
+  const unit = `${quantity.title}, ${quantity.unit}`;
+  const name = look.most === null ? unit : `${unit}; darkest: only one passes`;
+  const narrow = frame.width < NARROW;
   out.push({
     kind: "text",
-    x: left + w + 14,
-    y: top + 9,
-    text: `${name}, ${quantity.unit}`,
+    x: narrow ? left : left + w + 14,
+    y: narrow ? top - 5 : top + 9,
+    text: name,
     fill: ink.soft,
     size: 11,
     weight: 560,
@@ -129,7 +133,7 @@ export function legendShapes(frame: Frame, look: Look, coarse: boolean): Shape[]
   let x = frame.width - 18;
   const item = (text: string, box: (at: number) => Shape) => {
     x -= text.length * 5.7 + 22;
-    if (x < left + w + 30 + (name.length + 4) * 6) return;
+    if (x < left + w + 30 + (narrow ? 0 : name.length * 6)) return;
     out.push(box(x), { kind: "text", x: x + 21, y: top + 9, text, fill: ink.soft, size: 11 });
     x -= 18;
   };

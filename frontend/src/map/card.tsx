@@ -26,7 +26,7 @@ export function Card({ frame, place }: { frame: Frame; place: Place }) {
 
 export function Facts({ facts, short }: { facts: CellFacts; short?: boolean }) {
   const keep = short ? ["Friction needed", "CoM margin", "Clearance", "What binds"] : null;
-  const rows = facts.rows.filter((row) => !keep || keep.includes(row.name));
+  const rows = [...facts.both, ...facts.rows.filter((row) => !keep || keep.includes(row.name))];
   return (
     <>
       <h4>

@@ -5,9 +5,10 @@ import { Icon } from "../ui/icon";
 import { Facts } from "./card";
 import { factsAt, frictionAt } from "./cell";
 import { CODES } from "./codes";
+import { KeptFigure } from "./kept-figure";
 import { openCell } from "./open-cell";
 import { share } from "./share-climbed";
-import { fields, robotAxis } from "./state";
+import { fields, layout, robotAxis } from "./state";
 import { options, pinned, shownAxes, showsCodes } from "./view";
 
 export function CellPanel() {
@@ -25,6 +26,7 @@ function Codes() {
   const axes = shownAxes.value!;
   const names = robotAxis.value?.values.map(String) ?? [""];
   const friction = frictionAt();
+  const searched = layout.value?.boundary !== null;
   return (
     <section>
       <h2>Building codes</h2>
@@ -36,7 +38,7 @@ function Codes() {
               <th scope="col">code</th>
               <th scope="col">climbs</th>
               <th scope="col">needs μ</th>
-              <th scope="col">CoM, mm</th>
+              {!searched && <th scope="col">CoM, mm</th>}
             </tr>
           </thead>
           <tbody>
@@ -49,7 +51,7 @@ function Codes() {
                   </th>
                   <td>{climbed.asked ? `${fixed(climbed.percent, 0)} %` : "–"}</td>
                   <td>{fixed(climbed.friction, 2)}</td>
-                  <td>{fixed(climbed.com * 1000, 0)}</td>
+                  {!searched && <td>{fixed(climbed.com * 1000, 0)}</td>}
                 </tr>
               );
             })}
@@ -90,6 +92,7 @@ function Pinned() {
           <Icon name="close" />
         </button>
       </header>
+      <KeptFigure cell={facts.cell} />
       <Facts facts={facts} />
       <button type="button" class="btn pri" onClick={() => void openCell(place)}>
         Open as plan

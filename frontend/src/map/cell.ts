@@ -26,7 +26,15 @@ export interface CellFacts {
   message: string;
   /** It stands for a coarser cell next to it. */
   coarse: boolean;
-  rows: readonly { name: string; value: string; unit: string }[];
+  rows: readonly Row[];
+  /** Of a difference: both robots' values, first. */
+  both: readonly Row[];
+}
+
+interface Row {
+  name: string;
+  value: string;
+  unit: string;
 }
 
 const withUnit = (value: number, digits: number, unit: string) =>
@@ -53,10 +61,31 @@ export function frictionAt(): number | null {
 }
 
 export function factsAt(place: Place): CellFacts | null {
+  const names = robotAxis.value?.values.map(String);
+  if (!names) return factsOf(place, 0);
+  const own = names[place.panel] ?? "";
+  if (pairView.value === "both") {
+    const facts = factsOf(place, place.panel);
+    return facts && { ...facts, both: [{ name: "Robot", value: own, unit: "" }] };
+  }
+  const each = [0, 1].map((robot) => factsOf(place, robot));
+  const passing = each[1]?.verdict === "feasible" ? each[1] : each[0];
+  return passing
+    ? { ...passing, rows: [], both: each.map((facts, k) => told(names[k]!, facts)) }
+    : null;
+}
+
+/** One robot of a difference: its value, or that it does not pass. */
+function told(name: string, facts: CellFacts | null): Row {
+  const kind = quantityOf(quantity.value);
+  if (facts?.verdict === "infeasible") return { name, value: "not possible", unit: facts.reason };
+  const row = facts?.rows.find((each) => each.name === kind.title);
+  return { name, value: row?.value ?? "…", unit: row?.unit ?? "" };
+}
+
+function factsOf(place: Place, robot: number): CellFacts | null {
   const cube = ready();
-  const all = fields.value;
-  const pairs = robotAxis.value !== null && pairView.value === "difference";
-  const field = all[pairs ? 1 : place.panel];
+  const field = fields.value[robot];
   if (!cube || !field) return null;
   const here = place.j * field.nx + place.i;
   const cell = field.cell[here]!;
@@ -65,6 +94,7 @@ export function factsAt(place: Place): CellFacts | null {
     cell,
     title: titleOf(place),
     coarse: field.coarse[here] !== 1,
+    both: [],
   };
   if (verdict !== PASSES && verdict !== STOPPED) {
     return { ...base, verdict: "pending", reason: "", message: "", rows: [] };
@@ -79,7 +109,7 @@ export function factsAt(place: Place): CellFacts | null {
       rows: [],
     };
   }
-  const rows: { name: string; value: string; unit: string }[] = [];
+  const rows: Row[] = [];
   const friction = frictionAt();
   const border = field.border[here]!;
   for (const kind of QUANTITIES) {
@@ -99,6 +129,10 @@ export function spoken(place: Place): string {
   const facts = factsAt(place);
   if (!facts) return "";
   if (facts.verdict === "pending") return `${facts.title}: not computed yet`;
+  if (facts.both.length > 1) {
+    const each = facts.both.map((row) => `${row.name} ${row.value} ${row.unit}`);
+    return `${facts.title}: ${each.join(", ")}`;
+  }
   if (facts.verdict === "infeasible") return `${facts.title}: not possible, ${facts.reason}`;
   const kind = quantityOf(quantity.value);
   const row = facts.rows.find((each) => each.name === kind.title);

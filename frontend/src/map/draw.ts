@@ -100,7 +100,7 @@ const onPanel = (panel: Panel, line: readonly Point[]): Point[] =>
 
 function contourShapes(panel: Panel, { field, values }: Content, look: Look): Shape[] {
   const { scale, quantity } = look;
-  if (look.most !== null) return [];
+  if (look.most !== null || Math.min(field.nx, field.ny) < 4) return []; // too few for a line
   const even = smoothed(values, field.nx, field.ny);
   const out: Shape[] = [];
   const labels: Point[] = [];
@@ -162,7 +162,7 @@ function numberShapes(panel: Panel, { field, values }: Content, look: Look): Sha
   const out: Shape[] = [];
   for (let here = 0; here < values.length; here++) {
     const value = values[here]!;
-    if (Number.isNaN(value) || field.coarse[here] !== 1) continue;
+    if (!Number.isFinite(value) || field.coarse[here] !== 1) continue;
     out.push({
       kind: "text",
       x: toX(panel, here % field.nx),
@@ -259,7 +259,14 @@ function codeShapes(panel: Panel, look: Look): Shape[] {
     ];
     const free = (p: Point) =>
       used.every((q) => Math.abs(q[0] - p[0]) > 44 || Math.abs(q[1] - p[1]) > 17);
-    const spots = [corner(right - w), corner(left), corner((left + right - w) / 2)];
+    const bottom = Math.min(panel.y + panel.h - 18, Math.max(...line.map((p) => p[1])) - 8);
+    const spots = [
+      corner(right - w),
+      corner(left),
+      corner((left + right - w) / 2),
+      [corner(left)[0], bottom] as const,
+      [corner(right - w)[0], bottom] as const,
+    ];
     const [x, y] = spots.find(free) ?? spots[0]!;
     used.push([x, y]);
     tags.push(

@@ -118,7 +118,8 @@ export function documentOf(now: Form): StudyDocument | null {
     to,
     count,
   }));
-  if (now.second) axes.push({ name: "robot", values: [page.robot, now.second] });
+  if (now.second && now.second !== page.robot)
+    axes.push({ name: "robot", values: [page.robot, now.second] });
   const rest: StudyDocument = { friction: page.friction };
   if (hasFriction(now)) delete rest.friction;
   else if (now.friction === "slices") {
@@ -144,5 +145,36 @@ export function documentOf(now: Form): StudyDocument | null {
     ...(page.weights ? { weights: page.weights } : {}),
     ...rest,
     axes,
+  };
+}
+
+interface Asked {
+  name: string;
+  values: readonly (number | string)[];
+  boundary: boolean;
+}
+
+/** The form that asks what a study asked, as far as it can say it. */
+export function formOf(axes: readonly Asked[], document: StudyDocument): Form {
+  const now = form.peek();
+  const numeric = axes.filter((axis) => !axis.boundary && typeof axis.values[0] === "number");
+  const span = (axis: Asked | undefined, old: Range): Range => {
+    if (!axis) return old;
+    const values = axis.values as readonly number[];
+    const { name } = axisKind(axis.name);
+    return { name, from: values[0]!, to: values.at(-1)!, count: values.length };
+  };
+  const [x, y] = [span(numeric[0], now.x), span(numeric[1], now.y)];
+  const friction = axes.find((axis) => axis.name === "friction");
+  const sliced = friction && numeric.indexOf(friction) > 1;
+  const terrain = document.terrain as { count?: number } | undefined;
+  const robots = axes.find((axis) => axis.name === "robot")?.values;
+  return {
+    x,
+    y,
+    friction: friction?.boundary ? "least" : sliced ? "slices" : "page",
+    slices: sliced ? (friction.values as number[]) : now.slices,
+    steps: terrain?.count ?? now.steps,
+    second: robots?.length === 2 ? String(robots[1]) : null,
   };
 }

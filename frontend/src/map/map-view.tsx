@@ -1,5 +1,6 @@
 /** The map itself: a canvas, what lies under the pointer or the keys, and its card. */
 
+import { effect } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { theme } from "../state/view";
 import { Card } from "./card";
@@ -37,18 +38,24 @@ export function MapView() {
   }, []);
 
   const frame = size.w > 0 ? frameFor(size.w, size.h) : null;
-  const shownTheme = theme.value;
-  const picture = frame && root.current ? pictureFor(frame, inkOf(root.current)) : null;
 
-  useEffect(() => {
-    const context = canvas.current?.getContext("2d");
-    if (!context || !picture) return;
-    const ratio = devicePixelRatio || 1;
-    canvas.current!.width = size.w * ratio;
-    canvas.current!.height = size.h * ratio;
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    paint(context, picture);
-  }, [picture, size, shownTheme]);
+  // Not with the component: the cursor moves far more often than the picture changes.
+  useEffect(
+    () =>
+      effect(() => {
+        theme.value; // changes the ink
+        const context = canvas.current?.getContext("2d");
+        const drawn = size.w > 0 && frameFor(size.w, size.h);
+        if (!context || !drawn) return;
+        const picture = pictureFor(drawn, inkOf(root.current!));
+        const ratio = devicePixelRatio || 1;
+        canvas.current!.width = size.w * ratio;
+        canvas.current!.height = size.h * ratio;
+        context.setTransform(ratio, 0, 0, ratio, 0, 0);
+        paint(context, picture);
+      }),
+    [size],
+  );
 
   const point = (place: Place | null, patience: number) => {
     cursor.value = place;

@@ -38,13 +38,13 @@ export function scaleOf(all: readonly Float64Array[], quantity: Quantity): Scale
   let [low, high] = [Infinity, -Infinity];
   for (const values of all) {
     for (const v of values) {
-      if (Number.isNaN(v)) continue;
+      if (!Number.isFinite(v)) continue;
       low = Math.min(low, v);
       high = Math.max(high, v);
     }
   }
   if (low > high) [low, high] = [0, 1];
-  const least = 10 ** -quantity.digits * 4; // narrower than this, colours would show noise
+  const least = 10 ** -quantity.digits * 10; // narrower than this, colours would show noise
   if (high - low < least) [low, high] = [low - least / 2, high + least / 2];
   const step = roundStep(high - low, 6);
   low = Math.floor(low / step + 1e-9) * step;
@@ -56,13 +56,22 @@ export function scaleOf(all: readonly Float64Array[], quantity: Quantity): Scale
   return { low, high, ticks, step, hardness };
 }
 
-/** The second minus the first, and the largest of its sizes. */
+/**
+ * The second minus the first, and the largest of its sizes. Where only one of them has a value it
+ * is infinite, towards the one that passes.
+ */
 export function difference(
   a: Float64Array,
   b: Float64Array,
+  rising: boolean,
 ): { values: Float64Array; most: number } {
-  const values = a.map((v, k) => b[k]! - v);
-  const most = values.reduce((m, v) => (Number.isNaN(v) ? m : Math.max(m, Math.abs(v))), 0);
+  const sign = rising ? -1 : 1;
+  const values = a.map((v, k) => {
+    const w = b[k]!;
+    if (Number.isNaN(v) === Number.isNaN(w)) return w - v;
+    return sign * (Number.isNaN(v) ? Infinity : -Infinity);
+  });
+  const most = values.reduce((m, v) => (Number.isFinite(v) ? Math.max(m, Math.abs(v)) : m), 0);
   return { values, most };
 }
 

@@ -5,7 +5,7 @@ import { ApiError } from "../api/client";
 import { report } from "../state/connection";
 import { decode, encode, kept } from "../state/share";
 import { Cube, type Field, fieldOf, type Layout, layoutOf } from "./cube";
-import { documentOf, type Form, form } from "./form";
+import { documentOf, type Form, form, formOf } from "./form";
 import { LEAST } from "./quantities";
 import {
   cancelStudy,
@@ -85,7 +85,6 @@ function say(error: unknown): void {
 export async function start(): Promise<void> {
   const document = documentOf(form.peek());
   if (!document) return;
-  if (form.peek().friction === "least") quantity.value = LEAST;
   await submit(document);
 }
 
@@ -107,6 +106,8 @@ function show(state: StudyState): void {
     if (!again) {
       asked.value = null;
       slices.value = {};
+      // At the border the margins are thin by definition.
+      if (state.axes.some((axis) => axis.boundary)) quantity.value = LEAST;
     }
     drawn.value += 1;
   });
@@ -142,7 +143,9 @@ async function readAsked(id: string): Promise<void> {
 export async function openStudy(id: string): Promise<void> {
   refusal.value = null;
   try {
-    show(await getStudy(id));
+    const state = await getStudy(id);
+    show(state);
+    form.value = formOf(state.axes, await getStudyDocument(id));
   } catch (error) {
     if (error instanceof ApiError && error.status === 404) {
       refusal.value = "This service has not computed that map. Run computes it.";
@@ -219,6 +222,7 @@ function restore(text: string): void {
     quantity.value = String(state.q);
     if (state.i) {
       void openStudy(state.i).then(() => {
+        quantity.value = String(state.q);
         slices.value = state.s ?? {};
       });
     }

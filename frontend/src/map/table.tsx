@@ -4,8 +4,14 @@ import { fixed } from "../geometry/format";
 import { PASSES, STOPPED } from "./cube";
 import { openCell } from "./open-cell";
 import { quantityOf, reasonWords } from "./quantities";
-import { quantity } from "./state";
+import { quantity, robotAxis } from "./state";
 import { contents, shownAxes } from "./view";
+
+/** Of a difference, infinite: only one of the two passes. */
+function told(value: number, digits: number): string {
+  const only = robotAxis.value?.values[value > 0 === quantityOf(quantity.value).rising ? 0 : 1];
+  return Number.isFinite(value) ? fixed(value, digits) : `only ${only}`;
+}
 
 export function MapTable() {
   const axes = shownAxes.value;
@@ -49,7 +55,7 @@ export function MapTable() {
                         onClick={() => void openCell({ panel, i, j })}
                       >
                         {verdict === STOPPED && reasonWords(field.reason[here]!)[1]}
-                        {verdict === PASSES && fixed(value, kind.digits)}
+                        {verdict === PASSES && told(value, kind.digits)}
                         {verdict !== PASSES && verdict !== STOPPED && "…"}
                       </button>
                     </td>

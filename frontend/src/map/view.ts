@@ -3,6 +3,7 @@
 import { computed, signal } from "@preact/signals";
 import { axisShapes, legendShapes } from "./axes";
 import { CODES } from "./codes";
+import { type Field, UNKNOWN } from "./cube";
 import { type Content, type Look, type Options, panelShapes } from "./draw";
 import { type Frame, frameOf, type Place } from "./frame";
 import type { Ink } from "./palette";
@@ -61,14 +62,11 @@ export const contents = computed<{ list: Content[]; most: number | null }>(() =>
   const values = list.map((field) => valuesOf(cube, field, chosen));
   const names = robotAxis.value?.values.map(String);
   if (names && pairView.value === "difference") {
-    const { values: apart, most } = difference(values[0]!, values[1]!);
-    const [a, b] = list as [(typeof list)[0], (typeof list)[0]];
-    // Stopped where both are; where one is, its own reason tells which.
-    const field = { ...b, verdict: b.verdict.map((v, k) => (a.verdict[k] === 0 ? 0 : v)) };
-    field.reason = b.reason.map((why, k) => why || a.reason[k]!);
-    field.verdict = field.verdict.map((v, k) => (v === 0 ? 0 : Math.max(v, a.verdict[k]!)));
-    const title = `${names[1]} minus ${names[0]}`;
-    return { list: [{ field, values: apart, title }], most };
+    const { values: apart, most } = difference(values[0]!, values[1]!, chosen.rising);
+    return {
+      list: [{ field: common(list[0]!, list[1]!), values: apart, title: between(names) }],
+      most,
+    };
   }
   return {
     list: list.map((field, k) => ({
@@ -79,6 +77,17 @@ export const contents = computed<{ list: Content[]; most: number | null }>(() =>
     most: null,
   };
 });
+
+const between = (names: readonly string[]) => `${names[1]} minus ${names[0]}`;
+
+/** Stopped where both are, for the second's reason; known where both are. */
+function common(a: Field, b: Field): Field {
+  const verdict = b.verdict.map((v, k) => {
+    const w = a.verdict[k]!;
+    return v === UNKNOWN || w === UNKNOWN ? UNKNOWN : Math.min(v, w);
+  });
+  return { ...b, verdict, coarse: b.coarse.map((c, k) => Math.max(c, a.coarse[k]!)) };
+}
 
 export const scale = computed(() =>
   scaleOf(

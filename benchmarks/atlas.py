@@ -1,0 +1,142 @@
+"""The atlas: how high, on what and how loaded every preset robot climbs, as boundary studies.
+
+    python benchmarks/atlas.py [--workers 2] [--robots go2w b2w] [--draw]
+
+Studies are kept in the data folder, so a run that was interrupted goes on. Writes docs/atlas.csv,
+docs/images/atlas-*.svg and the tables between the marks in docs/atlas.md; `--draw` only draws what
+docs/atlas.csv holds.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import math
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import stairwright as sw
+from stairwright.library import load_robot, robots
+from stairwright.planning.planner import plan
+
+DOCS = Path(__file__).parents[1] / "docs"
+TABLE = DOCS / "atlas.csv"
+FIELDS = (
+    "map", "robot", "x", "friction", "border", "beyond", "reason", "needs", "monotone", "asked",
+)  # fmt: skip
+Row = dict[str, Any]
+
+FRICTIONS = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
+TREADS = (0.18, 0.22, 0.26, 0.30, 0.34, 0.38, 0.42)
+STAIR = {"kind": "stair", "rise": 0.17, "run": 0.28, "count": 3}
+
+
+def studies_of(name: str) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The studies of one robot, by the name of their map."""
+    mass = round(load_robot(name).mass, 1)
+    friction = {"name": "friction", "values": list(FRICTIONS)}
+    yield (
+        "stairs",
+        {
+            "axes": [
+                {"name": "stairs.tread", "values": list(TREADS)},
+                {"name": "friction", "values": [0.45, 0.6]},
+                {"name": "stairs.rise", "boundary": [0.04, 0.94], "tolerance": 0.03},
+            ]
+        },
+    )
+    yield (
+        "step",
+        {"axes": [friction, {"name": "step.height", "boundary": [0.04, 1.24], "tolerance": 0.03}]},
+    )
+    yield (
+        "payload",
+        {
+            "terrain": STAIR,
+            "axes": [
+                friction,
+                {"name": "payload", "boundary": [0.0, mass], "tolerance": mass / 24},
+            ],
+        },
+    )
+
+
+def rows_of(map_name: str, robot: str, data: Any) -> Iterator[Row]:
+    """A study's rows as they are kept; x is the tread [m] where there is one, else the friction."""
+    stacked = data.stack(row=list(data.boundary.dims)) if data.boundary.ndim > 1 else data
+    over = "row" if data.boundary.ndim > 1 else data.boundary.dims[0]
+    for k in range(stacked.sizes[over]):
+        here = stacked.isel({over: k})
+        friction = float(here.friction)
+        yield {
+            "map": map_name,
+            "robot": robot,
+            "x": float(here["stairs.tread"]) if map_name == "stairs" else friction,
+            "friction": friction,
+            "border": float(here.boundary),
+            "beyond": float(here.beyond),
+            "reason": str(here.reason.values),
+            "needs": str(here.quantity.values),
+            "monotone": int(here.monotone),
+            "asked": int(here.asked),
+        }
+
+
+def compute(names: Sequence[str], workers: int | None) -> list[Row]:
+    """Every robot's studies."""
+    out: list[Row] = []
+    for name in names:
+        for map_name, asked in studies_of(name):
+            begun = time.perf_counter()
+            document = {"schema": "stairwright/study/1", "robot": name, **asked}
+            result = sw.study(document, workers=workers)
+            rows = list(rows_of(map_name, name, result.dataset))
+            out += rows
+            cells = sum(row["asked"] for row in rows)
+            print(
+                f"{name} {map_name}: {cells} cells, {time.perf_counter() - begun:.0f} s", flush=True
+            )
+    return out
+
+
+def save(rows: Sequence[Row], names: Sequence[str]) -> None:
+    """Take these robots' rows into the table."""
+    kept = [row for row in load() if row["robot"] not in names] if TABLE.exists() else []
+    order = {name: k for k, name in enumerate(robots())}
+    both = sorted([*kept, *rows], key=lambda row: order.get(str(row["robot"]), 99))
+    with TABLE.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
+        writer.writeheader()
+        for row in both:
+            short = {k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()}
+            writer.writerow(short)
+
+
+def load() -> list[Row]:
+    """The table as it is kept."""
+    with TABLE.open(newline="", encoding="utf-8") as file:
+        return [
+            {k: v if k in ("map", "robot", "reason", "needs") else float(v) for k, v in row.items()}
+            for row in csv.DictReader(file)
+        ]
+
+
+def main() -> None:
+    """Compute, draw, write."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--workers", type=int)
+    parser.add_argument("--robots", nargs="+", default=robots())
+    parser.add_argument("--draw", action="store_true", help="draw what is there")
+    given = parser.parse_args()
+    if not given.draw:
+        plan("flat")
+        save(compute(given.robots, given.workers), given.robots)
+    from atlas_pages import write
+
+    write([row for row in load() if not math.isnan(row["x"])])
+
+
+if __name__ == "__main__":
+    main()
