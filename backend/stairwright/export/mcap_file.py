@@ -59,7 +59,8 @@ def plan_mcap(plan: Plan, rate: float) -> bytes:
     time, position, turn = made.time[shown], made.base_position[shown], made.base_quaternion[shown]
     q, dq, effort = made.position[shown], made.velocity[shown], made.effort[shown]
     bag.path("/path", WORLD, time, position, turn)
-    bag.joint_states("/joint_states", robot.ros_joints, time, q, dq, effort)
+    own, sign = _own_angles(robot, q), robot.ros_frames[0]
+    bag.joint_states("/joint_states", robot.ros_joints, time, own, sign * dq, sign * effort)
     _transforms(bag, robot, time, position, turn, q)
     return bag.finish()
 
@@ -70,9 +71,11 @@ def rollout_mcap(rollout: Rollout) -> bytes:
     about = {"id": rollout.id, "plan_id": rollout.plan_id, "outcome": rollout.outcome}
     bag = Bag({**about, **_about(rollout)})
     _scenery(bag, robot, rollout.terrain)
-    bag.trajectory("/joint_trajectory", robot.ros_joints, s.time, positions=s.q_desired)
+    desired, sign = _own_angles(robot, s.q_desired), robot.ros_frames[0]
+    bag.trajectory("/joint_trajectory", robot.ros_joints, s.time, positions=desired)
     bag.path("/path", WORLD, s.time, s.base_position, s.base_quaternion)
-    bag.joint_states("/joint_states", robot.ros_joints, s.time, s.q, s.dq, s.torque)
+    own = _own_angles(robot, s.q)
+    bag.joint_states("/joint_states", robot.ros_joints, s.time, own, sign * s.dq, sign * s.torque)
     _transforms(bag, robot, s.time, s.base_position, s.base_quaternion, s.q)
     return bag.finish()
 
@@ -83,19 +86,25 @@ def _commands(bag: Bag, robot: Robot, made: JointCommands) -> None:
     The first point comes one period after the start, still at rest: where there are velocities
     alone, the controller integrates them from the state that it finds.
     """
-    legs = [robot.ros_joints[j] for j in _LEGS]
+    legs, sign = [robot.ros_joints[j] for j in _LEGS], robot.ros_frames[0]
     fields = {
-        "positions": made.position[1:, _LEGS],
-        "velocities": made.velocity[1:, _LEGS],
-        "accelerations": made.acceleration[1:, _LEGS],
+        "positions": _own_angles(robot, made.position)[1:, _LEGS],
+        "velocities": (sign * made.velocity)[1:, _LEGS],
+        "accelerations": (sign * made.acceleration)[1:, _LEGS],
     }
-    bag.trajectory(
-        "/joint_trajectory", legs, made.time[1:], **fields, effort=made.effort[1:, _LEGS]
-    )
+    effort = (sign * made.effort)[1:, _LEGS]
+    bag.trajectory("/joint_trajectory", legs, made.time[1:], **fields, effort=effort)
     # Controllers without an effort interface refuse trajectories that have efforts.
     bag.trajectory("/joint_trajectory_without_effort", legs, made.time[1:], **fields)
-    wheels, speeds = robot.ros_joints[_WHEELS], made.velocity[1:, _WHEELS]
+    wheels, speeds = robot.ros_joints[_WHEELS], (sign * made.velocity)[1:, _WHEELS]
     bag.trajectory("/wheel_trajectory", wheels, made.time[1:], velocities=speeds)
+
+
+def _own_angles(robot: Robot, q: Floats) -> Floats:
+    """Joint angles (n, 12) as the robot's own software counts them."""
+    sign, offset = robot.ros_frames
+    counted: Floats = sign * (q - offset)
+    return counted
 
 
 def _scenery(bag: Bag, robot: Robot, terrain: Terrain) -> None:

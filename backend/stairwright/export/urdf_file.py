@@ -2,8 +2,9 @@
 
 Frames are those of ``/tf`` in our MCAP files: `trunk` is the root, and each link's frame sits at
 its joint. ``base_link`` and ``imu`` are fixed to the trunk's centre. Capsules, which URDF does not
-have, become a cylinder with a ball at each end. Rotor inertias have no place in URDF: they are in
-the comment at the top.
+have, become a cylinder with a ball at each end. Joints have the names, axes and zero angles that
+the robot's own software gives them, where its document tells those. Rotor inertias have no place in
+URDF: they are in the comment at the top.
 """
 
 from __future__ import annotations
@@ -61,20 +62,26 @@ def robot_urdf(robot: Robot) -> bytes:
 def _leg(root: ET.Element, robot: Robot, leg: str, hip: Vector) -> None:
     own = robot.legs[0 if leg[0] == "F" else 1]
     named = dict(zip(JOINTS, robot.ros_joints, strict=True))
+    counted = dict(
+        zip(JOINTS, zip(*map(np.ndarray.tolist, robot.ros_frames), strict=True), strict=True)
+    )
     parent, place = TRUNK, hip
     for part in ("thigh", "calf"):
         link: LinkForm = getattr(own, part)
         name, (x, z) = f"{leg}_{part}", link.com
         shapes = [shape for capsule in link.capsules for shape in _capsule(*capsule)]
         _link(root, name, part, link.mass, link.inertia, (x, 0, z), shapes)
-        joint = _joint(root, named[name], "revolute", parent, name, place)
-        _drive(joint, getattr(own, f"{part}_motor"), getattr(own.limits, part))
+        sign, offset = counted[name]
+        joint = _joint(root, named[name], "revolute", parent, name, place, offset)
+        ends = sorted(sign * (end - offset) for end in getattr(own.limits, part))
+        _drive(joint, getattr(own, f"{part}_motor"), sign, (ends[0], ends[1]))
         parent, place = name, (0.0, 0.0, -link.length)
     wheel, name = own.wheel, f"{leg}_wheel"
     disc = _geometry("cylinder", radius=_number(wheel.radius), length=_number(wheel.width))
     _link(root, name, "wheel", wheel.mass, wheel.inertia, (0, 0, 0), [((0, 0, 0), 0.0, disc)])
-    joint = _joint(root, named[name], "continuous", parent, name, place)
-    _drive(joint, own.wheel_motor, None)
+    sign, offset = counted[name]
+    joint = _joint(root, named[name], "continuous", parent, name, place, offset)
+    _drive(joint, own.wheel_motor, sign, None)
 
 
 def _capsule(start: tuple[float, float], end: tuple[float, float], radius: float) -> list[Shape]:
@@ -125,17 +132,20 @@ def _link(
 
 
 def _joint(
-    root: ET.Element, name: str, kind: str, parent: str, child: str, place: Vector
-) -> ET.Element:
+    root: ET.Element, name: str, kind: str, parent: str, child: str, place: Vector,
+    turn: float = 0.0,
+) -> ET.Element:  # fmt: skip
     joint = ET.SubElement(root, "joint", name=name, type=kind)
     ET.SubElement(joint, "parent", link=parent)
     ET.SubElement(joint, "child", link=child)
-    ET.SubElement(joint, "origin", xyz=_numbers(place), rpy="0 0 0")
+    ET.SubElement(joint, "origin", xyz=_numbers(place), rpy=_numbers((0, turn, 0)))
     return joint
 
 
-def _drive(joint: ET.Element, motor: Actuator, limits: tuple[float, float] | None) -> None:
-    ET.SubElement(joint, "axis", xyz="0 1 0")
+def _drive(
+    joint: ET.Element, motor: Actuator, sign: float, limits: tuple[float, float] | None
+) -> None:
+    ET.SubElement(joint, "axis", xyz=f"0 {sign:g} 0")
     bounds = {"effort": _number(motor.torque), "velocity": _number(motor.speed)}
     if limits is not None:
         bounds |= {"lower": _number(limits[0]), "upper": _number(limits[1])}

@@ -29,6 +29,7 @@ from .parts import (
     CollisionPoints,
     Gains,
     Hips,
+    JointFrame,
     Joints,
     LegLimits,
     Link,
@@ -47,7 +48,7 @@ BENT = 0.05  # rad; a knee that bends both ways keeps this far from straight, on
 FOLDED = 3.1  # rad; a calf lies on its thigh at pi
 # Fields that documents of the first schema do not have.
 _NEW_IN_2: tuple[tuple[str, ...], ...] = (
-    ("source",), ("assumed",), ("payload",), ("rear",), ("abduction",),
+    ("source",), ("assumed",), ("payload",), ("rear",), ("abduction",), ("joint_frames",),
     ("trunk", "com"), ("trunk", "outline"), ("thigh", "shape"), ("calf", "shape"),
     ("wheel", "friction"), ("wheel", "rolling_resistance"),
     ("actuators", "thigh"), ("actuators", "calf"),
@@ -72,6 +73,15 @@ def _joint_names(names: dict[str, str]) -> dict[str, str]:
     return names
 
 
+def _known_joints(frames: dict[str, JointFrame]) -> dict[str, JointFrame]:
+    """Frames of joints that there are."""
+    for joint in frames:
+        if joint not in JOINTS:
+            raise InputError(f"no such joint; there are: {', '.join(JOINTS)}", (joint,))
+    return frames
+
+
+JointFrames = Annotated[dict[str, JointFrame], AfterValidator(_known_joints)]
 JointNames = Annotated[dict[str, str], AfterValidator(_joint_names)]
 
 
@@ -106,6 +116,11 @@ class Robot(Model):
         {},
         description="what the robot's own software calls its joints, by our names "
         "(FL_thigh ... RR_wheel); used in ROS messages and URDF",
+    )
+    joint_frames: JointFrames = optional(
+        {},
+        description="how the robot's own software counts the angles of its joints, by our names; "
+        "used in ROS messages and URDF",
     )
 
     @model_validator(mode="before")
@@ -186,6 +201,13 @@ class Robot(Model):
     def ros_joints(self) -> tuple[str, ...]:
         """What the robot's own software calls the 12 joints, in the contract's order."""
         return tuple(self.joint_names.get(joint, joint) for joint in JOINTS)
+
+    @cached_property
+    def ros_frames(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """(12,) signs and (12,) offsets [rad]: what its software calls q is sign * (q - offset)."""
+        frames = [self.joint_frames.get(joint, JointFrame()) for joint in JOINTS]
+        signs, offsets = zip(*((frame.sign, frame.offset) for frame in frames), strict=True)
+        return np.array(signs, float), np.array(offsets, float)
 
     @cached_property
     def legs(self) -> tuple[Leg, Leg]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
@@ -212,6 +212,13 @@ class RearLegs(Model):
     calf: Link | None = optional(None)
     wheel: Wheel | None = optional(None)
     actuators: Actuators | None = optional(None)
+
+
+class JointFrame(Model):
+    """How the robot's own software counts a joint: theirs = sign * (ours - offset)."""
+
+    sign: Literal[-1, 1] = Field(1, description="-1 where its axis points to the right")
+    offset: Angle = Field(0.0, description="our angle where theirs is 0 [rad]")
 
 
 class Gains(Model):

@@ -1482,6 +1482,25 @@ export interface components {
             };
         };
         /**
+         * JointFrame
+         * @description How the robot's own software counts a joint: theirs = sign * (ours - offset).
+         */
+        JointFrame: {
+            /**
+             * Sign
+             * @description -1 where its axis points to the right
+             * @default 1
+             * @enum {integer}
+             */
+            sign: -1 | 1;
+            /**
+             * Offset
+             * @description our angle where theirs is 0 [rad]
+             * @default 0
+             */
+            offset: number;
+        };
+        /**
          * JointMap
          * @description How a joint of ours follows from one of the file's: ours = sign * theirs + offset.
          */
@@ -2301,6 +2320,14 @@ export interface components {
             joint_names: {
                 [key: string]: string;
             };
+            /**
+             * Joint Frames
+             * @description how the robot's own software counts the angles of its joints, by our names; used in ROS messages and URDF
+             * @default {}
+             */
+            joint_frames: {
+                [key: string]: components["schemas"]["JointFrame"];
+            };
         };
         /**
          * RobotDocument
@@ -2364,6 +2391,14 @@ export interface components {
              */
             joint_names: {
                 [key: string]: string;
+            };
+            /**
+             * Joint Frames
+             * @description how the robot's own software counts the angles of its joints, by our names; used in ROS messages and URDF
+             * @default {}
+             */
+            joint_frames: {
+                [key: string]: components["schemas"]["JointFrame"];
             };
             /**
              * Readonly

@@ -103,6 +103,7 @@ def assemble(
         "abduction": abduction,
         "source": origin,
         "joint_names": _names(legs),
+        "joint_frames": _frames(legs),
     }
     locked = [f"{source.joint(j)} {at:.4g}" for j, at in held.items() if j not in tree.free]
     if locked:
@@ -241,6 +242,16 @@ def _names(legs: dict[str, SideLeg]) -> dict[str, str]:
     return found if len(set(used)) == len(used) else {}
 
 
+def _frames(legs: dict[str, SideLeg]) -> dict[str, dict[str, float]]:
+    """How the file counts the joints that it counts unlike us."""
+    return {
+        f"{name}_{part}": {"sign": int(own.sign), "offset": own.offset}
+        for name, leg in legs.items()
+        for part, own in zip(_PARTS, leg.maps, strict=True)
+        if own.sign < 0 or own.offset
+    }
+
+
 def _note_maps(legs: dict[str, SideLeg], notes: Notes) -> None:
     maps = [own for leg in legs.values() for own in leg.maps]
     turned = [own.name for own in maps if own.sign < 0]
@@ -253,5 +264,6 @@ def _note_maps(legs: dict[str, SideLeg], notes: Notes) -> None:
         notes.warn(f"zero angles shifted [rad], so that 0 is a straight leg: {shown}")
     if turned or shifted:
         notes.assume(
-            "commands and recordings are in our angles: the file's = sign * (ours - offset)"
+            "plans and recordings are in our angles: the file's = sign * (ours - offset); ROS "
+            "messages and URDF are in the file's"
         )
