@@ -1203,6 +1203,11 @@ export interface components {
              */
             friction_rear: number;
             /**
+             * Friction Wheels
+             * @description the true friction of the wheels FL, FR, RL, RR instead
+             */
+            friction_wheels?: number[] | null;
+            /**
              * Mass
              * @description share of the robot's mass, on the trunk
              * @default 0
@@ -1210,10 +1215,10 @@ export interface components {
             mass: number;
             /**
              * Payload
-             * @description on top of the trunk's middle [kg]
+             * @description on top of the trunk's middle [kg], or a mass and its place
              * @default 0
              */
-            payload: number;
+            payload: number | components["schemas"]["stairwright__simulation__disturbance__Payload"];
             /**
              * CoM forward
              * @description the robot's CoM moves forward [m]
@@ -1234,16 +1239,16 @@ export interface components {
             height: number;
             /**
              * Step heights
-             * @description each rise or descent is off by at most this, at random [m]
+             * @description each rise or descent is off: standard deviation, or one after the other [m]
              * @default 0
              */
-            step_height_error: number;
+            step_height_error: number | number[];
             /**
              * Face places
-             * @description each face is moved along by at most this, at random [m]
+             * @description each face is moved along: standard deviation, or one after the other [m]
              * @default 0
              */
-            face_place_error: number;
+            face_place_error: number | number[];
             /**
              * Heading
              * @description the robot starts turned to the left of the course [rad]
@@ -1292,6 +1297,31 @@ export interface components {
              * @default 0
              */
             bandwidth: number;
+            /**
+             * Motor torque
+             * @description share by which motors give more than asked for
+             * @default 0
+             */
+            torque_scale: number;
+            /**
+             * Stiction
+             * @description dry friction of each leg joint and wheel [Nm]
+             * @default 0
+             */
+            stiction: number;
+            /**
+             * Rotor Inertia
+             * @description of every motor, as its joint feels it [kg m^2]
+             */
+            rotor_inertia?: number | null;
+            /**
+             * @description what the robot's own inertial sensor errs by
+             * @default {
+             *       "gyro_bias": 0,
+             *       "accelerometer_bias": 0
+             *     }
+             */
+            imu: components["schemas"]["ImuErrors"];
         };
         /**
          * EntryChanges
@@ -1434,6 +1464,34 @@ export interface components {
             locked: {
                 [key: string]: number;
             };
+        };
+        /**
+         * ImuErrors
+         * @description The inertial sensor's errors, beside those that the usual one has.
+         */
+        ImuErrors: {
+            /**
+             * Gyroscope bias
+             * @description about each axis [rad/s]
+             * @default 0
+             */
+            gyro_bias: number;
+            /**
+             * Accelerometer bias
+             * @description along each axis [m/s^2]
+             * @default 0
+             */
+            accelerometer_bias: number;
+            /**
+             * Gyro Noise
+             * @description of a reading; the usual one if empty [rad/s]
+             */
+            gyro_noise?: number | null;
+            /**
+             * Accelerometer Noise
+             * @description of a reading; the usual one if empty [m/s^2]
+             */
+            accelerometer_noise?: number | null;
         };
         /**
          * JobDocument
@@ -1764,26 +1822,6 @@ export interface components {
             width: number;
         };
         /**
-         * Payload
-         * @description A load that is fixed to the trunk.
-         */
-        Payload: {
-            /**
-             * Mass
-             * @description [kg]
-             */
-            mass: number;
-            /**
-             * Place
-             * @description (x, z) in the trunk frame [m]
-             * @default [
-             *       0,
-             *       0
-             *     ]
-             */
-            place: number[];
-        };
-        /**
          * Plan
          * @description A plan (``stairwright/plan/1``); `id` is a hash of everything that went into it.
          */
@@ -1913,6 +1951,13 @@ export interface components {
             weights?: {
                 [key: string]: boolean | number;
             } | null;
+            /**
+             * Timing
+             * @description fast: a path as fast as friction, torques and speeds allow, see `aggressiveness`
+             * @default steady
+             * @enum {string}
+             */
+            timing: "steady" | "fast";
         };
         /**
          * PlaybackRequest
@@ -2176,7 +2221,7 @@ export interface components {
             payload: number[];
             /**
              * Step Height Error
-             * @description each rise or descent is off by at most this, at random [m]
+             * @description of each rise or descent, standard deviation [m]
              * @default [
              *       0,
              *       0
@@ -2185,7 +2230,7 @@ export interface components {
             step_height_error: number[];
             /**
              * Face Place Error
-             * @description each face is moved along by at most this, at random [m]
+             * @description of each face's place, standard deviation [m]
              * @default [
              *       0,
              *       0
@@ -2246,6 +2291,24 @@ export interface components {
              *     ]
              */
             bandwidth: number[];
+            /**
+             * Torque Scale
+             * @description share by which motors give more than asked for
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            torque_scale: number[];
+            /**
+             * Stiction
+             * @description dry friction of each leg joint and wheel [Nm]
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            stiction: number[];
         };
         /**
          * RearLegs
@@ -2293,7 +2356,7 @@ export interface components {
              */
             nominal_height: number;
             trunk: components["schemas"]["Trunk"];
-            payload?: components["schemas"]["Payload"] | null;
+            payload?: components["schemas"]["stairwright__robot__parts__Payload"] | null;
             hips: components["schemas"]["Hips"];
             thigh: components["schemas"]["Link"];
             calf: components["schemas"]["Link"];
@@ -2365,7 +2428,7 @@ export interface components {
              */
             nominal_height: number;
             trunk: components["schemas"]["Trunk"];
-            payload?: components["schemas"]["Payload"] | null;
+            payload?: components["schemas"]["stairwright__robot__parts__Payload"] | null;
             hips: components["schemas"]["Hips"];
             thigh: components["schemas"]["Link"];
             calf: components["schemas"]["Link"];
@@ -2449,10 +2512,11 @@ export interface components {
             controller: components["schemas"]["ControllerSettings"];
             /**
              * Disturbance
+             * @description what deviated, see Disturbance
              * @default {}
              */
             disturbance: {
-                [key: string]: number;
+                [key: string]: unknown;
             };
             /**
              * Outcome
@@ -2515,6 +2579,13 @@ export interface components {
             weights?: {
                 [key: string]: boolean | number;
             } | null;
+            /**
+             * Timing
+             * @description with `terrain`
+             * @default steady
+             * @enum {string}
+             */
+            timing: "steady" | "fast";
             /**
              * Friction
              * @description friction in the simulation (and of the plan, with `terrain`)
@@ -3026,11 +3097,16 @@ export interface components {
             total: number;
             /**
              * Rule
-             * @description paper: eqs 25-26
+             * @description limits: steady, within limits of speed; paper: eqs 25-26; fast: time-optimal under dynamic limits
              * @default limits
              * @enum {string}
              */
-            rule: "limits" | "paper";
+            rule: "limits" | "paper" | "fast";
+            /**
+             * Limits
+             * @description of a fast plan: at each pose what keeps it from being faster there
+             */
+            limits?: string[] | null;
         };
         /**
          * Trial
@@ -3174,6 +3250,13 @@ export interface components {
                 [key: string]: boolean | number;
             } | null;
             /**
+             * Timing
+             * @description with `terrain`
+             * @default steady
+             * @enum {string}
+             */
+            timing: "steady" | "fast";
+            /**
              * Friction
              * @description friction in the simulation (and of the plan, with `terrain`)
              */
@@ -3277,6 +3360,42 @@ export interface components {
              * @default 0
              */
             rolling_resistance: number;
+        };
+        /**
+         * Payload
+         * @description A load that is fixed to the trunk.
+         */
+        stairwright__robot__parts__Payload: {
+            /**
+             * Mass
+             * @description [kg]
+             */
+            mass: number;
+            /**
+             * Place
+             * @description (x, z) in the trunk frame [m]
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            place: number[];
+        };
+        /**
+         * Payload
+         * @description A mass that the plan does not know of.
+         */
+        stairwright__simulation__disturbance__Payload: {
+            /**
+             * Mass
+             * @description kg
+             */
+            mass: number;
+            /**
+             * Place
+             * @description of its mass centre in the trunk's frame; on top if empty [m]
+             */
+            place?: number[] | null;
         };
         /**
          * FieldError
