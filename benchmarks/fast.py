@@ -42,7 +42,9 @@ def outcome(plan: sw.Plan, options: argparse.Namespace, seed: int) -> sw.Rollout
     return sw.rollout(plan, controller=controller, disturbance=deviation, seed=seed)
 
 
-def compare(name: str, questions: list[sw.Terrain], robot: str, options: argparse.Namespace) -> None:
+def compare(
+    name: str, questions: list[sw.Terrain], robot: str, options: argparse.Namespace
+) -> None:
     outcomes: Counter[str] = Counter()
     ratios, speeds, failures = [], [], []
     for seed, terrain in enumerate(questions):

@@ -21,6 +21,7 @@ export type RobotDocument = Schemas["RobotDocument"];
 export type SentRobot = Omit<RobotDocument, "readonly" | "version">;
 export type ImportedRobot = Schemas["Imported"];
 export type Method = Schemas["PlanRequest"]["method"];
+export type PlanTiming = NonNullable<Schemas["PlanRequest"]["timing"]>;
 export type Margins = Schemas["Margins"];
 
 export type Pose = Omit<
@@ -128,6 +129,8 @@ export interface SettingSchema {
   unit?: string;
   symbol?: string;
   scale?: "log" | "linear";
+  /** The only timing that this has an effect with. */
+  timing?: PlanTiming;
 }
 
 export interface SettingsGroup {

@@ -1,7 +1,7 @@
 /** Method, comparison, weights and controller: every row is built from the service's schema. */
 
 import { useState } from "preact/hooks";
-import type { Method } from "../api/types";
+import type { Method, PlanTiming } from "../api/types";
 import {
   changedCount,
   changedWeights,
@@ -13,6 +13,7 @@ import {
   seed,
   setController,
   setWeight,
+  timing,
   weightSchema,
 } from "../state/setup";
 import { inspectorOpen } from "../state/view";
@@ -23,6 +24,11 @@ import { SettingRow, Switch } from "./slider";
 const METHODS: [Method, string][] = [
   ["path", "Path"],
   ["critical", "Paper: critical poses"],
+];
+
+const TIMINGS: [PlanTiming, string][] = [
+  ["steady", "Steady"],
+  ["fast", "Fast"],
 ];
 
 type Page = "weights" | "controller";
@@ -71,6 +77,16 @@ export function Inspector() {
               method.value = next;
             }}
           />
+          {method.value === "path" && (
+            <Segments
+              label="Timing"
+              options={TIMINGS}
+              value={timing.value}
+              onChoose={(next) => {
+                timing.value = next;
+              }}
+            />
+          )}
           <div class="r2 cmp-row">
             <span class="lab">Compare</span>
             <div class="ab">
@@ -141,9 +157,13 @@ function Segments<T extends string>({ label, small, options, value, onChoose }: 
 }
 
 function Weights() {
+  // Some weights belong to one kind of timing alone.
+  const shown = Object.entries(weightSchema.value).filter(
+    ([, schema]) => !schema.timing || schema.timing === timing.value,
+  );
   return (
     <>
-      {Object.entries(weightSchema.value).map(([name, schema]) => (
+      {shown.map(([name, schema]) => (
         <SettingRow
           key={`${method.value}-${name}`}
           name={name}

@@ -11,7 +11,7 @@ import type { Method, Plan, PlanRequest } from "../api/types";
 import { connected, report } from "./connection";
 import { drawing, isEmpty, terrainDocument } from "./drawing";
 import { Pace } from "./pace";
-import { changedWeights, compare, method, robotSource, robots, settings } from "./setup";
+import { changedWeights, compare, method, robotSource, robots, settings, timing } from "./setup";
 
 /** Shorter waits show no spinner: it would only flicker [ms]. */
 const PATIENCE = 150;
@@ -87,6 +87,7 @@ function ask(by: Method, weights: PlanRequest["weights"]): PlanRequest {
     robot: robotSource.value,
     friction: state.friction,
     method: by,
+    ...(by === "path" && timing.value === "fast" ? { timing: "fast" as const } : {}),
     ...(weights && Object.keys(weights).length > 0 ? { weights } : {}),
   };
 }
@@ -186,7 +187,7 @@ function showPlan(answer: Plan, question: Question, newest: boolean): void {
 
 /** The question that the quick method is asked: the same without the full method's weights. */
 function quick(question: PlanRequest): PlanRequest {
-  const { weights: _, ...rest } = question;
+  const { weights: _, timing: __, ...rest } = question;
   return { ...rest, method: "critical" };
 }
 
@@ -222,7 +223,7 @@ function askForPath(before: Question, patient: boolean): void {
 
 /** The question of B: the same without pose optimisation. */
 export function unoptimised(question: PlanRequest): PlanRequest {
-  const { weights: _, ...rest } = question;
+  const { weights: _, timing: __, ...rest } = question;
   return { ...rest, method: "nominal" };
 }
 

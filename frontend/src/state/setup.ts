@@ -3,6 +3,7 @@
 import { batch, computed, signal } from "@preact/signals";
 import type {
   Method,
+  PlanTiming,
   RobotDocument,
   SentRobot,
   SettingChange,
@@ -19,6 +20,8 @@ export const settings = signal<Settings | null>(null);
 
 export const robotName = signal("a1_wheeled_x");
 export const method = signal<Method>("path");
+/** How a path is timed: within limits of speed, or as fast as its dynamics allow. */
+export const timing = signal<PlanTiming>("steady");
 export const compare = signal(false);
 export const seed = signal(0);
 /** Only what differs from the default, by method. */
@@ -103,6 +106,7 @@ export const choices = computed(() => ({
   robotName: robotName.value,
   robotEdits: robotEdits.value,
   method: method.value,
+  timing: timing.value,
   seed: seed.value,
   weights: weights.value,
   controller: controller.value,
@@ -114,6 +118,7 @@ export function choose(again: Choices): void {
     robotName.value = again.robotName;
     robotEdits.value = again.robotEdits;
     method.value = again.method;
+    timing.value = again.timing;
     seed.value = again.seed;
     weights.value = again.weights;
     controller.value = again.controller;

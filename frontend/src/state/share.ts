@@ -21,6 +21,7 @@ import {
   robotSource,
   seed,
   terrains,
+  timing,
   weights,
 } from "./setup";
 import { toast } from "./toast";
@@ -33,6 +34,8 @@ interface Shared {
   /** The robot itself, where it is not a stored one. */
   rd?: SentRobot;
   m: Method;
+  /** Fast timing. */
+  f?: 1;
   w?: Partial<Record<Method, SettingValues>>;
   c?: SettingValues;
   s?: number;
@@ -74,6 +77,7 @@ function currentState(): Shared {
     r: robotName.value,
     ...(typeof source === "string" ? {} : { rd: source }),
     m: method.value,
+    ...(timing.value === "fast" ? { f: 1 as const } : {}),
     ...(filled(changed) ? { w: changed } : {}),
     ...(filled(controller.value) ? { c: controller.value } : {}),
     ...(seed.value ? { s: seed.value } : {}),
@@ -111,6 +115,7 @@ export function restoreFromAddress(): Restored | null {
     robotEdits.value = { [state.r]: robot };
   }
   method.value = state.m;
+  timing.value = state.f ? "fast" : "steady";
   weights.value = state.w ?? {};
   controller.value = state.c ?? {};
   seed.value = state.s ?? 0;
