@@ -157,4 +157,5 @@ export interface PlanRequest {
   friction: number;
   method: Method;
   weights?: SettingValues;
+  timing?: PlanTiming;
 }
