@@ -12,6 +12,7 @@ import type {
   Settings,
   SettingValues,
   TerrainDocument,
+  Trials,
 } from "./types";
 
 export const BASE = "/api/v1";
@@ -129,6 +130,15 @@ export interface RolloutRequest {
 }
 
 export const postRollout = (request: RolloutRequest) => json<Job>("POST", "rollouts", request);
+
+export interface TrialsRequest extends Omit<RolloutRequest, "disturbance"> {
+  count: number;
+  /** Name of the ranges that deviations are drawn from. */
+  bundle: string;
+}
+
+export const postTrials = (request: TrialsRequest) => json<Job>("POST", "trials", request);
+export const getTrials = (id: string) => json<Trials>("GET", `trials/${id}`);
 export const cancelJob = (id: string) => call("DELETE", `jobs/${id}`);
 export const jobEvents = (id: string) => new EventSource(`${BASE}/jobs/${id}/events`);
 

@@ -103,6 +103,9 @@ export interface Rollout extends Drive {
   series: Series;
 }
 
+export type Trials = Schemas["Trials"];
+export type Trial = Schemas["Trial"];
+
 export type Job = Omit<Schemas["JobDocument"], "error"> & { error: ProblemDetail | null };
 
 /** RFC 9457. */

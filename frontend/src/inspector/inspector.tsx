@@ -10,7 +10,6 @@ import {
   controllerSchema,
   method,
   resetAll,
-  seed,
   setController,
   setWeight,
   timing,
@@ -18,8 +17,10 @@ import {
 } from "../state/setup";
 import { inspectorOpen } from "../state/view";
 import { Icon } from "../ui/icon";
-import { NumberField } from "../ui/number-field";
+import { SeedRow } from "./seed";
+import { Segments } from "./segments";
 import { SettingRow, Switch } from "./slider";
+import { DisturbancesAndTrials } from "./trials";
 
 const METHODS: [Method, string][] = [
   ["path", "Path"],
@@ -31,10 +32,11 @@ const TIMINGS: [PlanTiming, string][] = [
   ["fast", "Fast"],
 ];
 
-type Page = "weights" | "controller";
+type Page = "weights" | "controller" | "trials";
 const PAGES: [Page, string][] = [
   ["weights", "Weights"],
   ["controller", "Controller"],
+  ["trials", "Trials"],
 ];
 
 export function Inspector() {
@@ -105,54 +107,14 @@ export function Inspector() {
               }}
             />
           </div>
-          <div class="settings">{page === "weights" ? <Weights /> : <Controller />}</div>
+          <div class="settings">
+            {page === "weights" && <Weights />}
+            {page === "controller" && <Controller />}
+            {page === "trials" && <DisturbancesAndTrials />}
+          </div>
         </div>
       )}
     </section>
-  );
-}
-
-interface SegmentsProps<T extends string> {
-  label: string;
-  /** In a header: no visible label. */
-  small?: boolean;
-  options: [T, string][];
-  value: T;
-  onChoose: (value: T) => void;
-}
-
-function Segments<T extends string>({ label, small, options, value, onChoose }: SegmentsProps<T>) {
-  const onKeyDown = (event: KeyboardEvent) => {
-    const by = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-    if (!by) return;
-    event.preventDefault();
-    event.stopPropagation();
-    const at = options.findIndex(([each]) => each === value);
-    const next = (at + by + options.length) % options.length;
-    onChoose(options[next]![0]);
-    (event.currentTarget as HTMLElement)
-      .querySelectorAll<HTMLElement>("[role=radio]")
-      [next]?.focus();
-  };
-  return (
-    <div class={small ? "r2 small" : "r2"}>
-      {!small && <span class="lab">{label}</span>}
-      <div class="seg" role="radiogroup" aria-label={label} tabIndex={-1} onKeyDown={onKeyDown}>
-        {options.map(([each, text]) => (
-          <button
-            key={each}
-            type="button"
-            role="radio"
-            tabIndex={each === value ? 0 : -1}
-            aria-checked={each === value}
-            class={each === value ? "on" : ""}
-            onClick={() => onChoose(each)}
-          >
-            {text}
-          </button>
-        ))}
-      </div>
-    </div>
   );
 }
 
@@ -176,28 +138,10 @@ function Weights() {
   );
 }
 
-const SEEDS = 2 ** 31 - 1;
-
 function Controller() {
   return (
     <>
-      <div class="w" title="Seed of the rollout's sensor noise and disturbances">
-        <span class="wl">Seed</span>
-        <span class="push">
-          <NumberField
-            label="Seed"
-            value={seed.value}
-            min={0}
-            max={SEEDS}
-            step={1}
-            format={String}
-            onChange={(v) => {
-              seed.value = Math.round(v);
-            }}
-          />
-        </span>
-        <span />
-      </div>
+      <SeedRow />
       {Object.entries(controllerSchema.value).map(([name, schema]) => (
         <SettingRow
           key={name}

@@ -8,10 +8,28 @@ import { robots } from "../state/setup";
 const WIDTH = 88;
 const HEIGHT = 46;
 const PAD = 4;
+/** How much of the terrain is shown before and behind the robot [m]. */
+const AROUND = 0.7;
+
+/** The outline between two places along x; upright faces stay upright. */
+function cut(outline: readonly Vec2[], from: number, to: number): Vec2[] {
+  const found: Vec2[] = [];
+  for (let i = 0; i + 1 < outline.length; i++) {
+    const [a, b] = [outline[i]!, outline[i + 1]!];
+    if (Math.max(a[0], b[0]) < from || Math.min(a[0], b[0]) > to) continue;
+    const run = b[0] - a[0];
+    const at = (x: number): Vec2 =>
+      Math.abs(run) < 1e-9 ? [a[0], a[1]] : [x, a[1] + ((b[1] - a[1]) * (x - a[0])) / run];
+    if (found.length === 0) found.push(a[0] < from ? at(from) : a);
+    found.push(b[0] > to ? at(to) : b);
+  }
+  return found;
+}
 
 export function Thumbnail({ summary, bad }: { summary: Summary; bad: boolean }) {
-  const { outline, pose } = summary;
-  if (!outline || outline.length < 2) return <span class="thumb" />;
+  const { outline: whole, pose } = summary;
+  const outline = whole && pose ? cut(whole, pose.x - AROUND, pose.x + AROUND) : (whole ?? []);
+  if (outline.length < 2) return <span class="thumb" />;
   const file = robots.value.find((each) => each.name === summary.robot);
   const shape = file && robotShape(file);
   const bones = pose && shape ? skeleton(shape, pose) : null;

@@ -1,0 +1,87 @@
+/** What the overlay draws of each pinned result: series over time and progress, and the CoM path. */
+
+import { signal } from "@preact/signals";
+import { getPlan, getRollout } from "../api/client";
+import type { Entry } from "../api/stored";
+import type { Plan, Rollout, Vec2 } from "../api/types";
+import { degrees } from "../geometry/format";
+import { interpolate, poseTimes } from "../geometry/frames";
+import { report } from "../state/connection";
+
+export interface Track {
+  /** [s] */
+  time: number[];
+  /** Share of the plan's course [%]. */
+  progress: number[];
+  /** Nose-up against what the plan asked for [degrees]; none for a plan. */
+  pitchError: number[] | null;
+  /** Largest of thighs and calves [Nm]; static for a plan. */
+  torque: number[] | null;
+  /** Of the planned pose at the same progress [mm]. */
+  comMargin: number[] | null;
+  /** The plan's [m]. */
+  com: Vec2[];
+  terrain: readonly Vec2[];
+}
+
+const LEG = [0, 1, 3, 4, 6, 7, 9, 10];
+
+/** By id; null while it is read or where it cannot be. */
+export const tracks = signal<ReadonlyMap<string, Track | null>>(new Map());
+
+export function load(entries: readonly Entry[]): void {
+  for (const entry of entries) {
+    if (entry.kind === "trials" || tracks.peek().has(entry.id)) continue;
+    tracks.value = new Map(tracks.peek()).set(entry.id, null);
+    read(entry)
+      .then((track) => {
+        tracks.value = new Map(tracks.peek()).set(entry.id, track);
+      })
+      .catch(report);
+  }
+}
+
+async function read(entry: Entry): Promise<Track> {
+  if (entry.kind === "plans") return ofPlan(await getPlan(entry.id));
+  const run = (await getRollout(entry.id)) as Rollout & { plan?: Plan | null };
+  const plan = run.plan ?? (run.plan_id ? await getPlan(run.plan_id).catch(() => null) : null);
+  return ofRollout(run, plan);
+}
+
+function ofPlan(plan: Plan): Track {
+  const { poses } = plan;
+  const end = poses.at(-1)?.progress || 1;
+  const limit = Math.min(
+    ...(["leg", "thigh", "calf"] as const).map(
+      (name) => plan.robot_description.actuators[name]?.torque ?? Infinity,
+    ),
+  );
+  return {
+    time: poseTimes(plan),
+    progress: poses.map((pose) => (100 * pose.progress) / end),
+    pitchError: null,
+    torque: Number.isFinite(limit) ? poses.map((pose) => limit - pose.margins.torque) : null,
+    comMargin: poses.map((pose) => pose.margins.com * 1000),
+    com: poses.map((pose) => pose.com),
+    terrain: plan.terrain.points,
+  };
+}
+
+function ofRollout(run: Rollout, plan: Plan | null): Track {
+  const { series } = run;
+  const way = plan?.poses.map((pose) => pose.progress) ?? [];
+  const margins = plan?.poses.map((pose) => pose.margins.com * 1000) ?? [];
+  const end = way.at(-1) ?? series.progress.at(-1) ?? 1;
+  return {
+    time: series.time,
+    progress: series.progress.map((value) => (100 * value) / (end || 1)),
+    pitchError: series.pitch.map((value, i) => degrees(series.pitch_desired[i]! - value)),
+    torque:
+      series.torque?.map((row) => LEG.reduce((most, k) => Math.max(most, Math.abs(row[k]!)), 0)) ??
+      null,
+    comMargin:
+      way.length > 1 ? series.progress.map((value) => interpolate(way, margins, value)) : null,
+    com: plan?.poses.map((pose) => pose.com) ?? [],
+    terrain: plan?.terrain.points ?? [],
+  };
+}
