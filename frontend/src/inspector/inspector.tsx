@@ -2,6 +2,7 @@
 
 import { useState } from "preact/hooks";
 import type { Method } from "../api/types";
+import { Effect } from "../plan/effect";
 import {
   changedCount,
   changedWeights,
@@ -152,6 +153,7 @@ function Weights() {
           onChange={(value) => setWeight(name, value)}
         />
       ))}
+      <Effect />
     </>
   );
 }

@@ -1,5 +1,6 @@
 /** What toolbar and keyboard do to the drawing. */
 
+import { restorePlot } from "../plots/room";
 import { commit, drawing, redo, selection, undo } from "../state/drawing";
 import { onLayoutKey, restore } from "../state/layout";
 import { togglePlay } from "../state/playback";
@@ -96,7 +97,13 @@ export function onPageKey(event: KeyboardEvent): void {
   const next = TOOL_KEYS[key];
   if (next) tool.value = next;
   else if (onLayoutKey(key)) event.preventDefault();
-  else if (event.key === "Escape" && !cancelGesture() && !liftPen() && !restore()) {
+  else if (
+    event.key === "Escape" &&
+    !cancelGesture() &&
+    !liftPen() &&
+    !restorePlot() &&
+    !restore()
+  ) {
     tool.value = "select";
     selection.value = [];
   } else if (event.key === " " && !isButton(event.target)) {
