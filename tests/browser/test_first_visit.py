@@ -37,7 +37,7 @@ def test_a_first_visit(product: Product) -> None:
     rise = page.get_by_role("button", name=re.compile(r"^Rise \d")).first
     rise.focus()
     rise.press("Enter")
-    page.get_by_label("Rise in metres").fill("0.9")
+    page.get_by_label("Rise in metres").fill("2.5")
     page.keyboard.press("Enter")
     product.planned()
     assert product.status == "infeasible"
