@@ -9,6 +9,7 @@ import { renewSession, startScene } from "./scene/drive";
 import { startAnnouncing } from "./state/announce";
 import { report, watchConnection } from "./state/connection";
 import { drawing, open, startHistory } from "./state/drawing";
+import { startEffect } from "./state/effect";
 import { plan, startPlanning } from "./state/planning";
 import { duration, seek, startClock } from "./state/playback";
 import { restoreRollout } from "./state/rollouts";
@@ -63,6 +64,7 @@ async function begin(): Promise<void> {
 
 render(<App />, document.getElementById("app")!);
 startPlanning();
+startEffect();
 startClock();
 startAnnouncing();
 startScene();

@@ -72,6 +72,32 @@ def test_a_planned_page_has_no_overlaps(product: Product) -> None:
     assert _everywhere(product) == []
 
 
+# What can be pressed on this screen and is smaller than a fingertip.
+SMALL = """() => [...document.querySelectorAll(
+  "button, input, select, a[href], [role=slider], [role=switch]")].filter(item => {
+  const { width, height, bottom } = item.getBoundingClientRect();
+  return width > 0 && bottom > 0 && Math.min(width, height) < 24;
+}).map(item => item.ariaLabel || item.innerText || item.title)"""
+
+
+def test_nothing_to_press_is_smaller_than_a_fingertip_on_a_phone(product: Product) -> None:
+    page = product.page
+    product.page.get_by_role("slider", name="CoM margin").press("PageUp")
+    page.set_viewport_size(PHONE)
+    try:
+        for tab in TABS:
+            areas = page.get_by_role("navigation", name="Areas")
+            areas.get_by_role("button", name=tab).click()
+            page.evaluate(DRAWN)
+            assert page.evaluate(SMALL) == [], tab
+        assert _faults(product) == []
+    finally:
+        page.set_viewport_size(DESK)
+    page.get_by_role("region", name="Effect of the weights").wait_for()
+    assert _everywhere(product) == []
+    page.get_by_role("button", name="Reset CoM margin").click()
+
+
 def test_a_comparison_has_no_overlaps(product: Product) -> None:
     switch = product.page.get_by_role("switch", name="Compare A with B")
     switch.click()

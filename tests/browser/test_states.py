@@ -229,6 +229,21 @@ def test_the_scene_draws_and_hides_viser_panel(product_with_scene: Product) -> N
     assert panel.count() == 0 or not panel.first.is_visible()
 
 
+def test_the_scene_is_saved_as_a_picture(product_with_scene: Product) -> None:
+    page = product_with_scene.open().page
+    page.frame_locator("iframe").locator("canvas").first.wait_for(timeout=30_000)
+    page.keyboard.press("l")
+    legend = page.get_by_role("group", name="Shown in the scene")
+    with page.expect_request(lambda sent: '"support":false' in (sent.post_data or "")):
+        legend.get_by_role("button", name="Support polygon").click()
+    with page.expect_download(timeout=60_000) as saved:
+        page.get_by_role("button", name="Save the scene as PNG").click()
+    assert saved.value.suggested_filename == "three-stairs-up-a1_wheeled_x-scene.png"
+    picture = saved.value.path().read_bytes()
+    assert picture.startswith(b"\x89PNG")
+    assert len(picture) > 20_000
+
+
 def _serve(port: int, data: Path) -> subprocess.Popen[bytes]:
     command = [sys.executable, "-m", "stairwright", "serve", "--port", str(port)]
     process = subprocess.Popen(

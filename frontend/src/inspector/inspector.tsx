@@ -2,6 +2,7 @@
 
 import { useState } from "preact/hooks";
 import type { Method, PlanTiming } from "../api/types";
+import { Effect } from "../plan/effect";
 import {
   changedCount,
   changedWeights,
@@ -134,6 +135,7 @@ function Weights() {
           onChange={(value) => setWeight(name, value)}
         />
       ))}
+      <Effect />
     </>
   );
 }

@@ -1,4 +1,4 @@
-/** A panel on screen: header with the values at the clock, chart, cursor, zoom, table. */
+/** A panel on screen: header with the values at the clock, chart, cursor, zoom. */
 
 import { useComputed } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
@@ -8,9 +8,10 @@ import { plan } from "../state/planning";
 import { duration, hoverTime, playing, seek, shownTime } from "../state/playback";
 import { theme } from "../state/view";
 import { Icon } from "../ui/icon";
-import { Menu } from "../ui/menu";
 import { Chart, LEFT, palette, RIGHT, type Tint } from "./chart";
 import type { Panel } from "./lines";
+import { SaveMenu, TableMenu } from "./plot-menus";
+import { alonePlot } from "./room";
 import { timeWindow, zoomTime } from "./window";
 
 interface PlotProps {
@@ -26,6 +27,7 @@ export function Plot({ panel, tint }: PlotProps) {
   const holder = useRef<HTMLDivElement>(null);
   const chart = useRef<Chart | null>(null);
   const window = timeWindow.value;
+  const alone = alonePlot.value === panel.id;
   const layout = layoutOf(panel);
   const shade = theme.value;
 
@@ -57,7 +59,22 @@ export function Plot({ panel, tint }: PlotProps) {
           {panel.unit !== "%" && <small>{panel.unit}</small>}
         </h3>
         <Values panel={panel} />
-        <TableMenu panel={panel} />
+        <span class="plot-tools">
+          <SaveMenu panel={panel} />
+          <TableMenu panel={panel} />
+          <button
+            type="button"
+            class="t ico"
+            aria-label={alone ? "Show all plots" : `Maximise ${panel.title}`}
+            title={alone ? "Show all plots (Escape)" : `Maximise ${panel.title}`}
+            aria-pressed={alone}
+            onClick={() => {
+              alonePlot.value = alone ? null : panel.id;
+            }}
+          >
+            <Icon name={alone ? "restore" : "maximise"} />
+          </button>
+        </span>
       </header>
       <Surface>
         <div class="chart" ref={holder} aria-hidden="true" />
@@ -175,57 +192,5 @@ function Surface({ children }: { children: preact.ComponentChildren }) {
       {children}
       <div class="zoomband" ref={band} />
     </div>
-  );
-}
-
-const ROWS = 24;
-
-function TableMenu({ panel }: { panel: Panel }) {
-  return (
-    <Menu
-      label={`${panel.title} as a table`}
-      button={<Icon name="table" />}
-      buttonClass="t ico tbl"
-      panelClass="values up"
-      kind="dialog"
-      align="right"
-    >
-      {() => {
-        const lines = panel.halves.flat();
-        const end = panel.time[panel.time.length - 1] ?? 0;
-        return (
-          // biome-ignore lint/a11y/noNoninteractiveTabindex: a scrolling region must take the focus
-          <section class="scroll" tabIndex={0} aria-label={`Values of ${panel.title}`}>
-            <table>
-              <thead>
-                <tr>
-                  <th scope="col">s</th>
-                  {lines.map((line) => (
-                    <th key={line.label} scope="col">
-                      {line.label} {line.read?.unit ?? panel.unit}
-                    </th>
-                  ))}
-                </tr>
-              </thead>
-              <tbody>
-                {Array.from({ length: ROWS + 1 }, (_, i) => (end * i) / ROWS).map((t) => (
-                  <tr key={t}>
-                    <td>{fixed(t, 2)}</td>
-                    {lines.map((line) => (
-                      <td key={line.label}>
-                        {fixed(
-                          interpolate(panel.time, line.raw ?? line.values, t),
-                          line.read?.digits ?? 1,
-                        )}
-                      </td>
-                    ))}
-                  </tr>
-                ))}
-              </tbody>
-            </table>
-          </section>
-        );
-      }}
-    </Menu>
   );
 }

@@ -12,7 +12,7 @@ import type { Tint } from "./chart";
 import { type Panel, type PanelId, type Source, timeAxis } from "./lines";
 import { buildPanel } from "./panels";
 import { Plot } from "./plot";
-import { roomFor, rowWidth } from "./room";
+import { alonePlot, roomFor, rowWidth } from "./room";
 
 /** In the order of the row; the last ones fall away where there is no room for them. */
 export const shownPanels = signal<readonly PanelId[]>([
@@ -44,7 +44,8 @@ const source = computed<Source>(() => {
 
 const panels = computed(() => {
   const time = timeAxis(source.value);
-  const ids = shownPanels.value.slice(0, roomFor(rowWidth.value));
+  const alone = alonePlot.value;
+  const ids = alone ? [alone] : shownPanels.value.slice(0, roomFor(rowWidth.value));
   return ids.map((id) => buildPanel(id, source.value, time));
 });
 

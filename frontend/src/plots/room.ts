@@ -1,6 +1,10 @@
 /** How many plots have room beside each other. */
 
 import { signal } from "@preact/signals";
+import type { PanelId } from "./lines";
+
+/** The plot that has the row to itself. */
+export const alonePlot = signal<PanelId | null>(null);
 
 /** Narrower, and the numbers of a heading do not fit [px]. */
 const LEAST = 220;
@@ -13,3 +17,10 @@ export const rowWidth = signal(0);
 
 export const roomFor = (width: number) =>
   width > 0 && innerWidth >= ROWS ? Math.max(1, Math.floor(width / LEAST)) : IN_ROWS;
+
+/** Whether there was one plot alone. */
+export function restorePlot(): boolean {
+  const was = alonePlot.peek() !== null;
+  alonePlot.value = null;
+  return was;
+}

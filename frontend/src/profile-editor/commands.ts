@@ -1,9 +1,10 @@
 /** What toolbar and keyboard do to the drawing. */
 
+import { restorePlot } from "../plots/room";
 import { commit, drawing, redo, selection, undo } from "../state/drawing";
 import { onLayoutKey, restore } from "../state/layout";
 import { togglePlay } from "../state/playback";
-import { type Tool, tool } from "../state/view";
+import { legendOpen, type Tool, tool } from "../state/view";
 import { save } from "../topbar/terrain-actions";
 import { addVertex, moveVertices, removeVertices } from "./edits";
 import { cancelGesture, holdSpace, releaseSpace } from "./gestures";
@@ -96,7 +97,14 @@ export function onPageKey(event: KeyboardEvent): void {
   const next = TOOL_KEYS[key];
   if (next) tool.value = next;
   else if (onLayoutKey(key)) event.preventDefault();
-  else if (event.key === "Escape" && !cancelGesture() && !liftPen() && !restore()) {
+  else if (key === "l") legendOpen.value = !legendOpen.peek();
+  else if (
+    event.key === "Escape" &&
+    !cancelGesture() &&
+    !liftPen() &&
+    !restorePlot() &&
+    !restore()
+  ) {
     tool.value = "select";
     selection.value = [];
   } else if (event.key === " " && !isButton(event.target)) {

@@ -118,9 +118,10 @@ function nextFrame(): void {
   applied = true;
   requestAnimationFrame(() => {
     applied = false;
-    if (!pending) return;
-    apply();
-    nextFrame();
+    if (pending) {
+      apply();
+      nextFrame();
+    }
   });
 }
 
@@ -146,7 +147,7 @@ function apply(): void {
 function moveWith(d: Drag, at: Vec2, event: PointerEvent): void {
   const now = toWorld(...at);
   const chosen = selection.peek();
-  const anchor = d.kind === "vertex" ? d.points[d.index]! : d.points[d.index]!;
+  const anchor = d.points[d.index]!;
   const wish: Vec2 = [anchor[0] + now[0] - d.from[0], anchor[1] + now[1] - d.from[1]];
   if (d.kind === "segment") holdDirection(d, wish);
   const alone = chosen.length <= 1 && !event.shiftKey;
@@ -154,8 +155,8 @@ function moveWith(d: Drag, at: Vec2, event: PointerEvent): void {
     ? snap(d.points, d.index, wish, view.peek().scale, event.altKey)
     : { at: event.altKey ? wish : ([onGrid(wish[0]), onGrid(wish[1])] as Vec2), x: null, z: null };
   const which = chosen.includes(d.index) ? chosen : [d.index];
-  const [dx, dz] = [snapped.at[0] - anchor[0], snapped.at[1] - anchor[1]];
-  draft({ points: moveVertices(d.points, which, dx, dz, event.shiftKey) });
+  const [x, z] = snapped.at;
+  draft({ points: moveVertices(d.points, which, x - anchor[0], z - anchor[1], event.shiftKey) });
   guides.value = snapped;
 }
 
@@ -168,9 +169,8 @@ function holdDirection(d: Drag, wish: Vec2): void {
 }
 
 function drawWith(d: Drag, at: Vec2, free: boolean): void {
-  const raw = toWorld(...at);
-  const now: Vec2 = free ? raw : [onGrid(raw[0]), onGrid(raw[1])];
-  const from: Vec2 = free ? d.from : [onGrid(d.from[0]), onGrid(d.from[1])];
+  const placed = ([x, z]: Vec2): Vec2 => (free ? [x, z] : [onGrid(x), onGrid(z)]);
+  const [now, from] = [placed(toWorld(...at)), placed(d.from)];
   const z = heightAt(d.points, from[0]);
   const wide = Math.max(0, now[0] - from[0]);
   const tall = now[1] - z;
@@ -217,8 +217,7 @@ export function release(event: PointerEvent): void {
   if (!drag || event.pointerId !== drag.id) return;
   if (pending) apply();
   const d = drag;
-  drag = null;
-  pending = null;
+  drag = pending = null;
   if (d.kind === "marquee") finishMarquee(d, event.shiftKey);
   else if (!d.moved && d.kind === "vertex" && event.shiftKey) toggleSelected(d.index);
   else if (!d.moved && d.kind === "tool") place(d);
@@ -234,8 +233,7 @@ export function release(event: PointerEvent): void {
 export function cancelGesture(): boolean {
   touches.clear();
   const active = drag !== null;
-  drag = null;
-  pending = null;
+  drag = pending = null;
   marquee.value = null;
   guides.value = null;
   dragging.value = null;
@@ -259,7 +257,7 @@ function finishMarquee(d: Drag, add: boolean): void {
   }
   const a = toWorld(box[0], box[1]);
   const b = toWorld(box[2], box[3]);
-  const inside = (v: number, p: number, q: number) => v >= Math.min(p, q) && v <= Math.max(p, q);
+  const inside = (v: number, p: number, q: number) => (v - p) * (v - q) <= 0;
   const hit = d.points.flatMap((p, i) =>
     inside(p[0], a[0], b[0]) && inside(p[1], a[1], b[1]) ? [i] : [],
   );
@@ -279,8 +277,7 @@ function grip(): { middle: Vec2; spread: number } {
 
 function startPinch(): void {
   if (drag) revert();
-  drag = null;
-  pending = null;
+  drag = pending = null;
   marquee.value = null;
   dragging.value = null;
   pinched = grip();
@@ -296,7 +293,7 @@ function pinch(): void {
 }
 
 export function splitSegment(i: number, x: number): void {
-  const { points, index } = addVertex(drawing.peek().points, i, x);
-  commit({ points });
-  selection.value = [index];
+  const added = addVertex(drawing.peek().points, i, x);
+  commit({ points: added.points });
+  selection.value = [added.index];
 }

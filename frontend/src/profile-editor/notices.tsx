@@ -2,6 +2,7 @@
 
 import { connected, retryIn, retryNow } from "../state/connection";
 import { drawing, isEmpty, selection } from "../state/drawing";
+import { ghost } from "../state/effect";
 import { plan, planB, planKept, preview, refusal, slow } from "../state/planning";
 import { activity, run } from "../state/rollouts";
 import { dismissHint, hintSeen, layers } from "../state/view";
@@ -30,6 +31,12 @@ export function Legend() {
         <span>
           <i class="dots" />
           wheel-centre path
+        </span>
+      )}
+      {ghost.value && (
+        <span class="third">
+          <i class="dash" />
+          default path
         </span>
       )}
       {planB.value && (

@@ -4,6 +4,7 @@ import { computed } from "@preact/signals";
 import { hasFailed, type Plan, type Vec2 } from "../api/types";
 import { planFrame, runFrame } from "../geometry/frames";
 import { type Frame, nearestPart, type Part, type RobotShape, skeleton } from "../geometry/robot";
+import { ghost } from "../state/effect";
 import { plan, planB, planKept, preview } from "../state/planning";
 import { duration, frame, poseIndex, shownRun, shownTime } from "../state/playback";
 import { runB } from "../state/rollouts";
@@ -169,6 +170,7 @@ export function Current() {
   return (
     <g class={fallen ? "fallen" : ""}>
       <Figure robot={shape} bones={bones} to={to} kind="halo" />
+      <Default />
       <Other />
       <Figure robot={shape} bones={bones} to={to} kind="cur" bad={badPart.value} />
       <Details robot={shape} bones={bones} to={to} shown={points} />
@@ -184,6 +186,23 @@ function CentreOfMass({ at, to }: { at: Vec2; to: Projection }) {
       <circle r={4.5} />
       <path d="M-4.5 0A4.5 4.5 0 0 1 0 -4.5V0ZM4.5 0A4.5 4.5 0 0 1 0 4.5V0Z" />
     </g>
+  );
+}
+
+/** With changed weights: the default's path, and its robot at the cursor's progress, dashed. */
+function Default() {
+  const other = ghost.value;
+  const shape = robot.value;
+  const here = plan.value?.poses[poseIndex.value];
+  if (!other?.poses.length || !shape || !here) return null;
+  const { at } = projection.value;
+  const next = other.poses.findIndex((pose) => pose.progress >= here.progress);
+  const f = poseFrame(other, next < 0 ? other.poses.length - 1 : next);
+  return (
+    <>
+      <polyline class="default-path" points={other.poses.map((p) => at(p.com)).join(" ")} />
+      {f && <Figure robot={shape} bones={skeleton(shape, f)} to={projection.value} kind="cmp" />}
+    </>
   );
 }
 

@@ -16,7 +16,7 @@ import { plan, planB, stale } from "../state/planning";
 import { playing, shownRun, shownTime, speed } from "../state/playback";
 import { run, runB } from "../state/rollouts";
 import { compare } from "../state/setup";
-import { type Layer, layers, theme } from "../state/view";
+import { type Layer, layers, SCENE_ONLY, sceneLayers, theme } from "../state/view";
 
 export const session = signal<Session | null>(null);
 
@@ -95,12 +95,13 @@ function contents(shown: Plan): Record<string, unknown> {
 function looks(): Record<string, unknown> {
   return {
     theme: theme.value,
-    layers: Object.fromEntries(
-      Object.entries(SCENE_LAYERS).map(([ours, theirs]) => [
+    layers: Object.fromEntries([
+      ...Object.entries(SCENE_LAYERS).map(([ours, theirs]) => [
         theirs,
         layers.value.has(ours as Layer),
       ]),
-    ),
+      ...SCENE_ONLY.map((layer) => [layer, sceneLayers.value.has(layer)]),
+    ]),
   };
 }
 
@@ -111,6 +112,16 @@ function tellAll(): void {
 
 export function setCamera(preset: string): void {
   scene.put({ camera: preset });
+}
+
+/** Less than anyone could see of it [s]. */
+const STIR = 1e-4;
+let stirred = false;
+
+/** Has the scene draw a frame although nothing changes. */
+export function stirScene(): void {
+  stirred = !stirred;
+  if (!playing.peek()) playback.put({ time: shownTime.peek() + (stirred ? STIR : 0) });
 }
 
 /** A running rollout is not stored yet: the scene shows its plan, as far along as the robot is. */

@@ -9,10 +9,14 @@ import { isEmpty } from "../state/drawing";
 import { livePlan } from "../state/live";
 import { plan } from "../state/planning";
 import { duration, shownRun, shownTime } from "../state/playback";
+import { legendOpen } from "../state/view";
 import { Icon } from "../ui/icon";
+import { IconButton } from "../ui/icon-button";
 import { Menu, MenuItem } from "../ui/menu";
 import { useRoving } from "../ui/roving";
 import { session, setCamera } from "./drive";
+import { SceneLegend } from "./legend";
+import { saveScene } from "./picture";
 
 const CAMERAS: [string, string][] = [
   ["follow", "Follow the robot"],
@@ -63,6 +67,25 @@ export function Scene() {
         >
           <Icon name="open" />
         </a>
+        <IconButton
+          action={() => void saveScene()}
+          label="Save the scene as PNG"
+          icon="download"
+          off={!address}
+        />
+        <button
+          type="button"
+          class={legendOpen.value ? "t ico on" : "t ico"}
+          aria-label="Legend"
+          title="Legend and what is shown (L)"
+          aria-keyshortcuts="L"
+          aria-pressed={legendOpen.value}
+          onClick={() => {
+            legendOpen.value = !legendOpen.value;
+          }}
+        >
+          <Icon name="list" />
+        </button>
         <PanelTools panel="scene" title="scene" />
       </div>
       <div class="v3">
@@ -75,6 +98,7 @@ export function Scene() {
           />
         )}
         {!isEmpty.value && connected.value && <Tag />}
+        {!isEmpty.value && connected.value && <SceneLegend />}
         {(!connected.value || isEmpty.value) && <SceneVeil />}
       </div>
     </>

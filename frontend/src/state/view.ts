@@ -1,7 +1,7 @@
 /** How the page looks: theme, layers, layout. Nothing here changes an answer. */
 
 import { effect, signal } from "@preact/signals";
-import { store, stored } from "./kept";
+import { kept, readFlag, store, stored } from "./kept";
 
 export { inspectorOpen } from "./layout";
 
@@ -18,6 +18,12 @@ export const LAYERS = {
   dimensions: "Dimensions",
 } as const;
 export type Layer = keyof typeof LAYERS;
+
+/** Layers that only the scene has, in the service's words. */
+export const SCENE_ONLY = ["forces", "support", "com"] as const;
+export type SceneLayer = (typeof SCENE_ONLY)[number];
+export const sceneLayers = signal<ReadonlySet<SceneLayer>>(new Set(SCENE_ONLY));
+export const legendOpen = kept("legend", false, readFlag);
 
 export const theme = signal<Theme>(
   document.documentElement.dataset.theme === "light" ? "light" : "dark",
@@ -37,6 +43,12 @@ export function dismissHint(): void {
 export function toggleTheme(): void {
   theme.value = theme.peek() === "dark" ? "light" : "dark";
   store("theme", theme.peek());
+}
+
+export function toggleSceneLayer(layer: SceneLayer): void {
+  const next = new Set(sceneLayers.peek());
+  if (!next.delete(layer)) next.add(layer);
+  sceneLayers.value = next;
 }
 
 export function toggleLayer(layer: Layer): void {

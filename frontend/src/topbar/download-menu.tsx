@@ -11,6 +11,7 @@ import { toast } from "../state/toast";
 import { isNarrow } from "../state/view";
 import { Icon } from "../ui/icon";
 import { Menu } from "../ui/menu";
+import { saveFile } from "../ui/save-file";
 
 export function DownloadMenu() {
   const shown = plan.value;
@@ -101,19 +102,12 @@ async function saveExport(address: string, name: string): Promise<void> {
     if (!answer.ok) throw new Error(`The service answered ${answer.status}.`);
     const given = /filename="[^"]*?((?:\.[a-z0-9]+)+)"/i;
     const ending = given.exec(answer.headers.get("content-disposition") ?? "")?.[1] ?? "";
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(await answer.blob());
-    link.download = name + ending;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), KEPT);
+    saveFile(name + ending, await answer.blob());
   } catch (error) {
     report(error);
     toast.value = { text: `Not downloaded: ${error instanceof Error ? error.message : error}` };
   }
 }
-
-/** Until then browsers have read what is downloaded [ms]. */
-const KEPT = 60_000;
 
 interface ExportsProps {
   title: string;

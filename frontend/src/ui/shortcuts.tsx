@@ -20,6 +20,7 @@ const SHEET: [string, [string, string][]][] = [
     [
       ["X", "swap profile and scene"],
       ["M", "maximise, or show both again"],
+      ["L", "legend of the scene"],
       ["I", "open or close the inspector"],
       ["Escape", "cancel, show both, select none"],
     ],

@@ -1,0 +1,63 @@
+"""A first visit from end to end: draw, plan, run, understand a refusal, compare two, download."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from .conftest import PATIENCE, TERRAIN, Product
+from .test_states import _violations
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+
+def test_a_first_visit(product: Product) -> None:
+    page = product.open().page
+    page.get_by_text("Drag a corner: the poses follow.").wait_for()
+
+    # Draw: two steps, click by click on an empty canvas.
+    page.get_by_role("button", name=TERRAIN).click()
+    page.get_by_role("button", name="New", exact=True).click()
+    page.get_by_text("click corner by corner or drag a line").wait_for()
+    page.keyboard.press("p")
+    box = page.locator(".ed").bounding_box()
+    assert box is not None
+    for x, y in ((160, 340), (230, 340), (230, 318), (310, 318), (310, 296), (420, 296)):
+        page.mouse.click(box["x"] + x, box["y"] + y)
+    page.keyboard.press("v")
+    product.planned()
+    assert product.status == "feasible", page.locator(".pill").inner_text()
+
+    # Run.
+    assert product.run() == "success"
+    assert "Success" in page.locator(".res h2").inner_text()
+
+    # Understand a refusal: the riser was made too high, the card says what is missing.
+    rise = page.get_by_role("button", name=re.compile(r"^Rise \d")).first
+    rise.focus()
+    rise.press("Enter")
+    page.get_by_label("Rise in metres").fill("2.5")
+    page.keyboard.press("Enter")
+    product.planned()
+    assert product.status == "infeasible"
+    card = page.get_by_role("region", name="What stops the robot")
+    assert len(card.locator("h4").inner_text()) > 20
+    assert _violations(page) == []
+    card.get_by_role("button", name="Undo edit").click()
+    product.planned()
+    assert product.status == "feasible"
+
+    # Compare with the nominal pose.
+    page.get_by_role("switch", name="Compare A with B").click()
+    product.run()
+    page.locator(".res thead").get_by_text("B", exact=True).wait_for(timeout=PATIENCE)
+    assert _violations(page) == []
+
+    # Download, under a name that people find again.
+    page.get_by_role("button", name="Download").click()
+    with page.expect_download() as saved:
+        page.locator('.downloads a[href*="/rollouts/"]', has_text="CSV").click()
+    name = saved.value.suggested_filename
+    assert name.endswith("-a1_wheeled_x-rollout.csv"), name
+    assert saved.value.path().stat().st_size > 1000

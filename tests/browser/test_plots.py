@@ -1,0 +1,81 @@
+"""Plots on their own and as files; what changed weights bring."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+
+import pytest
+
+from .conftest import Product
+
+pytestmark = [pytest.mark.browser]
+
+
+@pytest.fixture
+def product(shared: Product) -> Iterator[Product]:
+    """The page that these tests share, showing three stairs."""
+    shared.errors.clear()
+    yield shared.fresh()
+    assert shared.errors == []
+
+
+def test_a_plot_can_have_the_row_to_itself(product: Product) -> None:
+    page = product.page
+    plots = page.locator(".plot")
+    count = plots.count()
+    assert count > 2
+    page.get_by_role("region", name="Thigh").hover()
+    page.get_by_role("button", name="Maximise Thigh").click()
+    page.wait_for_function("() => document.querySelectorAll('.plot').length === 1")
+    page.keyboard.press("Escape")
+    page.wait_for_function(f"() => document.querySelectorAll('.plot').length === {count}")
+
+
+@pytest.mark.parametrize("form", ["PNG", "SVG", "CSV"])
+def test_a_plot_is_saved_under_terrain_and_robot(product: Product, form: str) -> None:
+    page = product.page
+    page.get_by_role("region", name="Thigh").hover()
+    page.get_by_role("button", name="Save Thigh").click()
+    with page.expect_download() as saved:
+        page.get_by_role("menuitem", name=form).click()
+    assert saved.value.suggested_filename == f"three-stairs-up-a1_wheeled_x-thigh.{form.lower()}"
+    content = saved.value.path().read_bytes()
+    if form == "PNG":
+        assert content.startswith(b"\x89PNG")
+        assert len(content) > 5000
+    elif form == "SVG":
+        assert content.startswith(b"<svg")
+        assert content.count(b"<path") > 4
+    else:
+        rows = list(csv.DictReader(content.decode().splitlines()))
+        assert len(rows) > 50
+        assert float(rows[-1]["time_s"]) > 5
+        assert -180 < float(rows[3]["front desired [°]"]) < 180
+
+
+def test_a_changed_weight_says_what_it_brings(product: Product) -> None:
+    page = product.page
+    slider = page.get_by_role("slider", name="CoM margin")
+    slider.press("End")
+    product.planned()
+    effect = page.get_by_role("region", name="Effect of the weights")
+    effect.wait_for()
+    rows = effect.get_by_role("row").all_inner_texts()
+    assert [r.split("\t")[0] for r in rows[1:]] == [
+        "CoM margin",
+        "Clearance",
+        "Friction needed",
+        "Static torque",
+        "Time",
+    ]
+    before, now = rows[1].split("\t")[1:]
+    assert int(now.split()[0]) >= int(before.split()[0])
+    path = page.locator(".default-path")
+    assert path.count() == 1
+    ghost = page.get_by_role("switch", name="Draw the default path dashed")
+    ghost.click()
+    path.wait_for(state="detached")
+    ghost.click()
+    page.get_by_role("button", name="Reset CoM margin").click()
+    effect.wait_for(state="detached")
