@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from .planning.planner import plan
     from .robot.description import Robot
     from .simulation.result import Rollout
+    from .simulation.robust_margins import RobustMargins, robust_margins
     from .simulation.rollout import rollout
     from .simulation.trials import Trials, trials
     from .studies.design import design
@@ -30,6 +31,7 @@ __all__ = [
     "DesignResult",
     "Plan",
     "Robot",
+    "RobustMargins",
     "Rollout",
     "ServiceError",
     "StudyResult",
@@ -42,6 +44,7 @@ __all__ = [
     "load_terrain",
     "plan",
     "robots",
+    "robust_margins",
     "rollout",
     "study",
     "terrains",
@@ -56,6 +59,7 @@ _HOMES = {
     "DesignResult": "studies.design_result",
     "Plan": "planning.plan",
     "Robot": "robot.description",
+    "RobustMargins": "simulation.robust_margins",
     "Rollout": "simulation.result",
     "ServiceError": "client",
     "StudyResult": "studies.study",
@@ -68,6 +72,7 @@ _HOMES = {
     "load_terrain": "library",
     "plan": "planning.planner",
     "robots": "library",
+    "robust_margins": "simulation.robust_margins",
     "rollout": "simulation.rollout",
     "study": "studies.study",
     "terrains": "library",

@@ -1,15 +1,8 @@
 #include "stairwright/estimation/error_state.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 namespace stairwright::estimation {
 
 namespace {
-
-constexpr double kInside = 3.0;    // standard deviations: a density this far inside its limit is left alone
-constexpr double kOutside = -6.0;  // beyond this the truncated normal's moments lose their digits
 
 double dot(const Error& a, const Error& b) {
     double sum = 0.0;
@@ -42,27 +35,11 @@ void Covariance::update(const Error& h, double residual, double noise, Error& er
     // (I - K h) P, then (I - K h)' from the right, and K noise K'.
     for (std::size_t i = 0; i < kErrors; ++i) {
         const double k = gain[i], b = noise * gain[i] - rest[i];
-        for (std::size_t j = 0; j < kErrors; ++j) P_[i][j] = P_[i][j] - k * ph[j] + b * gain[j];
-    }
-    for (std::size_t i = 0; i < kErrors; ++i) {
         error[i] += gain[i] * miss;
-        for (std::size_t j = 0; j < i; ++j) P_[i][j] = P_[j][i] = 0.5 * (P_[i][j] + P_[j][i]);
+        for (std::size_t j = 0; j <= i; ++j) P_[i][j] = P_[i][j] - k * ph[j] + b * gain[j];
     }
-}
-
-void Covariance::truncate(const Error& h, double limit, Error& error) {
-    const Error ph = times(h);
-    const double variance = dot(h, ph), sigma = std::sqrt(std::max(variance, 1e-18));
-    const double at = std::max((limit - dot(h, error)) / sigma, kOutside);
-    if (at > kInside) return;
-    const double density = std::exp(-0.5 * at * at) / std::sqrt(2.0 * std::numbers::pi);
-    const double ratio = density / (0.5 * std::erfc(-at / std::numbers::sqrt2));
-    const double shift = -ratio, shrink = std::clamp(1.0 - at * ratio - ratio * ratio, 0.02, 1.0);
-    for (std::size_t i = 0; i < kErrors; ++i) {
-        const double gain = ph[i] / std::max(variance, 1e-18);
-        error[i] += gain * shift * sigma;
-        for (std::size_t j = 0; j < kErrors; ++j) P_[i][j] -= gain * ph[j] * (1.0 - shrink);
-    }
+    for (std::size_t i = 0; i < kErrors; ++i)  // symmetric, whatever rounding says
+        for (std::size_t j = i + 1; j < kErrors; ++j) P_[i][j] = P_[j][i];
 }
 
 void Covariance::propagate(const std::array<std::array<double, 3>, 3>& R, const std::array<double, 3>& f, double dt) {

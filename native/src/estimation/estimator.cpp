@@ -93,8 +93,11 @@ Estimator::Rotation Estimator::rotation() const {
 const Estimate& Estimator::step(const Readings& readings, double dt) {
     predict(readings, dt);
     see_legs(readings, dt);
-    estimate_.searching = {}, estimate_.hanging = false;
+    estimate_.hanging = false;
+    for (WheelState& w : wheels_) w.missed = false;
     for (int i = 0; i < 4; ++i) measure(i, readings, dt);
+    // One wheel that has found the face is enough: a robot that comes obliquely does not touch with both.
+    for (int pair = 0; pair < 2; ++pair) estimate_.searching[pair] = wheels_[2 * pair].missed && wheels_[2 * pair + 1].missed;
     started_ = true;
     report(readings);
     return estimate_;
@@ -247,7 +250,7 @@ void Estimator::put_back(int i, Vec2 along, double excess, Error& error) {
     const int pair = i / 2;
     WheelState& w = wheels_[i];
     w.put_back += std::abs(excess);
-    estimate_.searching[pair] = estimate_.searching[pair] || w.put_back > kMissed;
+    w.missed = w.put_back > kMissed;
     const std::size_t at = estimate_.on_tread[1 - pair] ? kPlace : pair == 0 ? kFrontOffset : kRearOffset;
     error[at] += excess * along.x, error[at + 1] += excess * along.z;
     covariance_.add_noise(at, kSearchNoise * std::abs(excess));

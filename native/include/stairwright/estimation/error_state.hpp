@@ -41,10 +41,6 @@ class Covariance {
     // the correction to `error`, which holds that of the updates before since the state was last corrected.
     void update(const Error& h, double residual, double noise, Error& error);
 
-    // Truncates the density to `h e <= limit`: mean and variance of a truncated normal (Simon and Simon 2010).
-    // Leaves it alone where nearly all of it is inside.
-    void truncate(const Error& h, double limit, Error& error);
-
     // A step of time: attitude, velocity and place by the linearised strapdown equations. `R` is trunk to world,
     // `force` the specific force in the world frame.
     void propagate(const std::array<std::array<double, 3>, 3>& R, const std::array<double, 3>& force, double dt);

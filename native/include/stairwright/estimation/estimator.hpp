@@ -5,7 +5,8 @@
 //             (contact-aided filtering: Bloesch et al. 2013, Hartley et al. 2020; here the contact rolls);
 //   place     the wheel's centre lies on the map's wheel-centre curve, see curve_match.hpp: along the normal of the
 //             face, so a tread says how high the robot is and a face how far along;
-//   corner    both faces are felt: a fix; or the wheel cannot be beyond a face that it does not feel: a truncation.
+//   corner    both faces are felt: a fix. A wheel that seems to be beyond a steep face without feeling it is put back
+//             to it (the mean alone: not to feel a face is the same news at every step).
 // Nothing global is measured. Place and rolling are measured at every step although their errors last longer than one,
 // so their variances are multiplied by how many steps they last. What does not fit (slip, a wheel in the air) is left
 // out by its normalised innovation.
@@ -13,8 +14,7 @@
 // Refs: R. Hartley, M. Ghaffari, R. Eustice, J. Grizzle, "Contact-aided invariant extended Kalman filtering for robot
 // state estimation", IJRR 2020. M. Bloesch et al., "State estimation for legged robots", RSS 2013. J. Sola,
 // "Quaternion kinematics for the error-state Kalman filter", 2017. J. Neira, J. Tardos, "Data association in stochastic
-// mapping using the joint compatibility test", 2001. D. Simon, D. L. Simon, "Constrained Kalman filtering via
-// density function truncation", 2010.
+// mapping using the joint compatibility test", 2001.
 #pragma once
 
 #include "stairwright/control/controller.hpp"
@@ -91,6 +91,7 @@ class Estimator {
         double traction = 0.0;    // smoothed [N]
         double s;                 // place on the curve [m]
         std::size_t face = 0;     // piece of the curve, the last straight one
+        bool missed = false;      // it is put back now
         double put_back = 0.0;    // how far it has been put back on that piece, see Estimator::put_back [m]
         double rolled = 0.0;      // by the last step [m]
         double rate_now = 0.0;    // absolute, of its turning [rad/s]
