@@ -3,8 +3,8 @@
     python benchmarks/kills.py [--times 20] [--seed 0] [worker scheduler client server]
 
 A round counts where the study ends by itself, or the same command goes on with it; where nothing
-that was stored when the victim died is computed again or lost; and where the dataset is the one of
-a study in one process, bit by bit.
+that was stored when the victim died is lost; and where all values are those of a study in one
+process.
 """
 
 from __future__ import annotations

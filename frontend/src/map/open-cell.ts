@@ -11,8 +11,9 @@ import { toast } from "../state/toast";
 import { workspace } from "../state/workspace";
 import { factsAt } from "./cell";
 import type { Place } from "./frame";
+import { type AxisKind, axisKind } from "./quantities";
 import { study } from "./state";
-import { getCell } from "./studies";
+import { type CellAnswer, getCell } from "./studies";
 
 interface Question {
   terrain: TerrainDocument;
@@ -27,18 +28,17 @@ export async function openCell(place: Place): Promise<void> {
   const id = study.peek()?.id;
   if (!facts || !id || facts.cell < 0) return;
   try {
-    const { plan } = await getCell(id, facts.cell);
+    const { plan, values } = await getCell(id, facts.cell);
     if (!plan) {
       toast.value = { text: "These values make no stairs, so there is nothing to open." };
       return;
     }
     const question = plan as unknown as Question;
-    const robot = await known(question.robot, facts.title);
+    const robot = await known(question.robot, measures(values, ofRobot));
+    const ground = measures(values, (kind) => Boolean(kind.group));
     batch(() => {
-      open(
-        { ...question.terrain, name: plainName(facts.title), friction: question.friction },
-        null,
-      );
+      const name = ground || question.terrain.name;
+      open({ ...question.terrain, name, friction: question.friction }, null);
       robotName.value = robot;
       method.value = question.method;
       weights.value = {
@@ -56,12 +56,20 @@ export async function openCell(place: Place): Promise<void> {
 
 const LONGEST = 60;
 
-/** A cell's title as a name that terrains and robots may have. */
-const plainName = (title: string): string =>
-  title
-    .replaceAll(/[^\w .+-]+/g, "")
-    .replaceAll(/ +/g, " ")
-    .trim();
+const ofRobot = (kind: AxisKind) => kind.name === "payload" || kind.name.startsWith("robot.");
+
+/** The cell's values of some axes, as a part of a name that terrains and robots may have. */
+function measures(values: CellAnswer["values"], which: (kind: AxisKind) => boolean): string {
+  return Object.entries(values)
+    .map(([name, value]) => ({ kind: axisKind(name), value }))
+    .filter(({ kind }) => which(kind))
+    .map(({ kind, value }) => {
+      const shown = typeof value === "number" ? value.toFixed(kind.digits) : value;
+      return `${kind.title.toLowerCase()} ${shown} ${kind.unit}`.trim();
+    })
+    .join(" ")
+    .replaceAll(/[^\w .+-]+/g, "");
+}
 
 /** The page keeps only what differs from the default. */
 function changed(by: Method, values: SettingValues): SettingValues {
@@ -72,10 +80,10 @@ function changed(by: Method, values: SettingValues): SettingValues {
 }
 
 /** The robot's name; one that a map has changed is stored first, under a name that says how. */
-async function known(robot: RobotDocument, title: string): Promise<string> {
+async function known(robot: RobotDocument, changed: string): Promise<string> {
   const same = robots.peek().find((each) => each.name === robot.name);
   if (same && alike(same, robot)) return robot.name;
-  const name = `${robot.name} ${plainName(title)}`.slice(0, LONGEST);
+  const name = `${robot.name} ${changed}`.slice(0, LONGEST);
   const { readonly: _, ...file } = { ...robot, name } as RobotDocument & { readonly?: boolean };
   const stored = await callJson<RobotDocument>("PUT", `robots/${encodeURIComponent(name)}`, file);
   robots.value = [...robots.peek().filter((each) => each.name !== name), stored];
