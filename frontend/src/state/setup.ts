@@ -75,6 +75,7 @@ export const choices = computed(() => ({
   seed: seed.value,
   weights: weights.value,
   controller: controller.value,
+  disturbance: disturbance.value,
 }));
 export type Choices = typeof choices.value;
 
@@ -85,6 +86,7 @@ export function choose(again: Choices): void {
     seed.value = again.seed;
     weights.value = again.weights;
     controller.value = again.controller;
+    disturbance.value = again.disturbance;
   });
 }
 

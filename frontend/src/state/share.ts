@@ -4,7 +4,16 @@ import { effect } from "@preact/signals";
 import type { Method, SettingValues, TerrainDocument, Vec2 } from "../api/types";
 import { committed, isEmpty, open, origin, terrainDocument } from "./drawing";
 import { run, runB, runStale } from "./rollouts";
-import { compare, controller, method, robotName, seed, terrains, weights } from "./setup";
+import {
+  compare,
+  controller,
+  disturbance,
+  method,
+  robotName,
+  seed,
+  terrains,
+  weights,
+} from "./setup";
 import { toast } from "./toast";
 import { workspace } from "./workspace";
 
@@ -16,6 +25,8 @@ interface Shared {
   w?: Partial<Record<Method, SettingValues>>;
   c?: SettingValues;
   s?: number;
+  /** Disturbance. */
+  d?: SettingValues;
   ab?: 1;
   /** Rollouts A and B, as ids. */
   ro?: string;
@@ -50,6 +61,7 @@ function currentState(): Shared {
     ...(filled(changed) ? { w: changed } : {}),
     ...(filled(controller.value) ? { c: controller.value } : {}),
     ...(seed.value ? { s: seed.value } : {}),
+    ...(filled(disturbance.value) ? { d: disturbance.value } : {}),
     ...(compare.value ? { ab: 1 as const } : {}),
     ...(result ? { ro: result.id } : {}),
     ...(result && runB.value ? { rb: runB.value.id } : {}),
@@ -83,6 +95,7 @@ export function restoreFromAddress(): Restored | null {
   weights.value = state.w ?? {};
   controller.value = state.c ?? {};
   seed.value = state.s ?? 0;
+  disturbance.value = state.d ?? {};
   compare.value = state.ab === 1;
   return { rollout: state.ro ?? null, rolloutB: state.rb ?? null };
 }
