@@ -110,6 +110,7 @@ export const choices = computed(() => ({
   seed: seed.value,
   weights: weights.value,
   controller: controller.value,
+  disturbance: disturbance.value,
 }));
 export type Choices = typeof choices.value;
 
@@ -122,6 +123,7 @@ export function choose(again: Choices): void {
     seed.value = again.seed;
     weights.value = again.weights;
     controller.value = again.controller;
+    disturbance.value = again.disturbance;
   });
 }
 

@@ -15,6 +15,7 @@ import { run, runB, runStale } from "./rollouts";
 import {
   compare,
   controller,
+  disturbance,
   method,
   robotEdits,
   robotName,
@@ -39,6 +40,8 @@ interface Shared {
   w?: Partial<Record<Method, SettingValues>>;
   c?: SettingValues;
   s?: number;
+  /** Disturbance. */
+  d?: SettingValues;
   ab?: 1;
   /** Rollouts A and B, as ids. */
   ro?: string;
@@ -81,6 +84,7 @@ function currentState(): Shared {
     ...(filled(changed) ? { w: changed } : {}),
     ...(filled(controller.value) ? { c: controller.value } : {}),
     ...(seed.value ? { s: seed.value } : {}),
+    ...(filled(disturbance.value) ? { d: disturbance.value } : {}),
     ...(compare.value ? { ab: 1 as const } : {}),
     ...(result ? { ro: result.id } : {}),
     ...(result && runB.value ? { rb: runB.value.id } : {}),
@@ -119,6 +123,7 @@ export function restoreFromAddress(): Restored | null {
   weights.value = state.w ?? {};
   controller.value = state.c ?? {};
   seed.value = state.s ?? 0;
+  disturbance.value = state.d ?? {};
   compare.value = state.ab === 1;
   return { rollout: state.ro ?? null, rolloutB: state.rb ?? null };
 }

@@ -1,0 +1,150 @@
+"""Runs: the list of what was planned, rolled out and tried, the overlay, and trials in Plan."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import stairwright as sw
+from tests.conftest import TAB, Server
+
+from .conftest import PATIENCE, PHONE, Product
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Locator
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+AXE = Path(__file__).parents[2] / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
+CURB = {"name": "runs-curb", "points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
+OUTSIDE = """() => [...document.querySelectorAll('.runs button, .runs input, .runs b')]
+  .filter(e => e.checkVisibility())
+  .filter(e => { const r = e.getBoundingClientRect();
+                 return r.width && (r.left < -1 || r.right > innerWidth + 1); })
+  .map(e => e.outerHTML.slice(0, 80))"""
+
+
+@pytest.fixture(scope="module")
+def runs(browser: Browser, server: Server) -> Iterator[Product]:
+    """One page with two rollouts to look at, which differ in their friction."""
+    with sw.Client(server.url) as service:
+        for friction in (0.6, 0.8):
+            service.rollout(CURB, friction=friction)
+    with browser.new_context(**TAB, base_url=server.url) as context:
+        product = Product(context.new_page()).open("/#v=runs")
+        product.page.get_by_label("Search names").fill("runs-curb")
+        rows = product.page.locator(".run")
+        rows.nth(1).wait_for()
+        product.page.wait_for_function("document.querySelectorAll('.run').length === 2")
+        yield product
+
+
+def _row(product: Product, friction: str) -> Locator:
+    return product.page.locator(".run").filter(has_text=f"μ {friction}")
+
+
+def test_a_row_tells_what_differs_and_what_came_of_it(runs: Product) -> None:
+    row = _row(runs, "0.80")
+    words = row.inner_text()
+    assert "runs-curb" in words
+    assert "Success" in words
+    assert " mm" in words
+    assert row.locator(".thumb .trunk").count() == 1
+
+
+def test_a_name_and_a_note_survive_a_reload_and_are_found(runs: Product) -> None:
+    page = runs.page
+    _row(runs, "0.80").get_by_role("button", name="Name, note").click()
+    page.get_by_label("Name", exact=True).fill("grippy")
+    page.get_by_label("Note", exact=True).fill("runs-curb with new tyres")
+    with page.expect_response(lambda answer: answer.request.method == "PATCH"):
+        page.get_by_role("button", name="Save", exact=True).click()
+    page.reload()
+    page.get_by_label("Search names").fill("tyres")
+    page.wait_for_function("document.querySelectorAll('.run').length === 1")
+    assert "grippy" in page.locator(".run").inner_text()
+    page.get_by_label("Search names").fill("runs-curb")
+    page.wait_for_function("document.querySelectorAll('.run').length === 2")
+
+
+def test_deleted_is_back_after_undo(runs: Product) -> None:
+    page = runs.page
+    _row(runs, "0.60").get_by_role("button", name="Name, note").click()
+    page.get_by_role("button", name="Delete", exact=True).click()
+    _row(runs, "0.60").wait_for(state="detached")
+    page.get_by_role("button", name="Undo").last.click()
+    _row(runs, "0.60").wait_for()
+
+
+def test_two_pinned_runs_lie_over_each_other(runs: Product, tmp_path: Path) -> None:
+    page = runs.page
+    for friction in ("0.60", "0.80"):
+        _row(runs, friction).locator(".run-pin").click()
+    page.locator(".ovl-paths polyline").nth(2).wait_for(state="attached")
+    for title in ("Pitch error", "Peak leg torque"):
+        lines = page.get_by_label(title, exact=True).locator("polyline")
+        dashes = [line.evaluate("e => getComputedStyle(e).strokeDasharray")
+                  for line in lines.all()]  # fmt: skip
+        assert len(set(dashes)) == 2, (title, dashes)
+    page.get_by_role("button", name="Progress").click()
+    assert page.get_by_label("Pitch error", exact=True).locator(".ovl-unit").inner_text() == "%"
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Download the table").click()
+    download.value.save_as(tmp_path / "table.csv")
+    table = (tmp_path / "table.csv").read_text().splitlines()
+    assert len(table) == 3
+    assert "Time [s]" in table[0]
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (1440, 900), (PHONE["width"], PHONE["height"])])
+def test_nothing_is_out_of_reach(runs: Product, size: tuple[int, int]) -> None:
+    runs.page.set_viewport_size({"width": size[0], "height": size[1]})
+    assert runs.page.evaluate(OUTSIDE) == []
+    runs.page.set_viewport_size(TAB["viewport"])
+
+
+def test_axe_finds_nothing_serious(runs: Product) -> None:
+    page = runs.page
+    page.evaluate(AXE.read_text(encoding="utf-8"))
+    for _ in range(2):
+        found: dict[str, Any] = page.evaluate(
+            "() => axe.run({ exclude: [['iframe']] }, { iframes: false })"
+        )
+        serious = [
+            each for each in found["violations"] if each["impact"] in ("serious", "critical")
+        ]
+        told = [(each["id"], each["nodes"][0]["html"][:120]) for each in serious]
+        assert told == []
+        page.get_by_role("button", name="Light theme").or_(
+            page.get_by_role("button", name="Dark theme")
+        ).click()
+
+
+def test_a_run_opens_in_plan_with_its_settings(runs: Product) -> None:
+    page = runs.page
+    _row(runs, "0.80").locator(".run-open").click()
+    page.locator(".app[data-workspace=plan][data-run=success]").wait_for(timeout=PATIENCE)
+    runs.planned()
+    assert runs.corners() == len(CURB["points"])
+
+
+def test_trials_are_run_and_the_worst_replayed(runs: Product) -> None:
+    page = runs.page
+    page.get_by_role("radio", name="Trials").click()
+    page.get_by_role("radio", name="Laboratory").click()
+    page.get_by_label("Number of trials").fill("4")
+    page.get_by_role("button", name="Run 4 trials").click()
+    rate = page.locator(".trials-rate")
+    rate.wait_for(timeout=PATIENCE)
+    assert "/ 4" in rate.inner_text()
+    assert "95 % interval" in rate.inner_text()
+    with page.expect_request(
+        lambda asked: asked.method == "POST" and asked.url.endswith("/rollouts")
+    ) as asked:
+        page.get_by_role("button", name="Replay the trial").first.click()
+    assert asked.value.post_data_json["disturbance"]["delay"] > 0.0
+    page.locator(".app[data-run=running]").wait_for(state="detached", timeout=PATIENCE)
+    assert runs.errors == []
