@@ -7,6 +7,7 @@ import { terrains } from "../state/setup";
 import { Icon } from "../ui/icon";
 import { Menu } from "../ui/menu";
 import { GenerateForm } from "./generate-form";
+import { pointsOpen } from "./points-table";
 import {
   openStored,
   removeStored,
@@ -60,6 +61,18 @@ function TerrainPanel({ close }: { close: () => void }) {
         <button type="button" class="act" onClick={() => file.current?.click()}>
           <Icon name="upload" />
           Import…
+        </button>
+        <button
+          type="button"
+          class="act"
+          disabled={isEmpty.value}
+          onClick={() => {
+            close();
+            pointsOpen.value = true;
+          }}
+        >
+          <Icon name="table" />
+          Points…
         </button>
         <input
           ref={file}
