@@ -12,6 +12,7 @@ import { activity, run } from "./state/rollouts";
 import { tab } from "./state/view";
 import { Status } from "./status";
 import { ImportZone } from "./topbar/import-zone";
+import { PointsTable } from "./topbar/points-table";
 import { TopBar } from "./topbar/topbar";
 import { Shortcuts, shortcutsOpen } from "./ui/shortcuts";
 import { SkipLinks } from "./ui/skip-links";
@@ -71,6 +72,7 @@ export function App() {
       )}
       <Status />
       <ImportZone />
+      <PointsTable />
       <Shortcuts />
       <Toast />
       <div class="sr" aria-live="polite">

@@ -144,3 +144,32 @@ def test_margins_run_along_time_or_place(product: Product) -> None:
     assert " m" in ticks.inner_text()
     assert page.locator(".rows .bars[d]:not([d=''])").count() > 0
     page.get_by_role("button", name="Time", exact=True).click()
+
+
+def test_the_terrain_is_a_table_to_type_paste_and_save(product: Product) -> None:
+    page = product.page
+    page.get_by_role("button", name=TERRAIN).click()
+    page.get_by_role("button", name="Points…").click()
+    sheet = page.get_by_role("dialog", name="Points of three-stairs-up")
+    field = sheet.get_by_label("z of point 7 in metres")
+    field.fill("0.4")
+    field.press("Enter")
+    assert product.corner(6)[1] == pytest.approx(0.4)
+    for form, words in (("CSV", "0.6,0.4"), ("YAML", "- [0.6, 0.4]")):
+        with page.expect_download() as saved:
+            sheet.get_by_role("button", name=form).click()
+        assert saved.value.suggested_filename == f"three-stairs-up.{form.lower()}"
+        assert words in saved.value.path().read_text()
+    field.focus()
+    page.evaluate(
+        """text => {
+          const data = new DataTransfer();
+          data.setData("text/plain", text);
+          document.activeElement.dispatchEvent(
+            new ClipboardEvent("paste", { clipboardData: data, bubbles: true, cancelable: true }));
+        }""",
+        "-1.5\t0\n0\t0\n0\t0.1\n2\t0.1\n",
+    )
+    product.has_corners(4)
+    assert product.corner(2) == (0.0, pytest.approx(0.1))
+    page.get_by_role("button", name="Close").click()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from .conftest import DESK, PHONE, Product
+from .conftest import DESK, PHONE, TERRAIN, Product
 
 if TYPE_CHECKING:
     from playwright.sync_api import ViewportSize
@@ -96,6 +96,20 @@ def test_nothing_to_press_is_smaller_than_a_fingertip_on_a_phone(product: Produc
     page.get_by_role("region", name="Effect of the weights").wait_for()
     assert _everywhere(product) == []
     page.get_by_role("button", name="Reset CoM margin").click()
+
+
+def test_menus_have_no_overlaps(product: Product) -> None:
+    page = product.page
+    for size in (SIZES[0], PHONE):
+        page.set_viewport_size(size)
+        for name in (TERRAIN, "Snapping", "Layers", "Download"):
+            page.get_by_role("button", name=name).first.click()
+            assert _faults(product) == [], (size["width"], name)
+            page.keyboard.press("Escape")
+    page.set_viewport_size(DESK)
+    page.keyboard.press("?")
+    assert _faults(product) == []
+    page.keyboard.press("Escape")
 
 
 def test_a_comparison_has_no_overlaps(product: Product) -> None:

@@ -19,6 +19,8 @@ import { tool } from "../state/view";
 
 /** What went wrong with a file or a name; shown where it happened. */
 export const terrainError = signal<string | null>(null);
+/** Why a terrain was not saved; the menu shows it below the name. */
+export const saveError = signal<string | null>(null);
 /** A mesh that waits for the plane to cut it along. */
 export const meshToCut = signal<File | null>(null);
 
@@ -48,13 +50,14 @@ export async function saveAs(name: string, description: string): Promise<boolean
     origin.value = terrains.peek().find((t) => t.name === saved.name) ?? saved;
     drawing.value = { ...drawing.peek(), name: saved.name, description };
     committed.value = drawing.peek();
-    terrainError.value = null;
+    saveError.value = null;
     toast.value = before
       ? { text: `${name} is replaced.`, undo: () => void putBack(before, false) }
       : { text: `Saved as ${name}.` };
     return true;
   } catch (error) {
-    fail(error);
+    report(error);
+    saveError.value = error instanceof Error ? error.message : String(error);
     return false;
   }
 }
@@ -72,7 +75,9 @@ export const suggestedDescription = (): string =>
 
 /** Ctrl+S: under its own name, or a preset's with an ending. */
 export async function save(): Promise<void> {
-  if (drawing.peek().points.length >= 2) await saveAs(suggestedName(), suggestedDescription());
+  if (drawing.peek().points.length < 2) return;
+  if (!(await saveAs(suggestedName(), suggestedDescription())))
+    toast.value = { text: `Not saved: ${saveError.peek()}` };
 }
 
 export async function removeStored(terrain: TerrainDocument): Promise<void> {

@@ -1,20 +1,21 @@
 /** Presets, saved terrains, saving, generators and files. */
 
 import type { ComponentChildren } from "preact";
-import { useRef, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { clear, drawing, isEmpty } from "../state/drawing";
 import { terrains } from "../state/setup";
 import { Icon } from "../ui/icon";
 import { Menu } from "../ui/menu";
 import { GenerateForm } from "./generate-form";
+import { pointsOpen } from "./points-table";
 import {
   openStored,
   removeStored,
   saveAs,
+  saveError,
   suggestedDescription,
   suggestedName,
   takeFile,
-  terrainError,
 } from "./terrain-actions";
 
 export function TerrainMenu({ button }: { button: ComponentChildren }) {
@@ -60,6 +61,18 @@ function TerrainPanel({ close }: { close: () => void }) {
         <button type="button" class="act" onClick={() => file.current?.click()}>
           <Icon name="upload" />
           Import…
+        </button>
+        <button
+          type="button"
+          class="act"
+          disabled={isEmpty.value}
+          onClick={() => {
+            close();
+            pointsOpen.value = true;
+          }}
+        >
+          <Icon name="table" />
+          Points…
         </button>
         <input
           ref={file}
@@ -123,6 +136,10 @@ function choose(terrain: Parameters<typeof openStored>[0], close: () => void): v
 function SaveForm({ close }: { close: () => void }) {
   const [name, setName] = useState(suggestedName);
   const [about, setAbout] = useState(suggestedDescription);
+  // What failed the last time is not about this attempt.
+  useEffect(() => {
+    saveError.value = null;
+  }, []);
   const save = async (event: Event) => {
     event.preventDefault();
     if (await saveAs(name.trim(), about.trim())) close();
@@ -140,7 +157,11 @@ function SaveForm({ close }: { close: () => void }) {
           onInput={(event) => setName(event.currentTarget.value)}
         />
       </label>
-      <label>
+      <button type="submit" class="btn" disabled={isEmpty.value}>
+        <Icon name="save" />
+        Save
+      </button>
+      <label class="about">
         <span>Description</span>
         <input
           value={about}
@@ -149,13 +170,9 @@ function SaveForm({ close }: { close: () => void }) {
           onInput={(event) => setAbout(event.currentTarget.value)}
         />
       </label>
-      <button type="submit" class="btn" disabled={isEmpty.value}>
-        <Icon name="save" />
-        Save
-      </button>
-      {terrainError.value && (
+      {saveError.value && (
         <p class="error" role="alert">
-          {terrainError.value}
+          {saveError.value}
         </p>
       )}
     </form>
