@@ -45,7 +45,7 @@ def room(opened: Product) -> Product:
     """The Map as a picture, of one robot at the page's friction."""
     page = opened.page
     if page.locator(".app").get_attribute("data-workspace") != "map":
-        page.keyboard.press("2")
+        page.keyboard.press("3")
     table = page.get_by_role("button", name="Table")
     if table.get_attribute("aria-pressed") == "true":
         table.click()
@@ -131,7 +131,7 @@ def test_a_cell_opens_as_a_plan(room: Product) -> None:
     assert room.corners() == 8  # three steps
     title = page.get_by_role("button", name=re.compile(r"^Terrain\s")).inner_text()
     assert re.search(r"tread 0\.(28|30) m rise 0\.15 m", title)
-    page.keyboard.press("2")
+    page.keyboard.press("3")
     _canvas(page).wait_for()
 
 
