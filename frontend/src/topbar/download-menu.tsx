@@ -22,7 +22,7 @@ export function DownloadMenu() {
       <Icon name="download" />
       {!isNarrow.value && (
         <>
-          Download
+          <span class="dl-text">Download</span>
           <Icon name="down" />
         </>
       )}
