@@ -249,7 +249,7 @@ def test_the_ground_grows_with_a_drawn_line_from_either_side(product: Product) -
     assert top == (pytest.approx(x3 - 1), z3)
     _alone(product.fresh("flat"))
     product.page.keyboard.press("p")
-    _stroke(product, (600, 400), (960, 360))
+    _stroke(product, (600, 300), (1100, 260))
     assert product.corner(product.corners() - 1)[0] > 2.0
 
 
