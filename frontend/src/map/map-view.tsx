@@ -143,7 +143,7 @@ function Mark({ frame, place, kind }: MarkProps) {
           width: `${box.w}px`,
           height: `${box.h}px`,
         };
-        return <i key={panel} class={`mark ${kind}`} style={style} />;
+        return <i key={panel} class={`map-mark ${kind}`} style={style} />;
       })}
     </>
   );
