@@ -85,7 +85,7 @@ class Metrics:
 
     def resulted(self, result: Entry) -> None:
         """Count a new result."""
-        outcome = result.summary.get("status") or result.summary.get("outcome")
+        outcome = result.summary.get("outcome") or result.summary.get("status")
         self._outcomes.labels(result.kind, str(outcome)).inc()
 
     def gauge(self, name: str, text: str, value: Callable[[], float], **labels: str) -> None:

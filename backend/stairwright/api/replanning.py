@@ -76,7 +76,8 @@ def _question(plan: Mapping[str, Any], weights: Weights) -> PlanQuestion:
     terrain = parse(Terrain, plan["terrain"])
     robot = parse(Robot, plan["robot_description"])
     timing: PlanTiming = "fast" if plan["timing"]["rule"] == "fast" else "steady"
-    return PlanQuestion.of(terrain, robot, plan["friction"], plan["method"], weights, timing)
+    chosen = {**plan["weights"], **weights}
+    return PlanQuestion.of(terrain, robot, plan["friction"], plan["method"], chosen, timing)
 
 
 def _document(answer: Answer) -> Mapping[str, Any]:

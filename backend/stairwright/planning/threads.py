@@ -39,7 +39,6 @@ class _AtOnce(Executor):
         return done
 
 
-ONE_BY_ONE = _AtOnce()  # for work that is on one of the threads already
 _at_once: ContextVar[Executor | None] = ContextVar("at_once", default=None)
 
 

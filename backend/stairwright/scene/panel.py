@@ -130,7 +130,8 @@ class Panel:
             schema = MODELS[method].model_json_schema()["properties"]  # type: ignore[index]
             with self._weights_folder:
                 for name, about in schema.items():
-                    self._weights[name] = self._weight(about)
+                    if "timing" not in about:  # it belongs to the timing, not to the path
+                        self._weights[name] = self._weight(about)
             self._weights_folder.visible = bool(self._weights)
         for name, value in values.items():
             weight = self._weights.get(name)

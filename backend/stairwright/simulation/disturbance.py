@@ -25,7 +25,7 @@ def _deviation(title: str, text: str) -> Any:
     return Field(0.0, title=title, description=description, json_schema_extra=extra)
 
 
-class Payload(Model):
+class AddedPayload(Model):
     """A mass that the plan does not know of."""
 
     mass: float = Field(ge=0.0, le=100.0, description="kg")
@@ -63,7 +63,7 @@ class Disturbance(Model):
         None, description="the true friction of the wheels FL, FR, RL, RR instead"
     )
     mass: float = _field(-0.5, 1.0, "1", "Mass", "share of the robot's mass, on the trunk")
-    payload: Annotated[float, Field(ge=0.0, le=100.0)] | Payload = Field(
+    payload: Annotated[float, Field(ge=0.0, le=100.0)] | AddedPayload = Field(
         0.0,
         title="Payload",
         description="on top of the trunk's middle [kg], or a mass and its place",
@@ -114,14 +114,18 @@ class Disturbance(Model):
     imu: ImuErrors = Field(ImuErrors(), description="what the robot's own inertial sensor errs by")
 
     @property
-    def load(self) -> Payload:
+    def load(self) -> AddedPayload:
         """The payload with its place, if one is given."""
-        return self.payload if isinstance(self.payload, Payload) else Payload(mass=self.payload)
+        return (
+            self.payload
+            if isinstance(self.payload, AddedPayload)
+            else AddedPayload(mass=self.payload)
+        )
 
     def size(self, name: str) -> float:
         """How large the deviation `name` is: without sign, the largest of several."""
         value = getattr(self, name)
-        if isinstance(value, Payload):
+        if isinstance(value, AddedPayload):
             return value.mass
         if isinstance(value, ImuErrors):
             return max(abs(v) for v in (value.gyro_bias, value.accelerometer_bias))

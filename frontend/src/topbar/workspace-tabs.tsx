@@ -8,17 +8,18 @@ export function WorkspaceTabs() {
   return (
     <nav class="spaces" aria-label="Workspaces">
       {WORKSPACES.map(({ name, title }, i) => (
-        <button
+        <a
           key={name}
-          type="button"
+          href={`#v=${name}`}
           aria-current={openRoom().name === name ? "page" : undefined}
-          onClick={() => {
+          onClick={(event) => {
+            event.preventDefault();
             workspace.value = name;
           }}
         >
           {title}
           <kbd>{i + 1}</kbd>
-        </button>
+        </a>
       ))}
     </nav>
   );

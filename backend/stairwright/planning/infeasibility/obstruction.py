@@ -3,8 +3,7 @@
 Each candidate quantity is raised alone, on the coarse lattice and with bounds that forgive what
 rounding takes: that gives the least value that may do. A candidate is only asked whether it opens
 the way at a smaller relative change than the best one so far. The smallest names the problem, after
-planning again with it: the answer is physically true, not a guess from the search's front. At last
-the value is brought down by planning as whoever asks again would: with 2 % less there is no plan.
+planning again with it: the answer is physically true, not a guess from the search's front.
 """
 
 from __future__ import annotations
@@ -250,41 +249,10 @@ def _confirmed(
             low[k] = ratio
         else:
             return None
-    candidate, least = ranked[k]
-    return candidate, _settled(planner, candidate, low.get(k, least / (1.0 + CLOSE)), ratio, pool)
-
-
-def _settled(
-    planner: PathPlanner, candidate: Candidate, guess: float, high: float, pool: Executor
-) -> float:
-    """The factor that is needed, as planning itself tells: 2 % more has a plan, 2 % less has none.
-
-    Planning is not asked at the factor but at these two, for where it only just succeeds it may
-    fail with a little more.
-
-    Args:
-        planner, candidate, pool: Who asks about what.
-        guess: A factor with which a quick attempt or search has failed: most likely too little.
-        high: A factor that is enough.
-    """
-    plans = partial(candidate.plans, planner)
-    low, apart = 1.0, (1.0 + CLOSE) ** 2
-    probes = [guess, math.sqrt(guess * high)]
-    while True:
-        probes = [ratio for ratio in probes if low < ratio < high]
-        if probes:
-            with race(pool, plans, probes) as answers:
-                for ratio, enough in zip(probes, answers, strict=False):
-                    if enough:
-                        high = ratio
-                        break
-                    low = ratio
-        if high / low < apart * (1.0 + 1e-9):
-            return max(high / (1.0 + CLOSE), math.sqrt(high))
-        if high / low > apart**3:
-            probes = [low ** (1 - k / 3) * high ** (k / 3) for k in (1, 2)]
-        else:
-            probes = [high / apart**2, high / apart]
+    candidate = ranked[k][0]
+    if k in low:
+        ratio = _narrow(partial(candidate.solves, planner), low[k], ratio, candidate.sure, pool)[1]
+    return candidate, ratio
 
 
 def undiagnosed(planner: PathPlanner, blocked: Blocked) -> Problem:
