@@ -800,6 +800,22 @@ export interface components {
             wheel: components["schemas"]["Actuator"];
         };
         /**
+         * AddedPayload
+         * @description A mass that the plan does not know of.
+         */
+        AddedPayload: {
+            /**
+             * Mass
+             * @description kg
+             */
+            mass: number;
+            /**
+             * Place
+             * @description of its mass centre in the trunk's frame; on top if empty [m]
+             */
+            place?: number[] | null;
+        };
+        /**
          * Axis
          * @description One axis: `values`, or `from`, `to` and `count`, or `boundary` and `tolerance`.
          *
@@ -1218,7 +1234,7 @@ export interface components {
              * @description on top of the trunk's middle [kg], or a mass and its place
              * @default 0
              */
-            payload: number | components["schemas"]["stairwright__simulation__disturbance__Payload"];
+            payload: number | components["schemas"]["AddedPayload"];
             /**
              * CoM forward
              * @description the robot's CoM moves forward [m]
@@ -1822,6 +1838,26 @@ export interface components {
             width: number;
         };
         /**
+         * Payload
+         * @description A load that is fixed to the trunk.
+         */
+        Payload: {
+            /**
+             * Mass
+             * @description [kg]
+             */
+            mass: number;
+            /**
+             * Place
+             * @description (x, z) in the trunk frame [m]
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            place: number[];
+        };
+        /**
          * Plan
          * @description A plan (``stairwright/plan/1``); `id` is a hash of everything that went into it.
          */
@@ -2356,7 +2392,7 @@ export interface components {
              */
             nominal_height: number;
             trunk: components["schemas"]["Trunk"];
-            payload?: components["schemas"]["stairwright__robot__parts__Payload"] | null;
+            payload?: components["schemas"]["Payload"] | null;
             hips: components["schemas"]["Hips"];
             thigh: components["schemas"]["Link"];
             calf: components["schemas"]["Link"];
@@ -2428,7 +2464,7 @@ export interface components {
              */
             nominal_height: number;
             trunk: components["schemas"]["Trunk"];
-            payload?: components["schemas"]["stairwright__robot__parts__Payload"] | null;
+            payload?: components["schemas"]["Payload"] | null;
             hips: components["schemas"]["Hips"];
             thigh: components["schemas"]["Link"];
             calf: components["schemas"]["Link"];
@@ -3360,42 +3396,6 @@ export interface components {
              * @default 0
              */
             rolling_resistance: number;
-        };
-        /**
-         * Payload
-         * @description A load that is fixed to the trunk.
-         */
-        stairwright__robot__parts__Payload: {
-            /**
-             * Mass
-             * @description [kg]
-             */
-            mass: number;
-            /**
-             * Place
-             * @description (x, z) in the trunk frame [m]
-             * @default [
-             *       0,
-             *       0
-             *     ]
-             */
-            place: number[];
-        };
-        /**
-         * Payload
-         * @description A mass that the plan does not know of.
-         */
-        stairwright__simulation__disturbance__Payload: {
-            /**
-             * Mass
-             * @description kg
-             */
-            mass: number;
-            /**
-             * Place
-             * @description of its mass centre in the trunk's frame; on top if empty [m]
-             */
-            place?: number[] | null;
         };
         /**
          * FieldError
