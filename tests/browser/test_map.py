@@ -56,7 +56,7 @@ def room(opened: Product) -> Product:
 
 def _small_map(product: Product) -> None:
     page = product.page
-    page.get_by_role("button", name=re.compile("^Map")).click()
+    page.get_by_role("link", name=re.compile("^Map")).click()
     for label, value in (
         ("Tread from", "0.26"),
         ("Tread to", "0.32"),
