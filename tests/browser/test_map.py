@@ -202,7 +202,7 @@ def test_two_robots_share_a_scale_and_a_pointer(room: Product) -> None:
     canvas = _canvas(page)
     canvas.focus()
     page.keyboard.press("ArrowRight")
-    assert page.locator(".mark.cur").count() == 2
+    assert page.locator(".map-mark.cur").count() == 2
     page.get_by_role("radio", name="Difference").click()
     page.keyboard.press("Escape")
     page.get_by_role("button", name="Table").click()
