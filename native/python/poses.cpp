@@ -20,6 +20,8 @@ namespace {
 using namespace poses;
 
 using Rows5 = In<double, nb::shape<-1, 5>>;
+using Rows7 = In<double, nb::shape<-1, 7>>;
+using Rows3 = In<double, nb::shape<-1, 3>>;
 using Rows4 = In<double, nb::shape<-1, 4>>;
 using Rows2 = In<double, nb::shape<-1, 2>>;
 
@@ -135,10 +137,33 @@ void bind_problem(nb::module_& m) {
         .def("critical_poses", [](const PoseProblem& p, const PoseRules& rules, const ContactPair& pair, const Vector& rears) {
             return critical_poses(p, rules, pair, {rears.data(), rears.data() + rears.size()});
         }, released)
-        .def("nearest_pose", [](const PoseProblem& p, const PoseRules& rules, const Fixed<2>& wheels, const Fixed<7>& wanted,
-                                std::pair<double, double> com, const Fixed<5>& start) {
-            return nearest_pose(p, rules, array(wheels), array(wanted), {com.first, com.second}, array(start));
-        }, released)
+        .def("move_poses", [](const PoseProblem& p, const PoseRules& rules, const Rows2& wheels, const Rows7& even, const Vector& com,
+                              const Vector& shift, const Rows2& balance, const In<bool, nb::ndim<1>>& wanted, const Rows3& trunks,
+                              const In<bool, nb::ndim<1>>& sound) {
+            const std::size_t n = wheels.shape(0);
+            for (const std::size_t count : {even.shape(0), com.size(), shift.size(), balance.shape(0), wanted.size(), trunks.shape(0), sound.size()})
+                if (count != n) throw nb::value_error("as many of each as wheels, please");
+            std::vector<PoseToMove> poses;
+            std::vector<std::array<double, 3>> moved;
+            std::vector<bool> good;
+            std::vector<std::size_t> which;
+            for (std::size_t k = 0; k < n; ++k) {
+                poses.push_back({row<Rows2, 2>(wheels, k), row<Rows7, 7>(even, k), com(k), shift(k), {balance(k, 0), balance(k, 1)}});
+                moved.push_back(row<Rows3, 3>(trunks, k));
+                good.push_back(sound(k));
+                if (wanted(k)) which.push_back(k);
+            }
+            {
+                const nb::gil_scoped_release released;
+                move_poses(p, rules, poses, which, moved, good);
+            }
+            std::vector<double> out;
+            for (const auto& trunk : moved) out.insert(out.end(), trunk.begin(), trunk.end());
+            return give(std::move(out), {n, 3});
+        }, nb::arg("rules"), nb::arg("wheels"), nb::arg("even"), nb::arg("com"), nb::arg("shift"), nb::arg("balance"),
+           nb::arg("wanted"), nb::arg("trunks"), nb::arg("sound"),
+           "Trunks (n, 3), moved at the samples (n,) wanted: the clear pose nearest to the even one (n, 7) with its CoM (n,) "
+           "shifted (n,) towards the interval of balance (n, 2).")
         .def("pose_slacks", [](const PoseProblem& p, const PoseRules& rules, const Rows5& y, const Rows2& com) {
             if (y.shape(0) != com.shape(0)) throw nb::value_error("as many intervals as poses, please");
             std::vector<double> slack, q;

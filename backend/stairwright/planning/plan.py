@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any, Literal
+from collections.abc import Callable, Generator, Iterable
+from typing import Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import (
+    BaseModel,
+    Field,
+    PrivateAttr,
+    SerializerFunctionWrapHandler,
+    model_serializer,
+    model_validator,
+)
 
 from stairwright.arguments import MOST_FRICTION
 from stairwright.documents import Model, content_hash
@@ -96,7 +104,11 @@ class Check(Model):
 
 
 class Certificate(Model):
-    """Outcome of the independent exact check of the poses and of the motion between them."""
+    """Outcome of the independent exact check of the poses and of the motion between them.
+
+    The motion between sparse poses takes many times as long to judge as the poses: `motion` is
+    found when it is first read, written or compared. The document always has it.
+    """
 
     passed: bool
     scope: Literal["motion", "poses"] = "motion"
@@ -104,6 +116,50 @@ class Certificate(Model):
         None, description="what stops the motion between poses, where only these are certified"
     )
     checks: list[Check] = []
+    _find_motion: Callable[[], Problem | None] | None = PrivateAttr(None)
+
+    @classmethod
+    def of_poses(cls, checks: list[Check], find_motion: Callable[[], Problem | None]) -> Self:
+        """A certificate of poses; `find_motion` is asked once, when `motion` is needed."""
+        certificate = cls(passed=all(c.passed for c in checks), scope="poses", checks=checks)
+        del certificate.__dict__["motion"]
+        certificate._find_motion = find_motion
+        return certificate
+
+    def __getattr__(self, name: str) -> Any:
+        # Python asks here only for what is not there yet. Threads that meet here find the same.
+        find = self._find_motion if name == "motion" else None
+        if find is not None:
+            fields = {**self.__dict__, "motion": find()}
+            ordered = {key: fields[key] for key in type(self).model_fields}
+            object.__setattr__(self, "__dict__", ordered)
+            self._find_motion = None
+        if name in self.__dict__:
+            return self.__dict__[name]
+        return super().__getattr__(name)  # type: ignore[misc]  # pydantic hides it
+
+    def _whole(self) -> Certificate:
+        """The same one, its motion judged."""
+        _ = self.motion
+        return self
+
+    @model_serializer(mode="wrap")  # a type of what it returns would take the schema's place
+    def _written(self, write: SerializerFunctionWrapHandler):  # type: ignore[no-untyped-def]
+        return write(self._whole())
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Certificate):
+            other._whole()
+        return BaseModel.__eq__(self._whole(), other)
+
+    def __iter__(self) -> Generator[tuple[str, Any]]:
+        return super(Certificate, self._whole()).__iter__()
+
+    def __repr_args__(self) -> Iterable[tuple[str | None, Any]]:
+        return super(Certificate, self._whole()).__repr_args__()
+
+    def __getstate__(self) -> dict[Any, Any]:
+        return super(Certificate, self._whole()).__getstate__()
 
 
 Bend = Literal["back", "forward"]

@@ -173,18 +173,18 @@ def find_standing_poses(
             message = "the flat ground is too short for a start and a goal"
             raise _too_short("goal", path, (low, high), missing, message)
     if terrain.start is not None:
-        begin = _at(path, robot, terrain.start, "start")
+        begin = _at(path, robot, gap, terrain.start, "start")
     elif flat:
         begin = standing_pose(path, robot, low + behind + gap, low + behind)
     else:
-        near, far = _settle(path, robot, "start", (low, first), behind)
+        near, far = _settle(path, robot, gap, "start", (low, first), behind)
         begin = standing_pose(path, robot, first - near, first - far)
     if terrain.goal is not None:
-        end = _at(path, robot, terrain.goal, "goal")
+        end = _at(path, robot, gap, terrain.goal, "goal")
     elif flat:
         end = standing_pose(path, robot, high - ahead, high - ahead - gap)
     else:
-        near, far = _settle(path, robot, "goal", (last, high), ahead)
+        near, far = _settle(path, robot, gap, "goal", (last, high), ahead)
         end = standing_pose(path, robot, last + far, last + near)
     way = min(b - a for a, b in zip(begin.wheels, end.wheels, strict=True))
     if way < _AHEAD:
@@ -200,13 +200,14 @@ def _edge(path: WheelPath, robot: Robot, s: float) -> float:
 
 
 def _settle(
-    path: WheelPath, robot: Robot, kind: End, stretch: tuple[float, float], edge: float
+    path: WheelPath, robot: Robot, gap: float, kind: End, stretch: tuple[float, float], edge: float
 ) -> tuple[float, float]:
     """Distances of both wheels, the nearer first, from where a level stretch meets what follows.
 
     Args:
         path: The curve of wheel centres.
-        robot: Its hips are as far apart as the wheels would be.
+        robot: Whose wheels they are.
+        gap: Distance of the wheels that stand on the level [m].
         kind: Which end of the course it is.
         stretch: Arc lengths where it begins and ends [m].
         edge: Distance of the farther wheel from its outer end where there is room for it [m].
@@ -217,7 +218,6 @@ def _settle(
     s, which = (stretch[1], "first") if kind == "start" else (stretch[0], "last")
     room = stretch[1] - stretch[0]
     lead = (0.25 if kind == "start" else 0.15) * scale(robot)
-    gap = stance(robot)
     least = max(2 * robot.wheel.radius + 0.01, 0.6 * gap)
     if gap < least:
         message = "the wheels would touch each other below hips that are so close"
@@ -247,9 +247,9 @@ def _too_short(
     return NoStandingPose(kind, s, length + missing + _AHEAD, length, message)
 
 
-def _at(path: WheelPath, robot: Robot, x: float, kind: End) -> StandingPose:
-    """The stand whose trunk is at `x`."""
-    apart = 0.5 * stance(robot)
+def _at(path: WheelPath, robot: Robot, gap: float, x: float, kind: End) -> StandingPose:
+    """The standing pose whose trunk is at `x`, wheels `gap` apart [m]."""
+    apart = 0.5 * gap
     ahead, behind = x + apart, x - apart
     x0, x1 = path.centres(np.array([0.0, path.length]))[:, 0]
     if behind < x0 - 1e-9 or ahead > x1 + 1e-9:

@@ -17,6 +17,8 @@ constexpr int kTries = 6;         // places where the even motion tips that are 
 constexpr double kSpare = 0.002;  // m that the CoM keeps from where balance ends
 constexpr std::array<double, 3> kLifts = {0.0, -0.04, 0.04};  // m; a trunk that cannot be there as high as it is may be so
 constexpr int kMoves = 5;         // of the trunk, until the CoM is where it must be
+constexpr std::array<double, 3> kRooms = {0.015, 0.006, 0.002};  // m that the CoM keeps from where balance ends, if it must
+constexpr std::array<double, 4> kShares = {0.75, 0.5, 0.25, 0.0};  // of the move of the CoM, where no pose is balanced
 constexpr double kInside = 5e-4;  // m; so far inside it is aimed for, since legs take a part of each move back
 
 // With the wheels at given places, eq 20 left out, whole links kept clear.
@@ -64,6 +66,20 @@ bool clear_when_moved(const PoseProblem& problem, const PoseRules& rules, Interv
     return false;
 }
 
+// Moves of the CoM to try [m]: all of it, then with less and less room, then part of it.
+std::vector<double> moves_of(const PoseToMove& pose) {
+    if (pose.shift == 0.0) return {0.0};
+    std::vector<double> out = {pose.shift};
+    const bool ahead = pose.shift > 0.0;
+    const double need = (ahead ? pose.balance.lower : pose.balance.upper) - pose.com;  // to where the room ends
+    for (const double room : kRooms) {
+        const double move = need + std::copysign(room, pose.shift);
+        if (0.0 < move / pose.shift && move / pose.shift < 1.0) out.push_back(move);
+    }
+    for (const double share : kShares) out.push_back(share * pose.shift);
+    return out;
+}
+
 }  // namespace
 
 PoseSolution nearest_pose(const PoseProblem& problem, const PoseRules& rules, const std::array<double, 2>& wheels,
@@ -84,6 +100,33 @@ PoseSolution nearest_pose(const PoseProblem& problem, const PoseRules& rules, co
         }
     }
     return best;
+}
+
+std::optional<Variables> moved_pose(const PoseProblem& problem, const PoseRules& rules, const PoseToMove& pose, const Unknowns& start) {
+    std::array<double, 7> wanted = pose.even;
+    for (const double move : moves_of(pose)) {
+        const double place = pose.com + move;
+        wanted[0] = pose.even[0] + move;
+        Interval com = {-kInfinity, kInfinity};
+        if (move != 0.0) (pose.shift > 0.0 ? com.lower : com.upper) = place;
+        const PoseSolution found = nearest_pose(problem, rules, pose.wheels, wanted, com, start);
+        if (found.violation <= kSolved) return found.x;
+    }
+    return std::nullopt;
+}
+
+void move_poses(const PoseProblem& problem, const PoseRules& rules, std::span<const PoseToMove> poses,
+                std::span<const std::size_t> which, std::span<std::array<double, 3>> trunks, std::vector<bool>& sound) {
+    Unknowns start;
+    start.fill(std::numeric_limits<double>::quiet_NaN());
+    for (const std::size_t i : which) {
+        if (i > 0 && sound[i - 1]) std::copy_n(trunks[i - 1].begin(), 3, start.begin());
+        const std::optional<Variables> found = moved_pose(problem, rules, poses[i], start);
+        if (!found) continue;
+        std::copy_n(found->begin(), 3, trunks[i].begin());
+        start = unknowns_of(*found);
+        sound[i] = true;
+    }
 }
 
 PoseSlack pose_slack(const PoseProblem& problem, const PoseRules& rules, const Unknowns& y, Interval com) {

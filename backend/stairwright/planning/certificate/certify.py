@@ -127,12 +127,14 @@ class _Checker:
         samples, motion = self.samples, self.samples.motion
         r = motion.robot.wheel.radius
         wheels, ends = samples.frames.wheels, samples.at_pose
+        out = np.full(wheels.shape[:2], r + TOUCH)
+        if ends.all():
+            return out
         touch = np.full(wheels[ends].shape[0] * 2, r + TOUCH)
         centres = wheels[ends].reshape(-1, 2)
         wedged = touching(motion.vertices, centres, r + TOUCH, touch)[2][:, 1].reshape(-1, 2)
         moved = np.linalg.norm(np.diff(wheels[ends], axis=0), axis=2)
         stays = wedged[:-1] & wedged[1:] & (moved <= 2 * TOUCH)
-        out = np.full(wheels.shape[:2], r + TOUCH)
         out[~ends] = np.where(stays[samples.interval[~ends[:-1]]], r + WHEEL_GAP, r + TOUCH)
         return out
 

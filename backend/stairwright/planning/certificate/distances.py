@@ -24,6 +24,7 @@ Ints = NDArray[np.int64]
 Shapes = NDArray[Any]  # of shapely geometries
 
 _CHUNK = 64  # samples that share one piece of terrain
+_FEW = 16  # samples that are no more than this are all looked at exactly, which is sooner
 _SIGHT = 0.01  # m; clearance up to which parts are looked at before one is known
 _MORE = 1e-6  # m; so much more is looked at than matters: what is not seen is farther off for sure
 
@@ -37,13 +38,14 @@ class Distances:
         self.vertices = samples.motion.vertices
         self.starts = np.arange(0, len(self.body), _CHUNK)
         self.lines = [self._ground_near(self.body[k : k + _CHUNK, 0]) for k in self.starts]
+        self.capsules = [self._capsules(leg) for leg in range(2)]
+        self.everywhere = np.arange(len(self.body))
 
     def wheels(self) -> list[Floats]:
         """Of the rims of the front and of the rear wheels from the ground; negative where sunk."""
-        everywhere = np.arange(len(self.body))
         out = []
         for centres in np.moveaxis(self.samples.frames.wheels, 1, 0):
-            distance = self._from_ground(shapely.points(centres), everywhere)
+            distance = self._from_ground(shapely.points(centres), self.everywhere)
             distance = np.where(self._above(centres), distance, -distance)
             out.append(distance - self.robot.wheel.radius)
         return out
@@ -62,7 +64,7 @@ class Distances:
         parts = [
             (line, radius, line[:, 0])
             for leg in range(2)
-            for line, radius in reversed(self._capsules(leg))
+            for line, radius in reversed(self.capsules[leg])
         ]
         return self._clearances(parts, shapely.linestrings)
 
@@ -80,10 +82,12 @@ class Distances:
 
     def legs(self) -> Floats:
         """Between links and wheels of the front and the rear leg, exact where it may be least."""
+        if len(self.body) <= _FEW:
+            return self._between_legs(self.everywhere)
         radius, wheels = self.robot.wheel.radius, self.samples.frames.wheels
         boxes = []
         for leg in range(2):
-            ends = [(line[:, k], r) for line, r in self._capsules(leg) for k in range(2)]
+            ends = [(line[:, k], r) for line, r in self.capsules[leg] for k in range(2)]
             ends.append((wheels[:, leg], radius))
             low = reduce(np.minimum, [at - r for at, r in ends])
             boxes.append((low, reduce(np.maximum, [at + r for at, r in ends])))
@@ -110,6 +114,8 @@ class Distances:
                 whether it lies above the ground.
             shape: What makes shapely's geometries of outlines.
         """
+        if len(self.body) <= _FEW:
+            return self._few_clearances(parts, shape)
         slack = self.samples.slack
         worst = np.full(len(slack), np.inf)
         for outline, radius, point in parts:
@@ -131,6 +137,18 @@ class Distances:
             clear[near] = exact(near)
             worst = np.minimum(worst, clear)
         return worst
+
+    def _few_clearances(
+        self,
+        parts: Sequence[tuple[Floats, float, Floats]],
+        shape: Callable[[Floats], Shapes],
+    ) -> Floats:
+        """`_clearances` of few samples, in the first piece of ground: exact for all parts."""
+        shapes = np.stack([shape(outline) for outline, _, _ in parts])
+        above = self._above(np.concatenate([point for _, _, point in parts])).reshape(shapes.shape)
+        distance = np.where(above, shapely.distance(self.lines[0], shapes), -1.0)
+        least: Floats = (distance - np.array([[radius] for _, radius, _ in parts])).min(axis=0)
+        return least
 
     def _at_least(self, low: Floats, high: Floats, most: float) -> Floats:
         """A bound of the distance (n,) of what lies between corners `low` and `high` (n, 2) from
@@ -179,7 +197,7 @@ class Distances:
         """Least distance between the links and wheels of both legs at some samples (n,)."""
         wheels = self.samples.frames.wheels[samples]
         parts = [
-            [(shapely.linestrings(line[samples]), radius) for line, radius in self._capsules(leg)]
+            [(shapely.linestrings(line[samples]), radius) for line, radius in self.capsules[leg]]
             + [(shapely.points(wheels[:, leg]), self.robot.wheel.radius)]
             for leg in range(2)
         ]

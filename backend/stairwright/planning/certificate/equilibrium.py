@@ -6,6 +6,7 @@ Written for the certificate alone, as array operations over all samples; the pla
 
 from __future__ import annotations
 
+from functools import cache
 from itertools import combinations
 
 import numpy as np
@@ -46,10 +47,8 @@ def balanced(
     order = np.argsort(~found, axis=1, kind="stable")
     for count in np.unique(counts):
         index = np.flatnonzero(counts == count)
-        kept = order[index, :count, None]
-        point = np.take_along_axis(points[index], kept, axis=1)
-        normal = np.take_along_axis(normals[index], kept, axis=1)
-        out[index] = in_cone(_rays(point, normal, friction))
+        kept = index[:, None], order[index, :count]
+        out[index] = in_cone(_rays(points[kept], normals[kept], friction))
     return out
 
 
@@ -120,6 +119,12 @@ def _rays(points: Floats, normals: Floats, friction: float) -> Floats:
     return np.concatenate(rays, axis=1)
 
 
+@cache
+def _triples(count: int) -> NDArray[np.int64]:
+    """All choices (3, k) of three of `count`."""
+    return np.array(list(combinations(range(count), 3)), int).reshape(-1, 3).T
+
+
 def in_cone(rays: Floats) -> Flags:
     """Whether (0, 1, 0) is a sum of `rays` (n, m, 3) with factors between 0 and `STRONGEST`.
 
@@ -127,7 +132,7 @@ def in_cone(rays: Floats) -> Flags:
     this right-hand side the factors are minors of force x and moment over the determinant.
     """
     n, m = rays.shape[:2]
-    triples = np.array(list(combinations(range(m), 3)), int).reshape(-1, 3).T
+    triples = _triples(m)
     if not triples.size:
         return np.zeros(n, bool)
     x, z, moment = np.moveaxis(rays, 2, 0)

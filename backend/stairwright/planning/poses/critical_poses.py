@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from stairwright.planning.assembly import assemble
 from stairwright.planning.certificate.joining import motion_problem
 from stairwright.planning.infeasibility.diagnosis import diagnose, no_standing_pose, statics_problem
-from stairwright.planning.plan import Plan, Pose, Problem
+from stairwright.planning.plan import Certificate, Plan, Pose, Problem
 from stairwright.planning.poses.paper_timing import pose_times
 from stairwright.planning.poses.pose_documents import complete_poses
 from stairwright.planning.poses.pose_locations import Obstacle, find_obstacles, front_places
@@ -109,8 +109,9 @@ def plan_critical(
     )
     if problem is not None or plan.certificate is None:
         return plan
-    motion = _tipping(search, knots, poses) or motion_problem(plan)
-    certificate = plan.certificate.model_copy(update={"motion": motion})
+    certificate = Certificate.of_poses(
+        plan.certificate.checks, lambda: _tipping(search, knots, poses) or motion_problem(plan)
+    )
     return plan.model_copy(update={"certificate": certificate})
 
 

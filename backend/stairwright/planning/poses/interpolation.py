@@ -11,7 +11,6 @@ use ``joint``: their poses are placed so that it misses the curve by less than a
 from __future__ import annotations
 
 import itertools
-import math
 from typing import Literal
 
 import numpy as np
@@ -31,9 +30,6 @@ from stairwright.terrain.wheel_path import WheelPath, wheel_path
 Floats = NDArray[np.float64]
 Mode = Literal["joint", "curve"]
 
-_ROOMS = (0.015, 0.006, 0.002)  # m that the CoM keeps from where balance ends, if it must
-_SHARES = (0.75, 0.5, 0.25, 0.0)  # of the way that the CoM should move, where no move balances
-_FREE = (-np.inf, np.inf)
 _COARSE = 8  # samples between those where corrections are solved for
 
 
@@ -153,63 +149,26 @@ def _moved(
 
     First at every few samples, its change linear between them; then where that does not do.
     """
-    count = len(trunk)
+    problem, rules = search.problem, search.rules.native
+    even = np.concatenate([trunk, q], axis=1)
     edges = com_ways(search.path, search.friction, s, 0.0)
-    asked = np.flatnonzero(~sound | (shift != 0.0))
-    coarse = asked[(np.arange(len(asked)) % _COARSE == 0) | ~np.isin(asked + 1, asked)]
-    fixed = np.union1d(coarse, np.flatnonzero(sound & (shift == 0.0)))
-    change = np.zeros_like(trunk)
-    start: Floats | None = None
-    for i in coarse:
-        found = _nearest(search, s[i], trunk[i], q[i], com[i], shift[i], edges[i], start)
-        if found is not None:
-            change[i], start = found[:3] - trunk[i], found
+
+    def moved_at(samples: NDArray[np.bool_], trunks: Floats, sound: NDArray[np.bool_]) -> Floats:
+        return problem.move_poses(rules, s, even, com, shift, edges, samples, trunks, sound)
+
+    asked = ~sound | (shift != 0.0)
+    places = np.flatnonzero(asked)
+    coarse = np.zeros_like(sound)
+    coarse[places[(np.arange(len(places)) % _COARSE == 0) | ~np.isin(places + 1, places)]] = True
+    change = moved_at(coarse, trunk, np.zeros_like(sound)) - trunk
+    fixed = np.flatnonzero(coarse | ~asked)
     for j in range(3):
-        change[:, j] = np.interp(np.arange(count), fixed, change[fixed, j])
+        change[:, j] = np.interp(np.arange(len(trunk)), fixed, change[fixed, j])
     moved = trunk + change
-    anywhere = np.tile([-np.inf, np.inf], (count, 1))
-    sound, solved = search.sound(np.concatenate([moved, s], axis=1), anywhere)
-    for i in np.flatnonzero(~sound):
-        start = np.concatenate([moved[i - 1], solved[i - 1], s[i]]) if i and sound[i - 1] else start
-        found = _nearest(search, s[i], trunk[i], q[i], com[i], shift[i], edges[i], start)
-        if found is not None:
-            moved[i], solved[i], start = found[:3], found[3:7], found
-            sound[i] = True
-    return moved
-
-
-def _nearest(
-    search: PoseSearch,
-    wheels: Floats,
-    trunk: Floats,
-    q: Floats,
-    com: float,
-    shift: float,
-    way: Floats,
-    start: Floats | None,
-) -> Floats | None:
-    """Variables (9,) of the clear pose nearest to `trunk` with its CoM moved by `shift`, if any.
-
-    Where the legs do not allow that, by as much of it as they do; balance ends at `way` (2,).
-    """
-    wanted = np.concatenate([trunk, q])
-    for move in _moves(com, shift, way) if shift else (0.0,):
-        place = com + move
-        wanted[0] = trunk[0] + move
-        low, high = (place, np.inf) if shift > 0.0 else (-np.inf, place)
-        found = search.nearest(wheels, wanted, start, (low, high) if move else _FREE)
-        if found.solved:
-            return found.x
-    return None
-
-
-def _moves(com: float, shift: float, way: Floats) -> list[float]:
-    """Moves of the CoM to try [m]: all of it, then with less and less room, then part of it."""
-    need = way[0] - com if shift > 0.0 else way[1] - com  # to where the room ends
-    inward = math.copysign(1.0, shift)
-    edges = [need + inward * room for room in _ROOMS]
-    less = [move for move in edges if 0.0 < move / shift < 1.0]
-    return [shift, *less, *(share * shift for share in _SHARES)]
+    anywhere = np.tile([-np.inf, np.inf], (len(trunk), 1))
+    sound, _ = search.sound(np.concatenate([moved, s], axis=1), anywhere)
+    # Here the even pose is asked again, not the one moved nearly right.
+    return moved_at(~sound, moved, sound)
 
 
 def _com(robot: Robot, trunk: Floats, q: Floats) -> Floats:

@@ -228,27 +228,6 @@ class PoseSearch:
         kept = self._native_rules if rules is None else rules.native
         return _found(self.problem.critical_pose(kept, place.native, rear, _start(start), patient))
 
-    def nearest(
-        self,
-        wheels: Floats,
-        wanted: Floats,
-        start: Floats | None,
-        com: tuple[float, float] = (-math.inf, math.inf),
-    ) -> Solution:
-        """The pose with the wheels at given places that is nearest to a trunk pose.
-
-        Limits and clearances hold; eq 20 does not apply between critical poses.
-
-        Args:
-            wheels: (2,) arc lengths of front and rear wheels [m].
-            wanted: (7,) x, z [m], pitch and joints [rad]; the joints count little.
-            start: (9,) another first guess.
-            com: Least and largest x of the centre of mass [m].
-        """
-        return _solution(
-            self.problem.nearest_pose(self._native_rules, wheels, wanted, com, _start(start))
-        )
-
     def imbalance(self, begin: Floats, end: Floats) -> float:
         """By how much the CoM lies outside balance between two poses (9,), at worst [m]."""
         key = begin.tobytes() + end.tobytes()
