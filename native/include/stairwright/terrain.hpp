@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "stairwright/robot.hpp"
+#include "stairwright/polygon.hpp"
 
 namespace stairwright {
 
