@@ -225,7 +225,7 @@ def test_the_client_does_the_same(service: Client) -> None:
     assert plan.feasible
     assert service.get_plan(plan.id) == plan
     seen: list[float] = []
-    run = service.rollout(plan_id=plan.id, progress=seen.append, controller={"leash": 0.02})
+    run = service.rollout(plan_id=plan.id, progress=seen.append, controller={"maximum_lead": 0.02})
     assert run.success
     assert run.plan_id == plan.id
     assert seen[-1] == 1.0
@@ -249,8 +249,8 @@ def test_the_client_does_the_same(service: Client) -> None:
         ({"plan_id": "none of ours"}, 404, "plan_id"),
         ({"plan_id": "p-1", "terrain": CURB}, 422, "terrain"),
         ({"terrain": CURB, "controller": {"wings": 1}}, 422, "controller.wings"),
-        ({"terrain": CURB, "controller": {"leash": -1}}, 422, "controller.leash"),
-        ({"terrain": CURB, "controller": {"leash": [1]}}, 422, "controller.leash"),
+        ({"terrain": CURB, "controller": {"maximum_lead": -1}}, 422, "controller.maximum_lead"),
+        ({"terrain": CURB, "controller": {"maximum_lead": [1]}}, 422, "controller.maximum_lead"),
         ({"terrain": CURB, "seed": -1}, 422, "seed"),
         ({"terrain": CURB, "seed": 1.5}, 422, "seed"),
     ],

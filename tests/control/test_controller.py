@@ -172,3 +172,10 @@ def test_settings_schema_feeds_sliders() -> None:
         if "enum" not in entry:
             assert {"minimum", "maximum", "unit", "scale"} <= set(entry), name
             assert entry["scale"] in ("log", "linear")
+
+
+def test_settings_stored_under_the_old_name_of_the_lead_are_read() -> None:
+    assert parse_settings({"leash": 0.02}).lead == 0.02
+    assert parse_settings({"sensing": "robot"}).lead == 0.03
+    with pytest.raises(InputError, match="leash"):
+        parse_settings({"leash": 0.02, "maximum_lead": 0.01})

@@ -41,7 +41,7 @@ def test_native_controller_equals_plain(name: str) -> None:
             torques = native.step(qpos, qvel, row, 0.2)
             np.testing.assert_allclose(native.places, plain.places, atol=1e-9)
             np.testing.assert_allclose(torques, expected, atol=1e-5, rtol=1e-5)
-            assert native.pitch_integral == pytest.approx(plain.learnt)
+            assert native.pitch_integral == pytest.approx(plain.pitch_integral)
 
 
 def test_wrong_shapes_are_refused() -> None:

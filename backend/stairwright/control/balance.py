@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 # Larger accelerations are not asked for: a far-away set point must not throw the robot.
 MAX_ACCELERATION = 3.5  # m/s^2, along x
 CONTROL_PERIOD = 0.002  # s
-MAX_LEARNT = 15.0  # rad/s^2 that the pitch integral may add
+MAX_PITCH_INTEGRAL = 15.0  # rad/s^2 that the pitch integral may add
 # Weight of the difference between left and right forces: where grip runs out the QP would rather
 # carry all with one wheel of a pair, and nothing else keeps the robot from rolling over.
 EVEN = 0.02
@@ -32,26 +32,28 @@ def desired_wrench(
     drift: Floats,
     state: Measurement,
     target: Setpoint,
-    learnt: float = 0.0,
+    pitch_integral: float = 0.0,
 ) -> Floats:
     """(3,) ``b_des`` of eqs 8-9.
 
     `offset` and `drift` (2,) are desired minus measured position [m] and velocity [m/s] of the
-    body's centre; `learnt` [rad/s^2] is what the pitch integral adds.
+    body's centre; `pitch_integral` [rad/s^2] is what the pitch integral adds.
     """
     acceleration = target.com_acceleration + settings.com_stiffness * offset
     acceleration += settings.com_damping * drift
     acceleration[0] = np.clip(acceleration[0], -MAX_ACCELERATION, MAX_ACCELERATION)
-    spin = learnt + target.pitch_acceleration
+    spin = pitch_integral + target.pitch_acceleration
     spin += settings.pitch_stiffness * (target.pitch - state.pitch)
     spin += settings.pitch_damping * (target.pitch_rate - state.pitch_rate)
     return wrench(robot.mass, state.inertia, acceleration, spin)
 
 
-def learn(settings: ControllerSettings, learnt: float, state: Measurement, goal: float) -> float:
+def integrate_pitch(
+    settings: ControllerSettings, pitch_integral: float, state: Measurement, goal: float
+) -> float:
     """The pitch integral [rad/s^2] one control step on, bounded."""
-    learnt += CONTROL_PERIOD * settings.pitch_integral * (goal - state.pitch)
-    return min(max(learnt, -MAX_LEARNT), MAX_LEARNT)
+    pitch_integral += CONTROL_PERIOD * settings.pitch_integral * (goal - state.pitch)
+    return min(max(pitch_integral, -MAX_PITCH_INTEGRAL), MAX_PITCH_INTEGRAL)
 
 
 def roll_forces(

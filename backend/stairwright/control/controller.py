@@ -68,7 +68,7 @@ class Controller:
     Attributes:
         forces: (8,) last solution of the QP, per wheel tangential and normal [N].
         places: (4,) arc length of each wheel on the wheel-centre curve [m].
-        learnt: Pitch acceleration that the model does not know of [rad/s^2].
+        pitch_integral: Pitch acceleration that the model does not know of [rad/s^2].
     """
 
     def __init__(
@@ -78,7 +78,7 @@ class Controller:
         self.gains = gains(robot, settings)
         self.forces = np.tile([0.0, robot.mass * rigid_body.GRAVITY / 4], 4)
         self.places = np.full(4, np.nan)
-        self.learnt = 0.0
+        self.pitch_integral = 0.0
 
     def locate(self, state: Measurement) -> Floats:
         """Update and return the wheels' places (4,)."""
@@ -105,7 +105,9 @@ class Controller:
         frames = rigid_body.contact_frames(normals)
         points = state.wheels - reach * normals
         A = rigid_body.force_map(frames, points - state.com)
-        self.learnt = balance.learn(settings, self.learnt, state, target.pitch)
+        self.pitch_integral = balance.integrate_pitch(
+            settings, self.pitch_integral, state, target.pitch
+        )
         desired = balance.desired_wrench(
             robot,
             settings,
@@ -113,7 +115,7 @@ class Controller:
             target.com_velocity - state.com_velocity,
             state,
             target,
-            self.learnt,
+            self.pitch_integral,
         )
         resting = np.einsum("nji,nj->ni", frames, (target.forces / 2)[LEG_PAIR]).ravel()
         uneven = balance.roll_forces(robot, settings, state, target)

@@ -59,12 +59,12 @@ class ControllerSettings(Model):
     joint_speed: float = _number(
         1.5, 0.1, 10.0, "rad/s", "Joint speed", "Cap on joint rates along the plan", "log"
     )
-    leash: float | None = _number(
+    maximum_lead: float | None = _number(
         None,
         0.002,
         0.2,
         "m",
-        "Leash",
+        "Maximum lead",
         "How far the plan may run ahead of the wheels; 30 mm if empty where the robot senses by "
         "itself, else 12 mm",
         "log",
@@ -158,9 +158,18 @@ class ControllerSettings(Model):
     )
 
     @property
-    def maximum_lead(self) -> float:
+    def lead(self) -> float:
         """How far the plan may run ahead of the wheels [m]."""
-        return self.leash if self.leash is not None else MAXIMUM_LEAD[self.sensing]
+        given = self.maximum_lead
+        return given if given is not None else MAXIMUM_LEAD[self.sensing]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _renamed(cls, data: Any) -> Any:
+        """Runs that were stored before the setting had its name."""
+        if isinstance(data, Mapping) and "leash" in data and "maximum_lead" not in data:
+            return {"maximum_lead" if key == "leash" else key: data[key] for key in data}
+        return data
 
     @model_validator(mode="after")
     def _check_sensing(self) -> ControllerSettings:

@@ -160,7 +160,7 @@ def find_standing_poses(
     """Start and goal of `terrain`.
 
     Raises:
-        NoStand: If a stretch is too short for the robot, or the goal is not ahead of the start.
+        NoStandingPose: If a stretch is too short for the robot, or the goal not ahead of the start.
     """
     (low, first), (last, high) = stretches(path)
     gap = stance(robot)
@@ -213,7 +213,7 @@ def _settle(
         edge: Distance of the farther wheel from its outer end where there is room for it [m].
 
     Raises:
-        NoStand: If the stretch is too short, or the wheels are too large.
+        NoStandingPose: If the stretch is too short, or the wheels are too large.
     """
     s, which = (stretch[1], "first") if kind == "start" else (stretch[0], "last")
     room = stretch[1] - stretch[0]
@@ -269,7 +269,7 @@ def _at(path: WheelPath, robot: Robot, gap: float, x: float, kind: End) -> Stand
 
 
 def _resting(path: WheelPath, robot: Robot, x: float) -> StandingPose | None:
-    """The stand whose trunk is at `x`, wheels on the profile, if it is found."""
+    """The standing pose whose trunk is at `x`, wheels on the profile, if it is found."""
     x0, x1 = path.centres(np.array([0.0, path.length]))[:, 0]
     # On a slope the trunk leans off the wheels' middle: move the wheels until it is where asked.
     shift, apart = 0.0, 0.5 * stance(robot)

@@ -1,12 +1,12 @@
-"""How fast the plan advances: its own timing, limits along it, and a leash to the robot.
+"""How fast the plan advances: its own timing, limits along it, and a maximum lead over the robot.
 
 What advances is the way: the plan's progress, and where the trunk swings above wheels that hardly
 roll, a share of the trunk's motion, so that a swing takes its time.
 
 The plan runs on its own clock, because a purely measured progress stalls (the robot waits for the
-plan and the plan for the robot). A leash holds it back: it slows down when it is ahead of the
-wheels, stops when it is too far ahead and retreats with a robot that slides back. It hurries after
-a robot that runs ahead only a little faster than planned, because it must not jump.
+plan and the plan for the robot). A maximum lead holds it back: it slows down when it is ahead of
+the wheels, stops when it is too far ahead and retreats with a robot that slides back. It hurries
+after a robot that runs ahead only a little faster than planned, because it must not jump.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class Track:
 
     @property
     def duration(self) -> float:
-        """Time to the end without any leash [s]."""
+        """Time to the end without waiting for the robot [s]."""
         return float(np.sum(self.step / np.maximum(self.speeds[:-1], MIN_SPEED)))
 
 
@@ -181,9 +181,9 @@ def _limited(
     return bounded
 
 
-def follower(line: Track, leash: float) -> _core.PlanFollower:
-    """What advances along `line`, at most `leash` [m] ahead of the wheels."""
-    return _core.PlanFollower(line.start, line.step, line.rows, line.speeds, maximum_lead=leash)
+def follower(line: Track, lead: float) -> _core.PlanFollower:
+    """What advances along `line`, at most `lead` [m] ahead of the wheels."""
+    return _core.PlanFollower(line.start, line.step, line.rows, line.speeds, maximum_lead=lead)
 
 
 def cruise(line: Track, way: float) -> Floats:

@@ -84,7 +84,7 @@ class Series(Model):
     pitch: Array = Field(description="[N] about +y: nose-up is negative [rad]")
     pitch_desired: Array = Field(description="[N] rad")
     progress: Array = Field(description="[N] measured, mean of the wheels since the start [m]")
-    progress_desired: Array = Field(description="[N] the plan's, held back by the leash [m]")
+    progress_desired: Array = Field(description="[N] the plan's, held back by the maximum lead [m]")
     contact_force: Array = Field(
         description="[N, 4, 2] force of the terrain on each wheel, world x and z [N]"
     )

@@ -125,7 +125,7 @@ class Run:
     @property
     def _lead(self) -> float:
         """How far the plan may be ahead of the wheels [m]: they lag the more the faster it is."""
-        return self.settings.maximum_lead * (FAST_LEAD if self._fast else 1.0)
+        return self.settings.lead * (FAST_LEAD if self._fast else 1.0)
 
     def _track(self) -> Track:
         plan, settings = self.plan, self.settings
@@ -290,7 +290,7 @@ class Run:
         self.target[:] = self.follower.advance(self.places, moving, self.dt)
         self.way = self.follower.way
         if self.settings.form == "paper" and moving and self.way < t.end - 1e-9:
-            # Eq 15 follows a speed and no place: slowed down by the leash it would never catch up.
+            # Eq 15 follows a speed and no place: held back by the lead it would never catch up.
             self.target[RATES : RATES + 2] = cruise(t, self.way)
         self.wanted[:] = self.controller.step(qpos, qvel, Setpoint.from_row(self.target))
         self.places[:] = self.controller.places

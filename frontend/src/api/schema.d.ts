@@ -1080,10 +1080,10 @@ export interface components {
              */
             joint_speed: number;
             /**
-             * Leash
+             * Maximum lead
              * @description How far the plan may run ahead of the wheels; 30 mm if empty where the robot senses by itself, else 12 mm
              */
-            leash?: number | null;
+            maximum_lead?: number | null;
             /**
              * Joint stiffness
              * @description K_p of eq 27; the robot's if empty
@@ -2724,7 +2724,7 @@ export interface components {
             progress: number[];
             /**
              * Progress Desired
-             * @description [N] the plan's, held back by the leash [m]
+             * @description [N] the plan's, held back by the maximum lead [m]
              */
             progress_desired: number[];
             /**

@@ -21,8 +21,8 @@ from stairwright.planning.infeasibility.relaxation import (
     CLOSE,
     LONGEST,
     Candidate,
-    bold_candidates,
     candidates_of,
+    large_changes,
     leads_past,
     motor_torque,
 )
@@ -83,8 +83,8 @@ def _cause(
         candidates = [one for one in candidates if one not in tried]
         if not tried or not candidates:
             break
-    for bold in bold_candidates(planner):  # where no single change of grip or robot is enough
-        _, answer = _answered(planner, [bold], places, pool, meanwhile)
+    for change in large_changes(planner):  # where no single change of grip or robot is enough
+        _, answer = _answered(planner, [change], places, pool, meanwhile)
         if answer is not None:
             return answer
     return None

@@ -131,11 +131,11 @@ def _legs_with_grip(planner: PathPlanner) -> Candidate:
     )  # fmt: skip
 
 
-def bold_candidates(planner: PathPlanner) -> list[Candidate]:
+def large_changes(planner: PathPlanner) -> list[Candidate]:
     """What is asked where nothing else is enough: legs with ample friction, a lower profile."""
     points = np.array(planner.terrain.points)
     base, height = float(points[0, 1]), float(np.ptp(points[:, 1]))
-    bold = [_legs_with_grip(planner)]
+    changes = [_legs_with_grip(planner)]
 
     def lowered(c: PathPlanner, v: float) -> PathPlanner:
         document = c.terrain.model_dump()
@@ -146,8 +146,8 @@ def bold_candidates(planner: PathPlanner) -> list[Candidate]:
 
     if height > 0.0:  # in the end it is flat, which opens every way
         lower = Candidate("reach", "profile height", "m", height, _FLAT * height, lowered)
-        bold.append(lower)
-    return bold
+        changes.append(lower)
+    return changes
 
 
 def _with_robot(planner: PathPlanner, robot: Robot) -> PathPlanner:

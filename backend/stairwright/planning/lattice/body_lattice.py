@@ -62,10 +62,10 @@ class Bounds(NamedTuple):
 
 
 # What lattice poses keep: a little more than the final bounds (strict); as much less as rounding to
-# the lattice may take from a pose that is really possible (bold: the polish must repair it); or so
-# much less that a search without success settles the matter (hope; the polish repairs many of its
-# finds, and sooner than a finer lattice would spare it the work); or what lies between (keen).
-# Where bare bounds of lattice poses (plain) leave a way, 19 of 20 become plans.
+# the lattice may take from a pose that is really possible (loose: smoothing must repair it); or so
+# much less that a search without success settles the matter (loosest; smoothing repairs many of its
+# finds, and sooner than a finer lattice would spare it the work); or what lies between (looser).
+# Where the bare bounds of lattice poses (exact) leave a way, 19 of 20 become plans.
 STRICT = Bounds(
     trunk=0.006, links=0.006, legs=_core.LEGS_GAP, reach=0.003, thigh=0.0, com=0.005, torque=0.95
 )

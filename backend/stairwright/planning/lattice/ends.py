@@ -1,4 +1,4 @@
-"""Where ways begin and end: poses of a cell near a stand, with the widest way."""
+"""Where ways begin and end: poses of a cell near a standing pose, with the widest way."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from stairwright.planning.standing import StandingPose
 Ints = NDArray[np.int32]
 Longs = NDArray[np.int64]
 
-_NEAR = 2  # lattice steps; poses this near to a stand's count as it
+_NEAR = 2  # lattice steps; poses this near to a standing pose's count as it
 
 
 def pose_in(lat: Lattice, cells: Cells, c: int, where: StandingPose) -> Ints:
-    """Window indices (3,) (pitch, z, x) in cell `c` of the pose nearest to a stand's."""
+    """Window indices (3,) (pitch, z, x) in cell `c` of the pose nearest to a standing pose."""
     x, z, pitch = where.body
     pose = [
         round(pitch / lat.turn) + lat.pitches // 2 - cells.t0[c],

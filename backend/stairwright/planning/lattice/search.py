@@ -19,7 +19,7 @@ Longs = NDArray[np.int64]
 Place = tuple[float, float]  # arc lengths of front and rear wheel [m]
 Flags = NDArray[np.bool_]
 
-_APART = 0.01  # m; smoothing brings wheels together, and no polish parts them again
+_APART = 0.01  # m; smoothing brings wheels together, and no smoothing parts them again
 _SWEEPS = 12  # most sweeps when wheels may roll back
 
 
@@ -239,7 +239,7 @@ class Search:
         )  # fmt: skip
 
     def _only(self, cells: Cells, where: StandingPose) -> Flags:
-        """Flags (n,) of the one cell of the stand `where`, if it has one."""
+        """Flags (n,) of the one cell of the standing pose `where`, if it has one."""
         out: Flags = np.zeros(len(cells.front), np.bool_)
         c = int(cells.number[self._index(where)])
         if c >= 0:

@@ -21,7 +21,7 @@ _LAST_ASKED = 12.0  # m; the same where only the question is whether there is a 
 _AHEAD = 1.8  # m of a window that are searched again by the next
 
 
-# Tables of earlier searches of the same course, which the next rung or another friction can use.
+# Tables of earlier searches of the same course, which the next attempt or another friction can use.
 Searches = dict[tuple[Any, ...], Search]
 _KEPT = 8
 
@@ -35,7 +35,7 @@ def find_path(
     partial: bool = False,
     searches: Searches | None = None,
 ) -> LatticePath:
-    """The way from the first stand to the second; see `Search.find` for the arguments.
+    """The way from the first standing pose to the second; see `Search.find` for the arguments.
 
     With `partial` it is the way as far as it goes where there is none to the end.
     """

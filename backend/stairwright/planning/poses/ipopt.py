@@ -30,7 +30,7 @@ _SQP = {
 }
 _OPTIONS: dict[str, tuple[str, dict[str, Any]]] = {
     "daqp": ("sqpmethod", {**_SQP, "qpsol": "daqp", "qpsol_options": {"error_on_fail": False}}),
-    # qpOASES would be a second rung, but prints its licence to the standard output, where plans
+    # qpOASES would be a second attempt, but prints its licence to the standard output, where plans
     # go; proxqp and qrqp solved nothing that daqp did not, and took up to a second.
     "ipopt": (
         "ipopt",

@@ -1,8 +1,8 @@
-"""Local repair: where a path breaks a bound, a piece of it is polished anew, or searched anew.
+"""Local repair: where a path breaks a bound, a piece of it is smoothed anew, or searched anew.
 
-Most paths that the polish cannot make good are so in one or two places of a few centimetres. There
+Most paths that smoothing cannot make good are so in one or two places of a few centimetres. There
 a finer lattice costs little, and finds what a coarse one has rounded away: also other places for
-the wheels, which no polish moves.
+the wheels, which no smoothing moves.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ class Stage(NamedTuple):
 
     Attributes:
         width: Of what is laid anew on either side of a bad place, for legs of 0.4 m [m].
-        fine: The search's lattice; None: no search, the piece is only polished anew.
-        depth: By how much bounds may be broken where it is tried: it mends no more [m].
-        places: Most bad places; more are hardly ever all mended, and each takes its time.
+        fine: The search's lattice; None: no search, the piece is only smoothed anew.
+        depth: By how much bounds may be broken where it is tried: it repairs no more [m].
+        places: Most bad places; more are hardly ever all repaired, and each takes its time.
         longest: Largest extent of a bad place, for legs of 0.4 m [m]; a fine search of more takes
-            as long as the whole course, and has mended nothing.
+            as long as the whole course, and has repaired nothing.
     """
 
     width: float
@@ -43,7 +43,7 @@ class Stage(NamedTuple):
 
 
 STAGES = (Stage(0.1, None, depth=0.008), Stage(0.15, 1.25), Stage(0.25, 1.0, places=1, longest=0.9))
-_BLEND = 0.08  # m on either side of that, which are polished with it
+_BLEND = 0.08  # m on either side of that, which are smoothed with it
 _HELD = 3  # nodes at the ends of a piece stay, so that it meets the path without a kink
 _SPACINGS = (NodeSpacing(0.5, 0.006, 0.6), NodeSpacing(0.15, 0.006, 0.6))
 
