@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright._core import GRAVITY
 from stairwright.robot.description import Robot
 
 from .measurement import Measurement
-from .rigid_body import GRAVITY, wrench
+from .rigid_body import wrench
 from .setpoint import Setpoint
 from .settings import ControllerSettings
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright._core import GRAVITY
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
@@ -58,7 +59,7 @@ def gains(robot: Robot, settings: ControllerSettings) -> Gains:
         pick(settings.joint_stiffness, own.joint_stiffness),
         pick(settings.joint_damping, own.joint_damping),
         min(pick(settings.wheel_damping, own.wheel_damping), spin_inertia / balance.CONTROL_PERIOD),
-        pick(settings.force_limit, _LIMIT * robot.mass * rigid_body.GRAVITY),
+        pick(settings.force_limit, _LIMIT * robot.mass * GRAVITY),
     )
 
 
@@ -76,7 +77,7 @@ class Controller:
     ) -> None:
         self.robot, self.path, self.friction, self.settings = robot, path, friction, settings
         self.gains = gains(robot, settings)
-        self.forces = np.tile([0.0, robot.mass * rigid_body.GRAVITY / 4], 4)
+        self.forces = np.tile([0.0, robot.mass * GRAVITY / 4], 4)
         self.places = np.full(4, np.nan)
         self.pitch_integral = 0.0
 

@@ -12,8 +12,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright._core import GRAVITY
+
 Floats = NDArray[np.float64]
-GRAVITY = 9.81  # m/s^2
 
 
 def traction(wheel_torque: Floats, radius: float) -> Floats:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright._core import GRAVITY
 from stairwright.robot import spatial
 from stairwright.robot.description import Robot
 from stairwright.robot.kinematics import link_com
 
 Floats = NDArray[np.float64]
-GRAVITY = 9.81  # m/s^2
 
 
 def static_torques(

@@ -19,6 +19,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright._core import GRAVITY
 from stairwright.arguments import as_friction
 from stairwright.terrain.profile import Terrain
 
@@ -29,7 +30,6 @@ from .parts import Actuator, Outline
 Floats = NDArray[np.float64]
 
 TIMESTEP = 0.001  # s
-_GRAVITY = 9.81  # m/s^2
 TERRAIN_HALF_WIDTH = 1.0  # m
 TERRAIN_DEPTH = 0.5  # m below the lowest point
 SPIKE_WIDTH = 0.002  # m; a zero-width spike becomes a prism this thick
@@ -246,7 +246,7 @@ def _add_leg(trunk: Any, robot: Robot, leg: str, friction: float, visual: bool) 
     wheel = parent.add_body(name=f"{leg}_wheel", pos=place)
     _add_hinge(wheel, f"{leg}_wheel", own.wheel_motor, None)
     # Rolling resistance as a torque in the bearing, at the load of a robot that stands on four.
-    drag = own.wheel.rolling_resistance * robot.mass * _GRAVITY / 4 * own.wheel.radius
+    drag = own.wheel.rolling_resistance * robot.mass * GRAVITY / 4 * own.wheel.radius
     wheel.joints[0].frictionloss = drag
     _set_inertial(wheel, own.wheel.mass, (0.0, 0.0, 0.0), own.wheel.inertia)
     surface = _surface(leg, "wheel", friction)

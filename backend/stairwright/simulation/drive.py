@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright._core import GRAVITY
 from stairwright.control.controller import LEG_PAIR, Controller
 from stairwright.control.measurement import measure
-from stairwright.control.rigid_body import GRAVITY
 from stairwright.control.setpoint import Setpoint
 from stairwright.control.settings import ControllerSettings
 from stairwright.robot import kinematics

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright import _core
-from stairwright.control.rigid_body import GRAVITY
+from stairwright._core import GRAVITY
 from stairwright.control.setpoint import (
     COM,
     FORCES,
@@ -36,7 +36,7 @@ from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
 from stairwright.planning.poses.pose_reference import Reference
 from stairwright.planning.timing.limits import WHEEL_SPEED_SHARE
-from stairwright.planning.timing.way import even_grid, way_of
+from stairwright.planning.timing.way import even_grid, slopes, way_of
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
@@ -104,7 +104,6 @@ def track(
         text = f"the poses are {last - first:.3g} m apart in all; at most {LONGEST_WAY:g} m can be"
         raise InputError(f"{text} carried out", ("plan", "poses"))
     grid = even_grid(way)
-    count = len(grid)
     columns = np.column_stack(
         [
             reference.wheel_progress,
@@ -114,8 +113,7 @@ def track(
             reference.trunk[:, :2],
         ]
     )
-    rows = np.zeros((count, WIDTH))
-    order = [*range(11)]
+    rows = np.zeros((len(grid), WIDTH))
     assert (
         slice(0, 2),
         slice(2, 6),
@@ -123,16 +121,11 @@ def track(
         slice(7, 9),
         slice(9, 11),
     ) == (WHEELS, JOINTS, PITCH, COM, TRUNK)
-    for k in order:
-        column = columns[:, k]
-        rows[:, k] = np.interp(grid, way, column)
-        low, high = np.maximum(grid - RATE_REACH, first), np.minimum(grid + RATE_REACH, last)
-        rise = np.interp(high, way, column) - np.interp(low, way, column)
-        rows[:, RATES + k] = rise / (high - low)
-    for k in range(SURGES, SHARE):
-        rate = rows[:, RATES + PITCH + k - SURGES]
-        low, high = np.maximum(grid - RATE_REACH, first), np.minimum(grid + RATE_REACH, last)
-        rows[:, k] = (np.interp(high, grid, rate) - np.interp(low, grid, rate)) / (high - low)
+    count = columns.shape[1]
+    rows[:, :count] = np.stack([np.interp(grid, way, column) for column in columns.T], axis=1)
+    rows[:, RATES : RATES + count] = slopes(grid, way, columns, RATE_REACH)
+    surging = rows[:, RATES + PITCH : RATES + PITCH + SHARE - SURGES]
+    rows[:, SURGES:SHARE] = slopes(grid, grid, surging, RATE_REACH)
     places, com = np.ascontiguousarray(rows[:, WHEELS]), np.ascontiguousarray(rows[:, COM])
     weight = robot.mass * GRAVITY
     resting = _core.static_forces(path.native, weight, friction, places, com)

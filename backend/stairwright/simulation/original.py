@@ -18,6 +18,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright._core import GRAVITY
 from stairwright.errors import InputError
 from stairwright.robot.description import JOINTS, LEGS, Robot
 from stairwright.robot.importing.assemble import Reading
@@ -249,7 +250,7 @@ def _add_motors(spec: Any, robot: Robot, driven: list[Any], held: list[str]) -> 
         actuator = _actuator(spec, joint.name)
         actuator.set_to_motor()
         actuator.ctrllimited, actuator.ctrlrange = True, [-motor.torque, motor.torque]
-    plenty = _SERVO_TORQUE * robot.mass * 9.81 * min(leg.reach for leg in robot.legs)
+    plenty = _SERVO_TORQUE * robot.mass * GRAVITY * min(leg.reach for leg in robot.legs)
     for name in held:
         actuator = _actuator(spec, name)
         stiffness = plenty / _GIVES

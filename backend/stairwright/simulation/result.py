@@ -17,7 +17,6 @@ from stairwright.robot.description import Robot
 from stairwright.robot.parts import optional
 from stairwright.terrain.profile import Terrain
 
-GRAVITY = 9.81  # m/s^2
 Floats = NDArray[np.float64]
 Outcome = Literal["success", "fell", "stuck", "collided", "diverged", "timeout", "stopped"]
 

@@ -81,6 +81,13 @@ def pose_times(
     return _calmed(robot, times, body, q, margin)
 
 
+def standing_effort(plan: Plan) -> Floats:
+    """Largest share (n,) of a leg motor's torque that standing takes at each pose."""
+    most = float(plan.robot_description.torque_limits[:, :2].min())
+    effort: Floats = 1.0 - np.array([pose.margins.torque for pose in plan.poses]) / most
+    return effort
+
+
 def retimed(plan: Plan, speed: float) -> Plan:
     """A path plan's poses at the times that it would have with another wished `speed` [m/s]."""
     s = np.array([pose.wheel_progress for pose in plan.poses])
@@ -90,9 +97,7 @@ def retimed(plan: Plan, speed: float) -> Plan:
     path = wheel_path(plan.terrain, plan.robot_description.wheel.radius)
     margin = _core.firm_com_margins(path.native, s, com_x, plan.friction)
     robot = plan.robot_description
-    limit = float(robot.torque_limits[:, :2].min())
-    effort = 1.0 - np.array([pose.margins.torque for pose in plan.poses]) / limit
-    times = pose_times(robot, s, body, q, margin, effort, speed).tolist()
+    times = pose_times(robot, s, body, q, margin, standing_effort(plan), speed).tolist()
     poses = [
         pose.model_copy(update={"time": time}) for pose, time in zip(plan.poses, times, strict=True)
     ]

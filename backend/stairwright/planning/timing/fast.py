@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from stairwright import _core
 from stairwright.planning.plan import Plan, Timing, plan_id
 from stairwright.planning.poses.interpolation import reference
+from stairwright.planning.smoothing.path_timing import standing_effort
 from stairwright.terrain.wheel_path import wheel_path
 
 from .limits import LimitName, Limits, Pace, limits_of
@@ -32,9 +33,7 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
     line = reference(plan, joint_rate=None)
     motion = moving_robot(line, robot)
     poses = np.array([pose.progress for pose in plan.poses])
-    least = float(robot.torque_limits[:, :2].min())
-    efforts = 1.0 - np.array([pose.margins.torque for pose in plan.poses]) / least
-    effort = np.interp(motion.progress, poses, efforts)
+    effort = np.interp(motion.progress, poses, standing_effort(plan))
     limits = limits_of(motion, robot, path, plan.friction, effort, Pace.of(aggressiveness))
     squares = fastest(motion, limits)
     at = np.interp(poses, line.progress, way_of(line))

@@ -22,7 +22,7 @@ from .wrench_cone import facets, touched
 
 Floats = NDArray[np.float64]
 LimitName = Literal[
-    "balance", "torque", "acceleration", "joint_speed", "pitch_speed", "wheel_speed", "speed"
+    "balance", "torque", "acceleration", "joint_speed", "pitch_speed", "wheel_speed"
 ]
 
 WHEEL_SPEED_SHARE = 0.6  # of the no-load speed: the rest leaves torque
@@ -79,7 +79,6 @@ def limits_of(
     friction: float,
     effort: Floats,
     pace: Pace,
-    speed: float | None = None,
 ) -> Limits:
     """Limits along `motion`.
 
@@ -90,7 +89,6 @@ def limits_of(
         friction: Coulomb friction of all faces.
         effort: (n,) largest share of a leg motor's torque that standing takes.
         pace: How hard it may be driven.
-        speed: Of the wheels' mean along the course, if it is bounded [m/s].
     """
     groups: list[tuple[LimitName, Floats]] = [
         ("balance", _balance(motion, robot, path, friction, pace)),
@@ -99,7 +97,7 @@ def limits_of(
     ]
     names = tuple(name for name, rows in groups for _ in range(rows.shape[1]))
     rows = np.ascontiguousarray(np.concatenate([rows for _, rows in groups], axis=1))
-    return Limits(rows, names, _caps(motion, robot, effort, pace, speed))
+    return Limits(rows, names, _caps(motion, robot, effort, pace))
 
 
 def _balance(
@@ -136,15 +134,18 @@ def _torque(motion: MovingRobot, robot: Robot, effort: Floats) -> Floats:
     least = float(robot.torque_limits[:, :2].min())
     _, first, second = motion.com
     lever = robot.mass * motion.height / (4.0 * least)
-    pairs = [(effort * second[:, 1] / _core.GRAVITY, effort * first[:, 1] / _core.GRAVITY)]
-    pairs += [(side * lever * second[:, 0], side * lever * first[:, 0]) for side in (1.0, -1.0)]
-    rows = [np.stack([-a, -b, spare], axis=-1) for a, b in pairs]
+    upward = [-effort * each[:, 1] / _core.GRAVITY for each in (second, first)]
+    rows = [np.stack([*upward, spare], axis=-1)]
+    rows += _both_ways(lever * first[:, 0], lever * second[:, 0], spare)
     for j, (inertia, torque) in enumerate(_turned(robot)):
-        share = np.maximum(spare, _LEAST_SPARE)
-        for side in (1.0, -1.0):
-            a, b = (side * inertia / torque * each[:, j] for each in motion.joints[1:])
-            rows.append(np.stack([-b, -a, share], axis=-1))
+        slope, bend = (inertia / torque * each[:, j] for each in motion.joints[1:])
+        rows += _both_ways(slope, bend, np.maximum(spare, _LEAST_SPARE))
     return np.stack(rows, axis=1)
+
+
+def _both_ways(slope: Floats, bend: Floats, room: Floats) -> list[Floats]:
+    """Rows (n, 3) that keep ``slope u + bend x`` between ``-room`` and ``room``."""
+    return [np.stack([-side * bend, -side * slope, room], axis=-1) for side in (1.0, -1.0)]
 
 
 def _turned(robot: Robot) -> Iterator[tuple[float, float]]:
@@ -165,14 +166,10 @@ def _accelerations(motion: MovingRobot, pace: Pace) -> Iterator[Floats]:
     columns.append((motion.trunk, 2, pace.pitch_acceleration))
     columns += [(motion.joints, k, pace.joint_acceleration) for k in range(4)]
     for (_, first, second), k, most in columns:
-        for side in (1.0, -1.0):
-            slope, bend = side * first[:, k] / most, side * second[:, k] / most
-            yield np.stack([-bend, -slope, np.ones(len(slope))], axis=-1)
+        yield from _both_ways(first[:, k] / most, second[:, k] / most, np.ones(len(first)))
 
 
-def _caps(
-    motion: MovingRobot, robot: Robot, effort: Floats, pace: Pace, speed: float | None
-) -> dict[LimitName, Floats]:
+def _caps(motion: MovingRobot, robot: Robot, effort: Floats, pace: Pace) -> dict[LimitName, Floats]:
     """Largest x (n,) by speed limits."""
     spare = np.maximum(1.0 - effort, _LEAST_SPARE)
     joint = np.minimum(pace.joint_speed, LEG_SPEED_SHARE * robot.leg_speed * spare)
@@ -182,12 +179,8 @@ def _caps(
         square: Floats = (most / np.maximum(slopes, _STILL)) ** 2
         return np.minimum(square, 1e6)
 
-    wheels = np.abs(motion.wheels[1])
-    caps: dict[LimitName, Floats] = {
+    return {
         "joint_speed": cap(joint, np.abs(motion.joints[1]).max(axis=1)),
         "pitch_speed": cap(pace.pitch_speed, np.abs(motion.trunk[1][:, 2])),
-        "wheel_speed": cap(wheel, wheels.max(axis=1)),
+        "wheel_speed": cap(wheel, np.abs(motion.wheels[1]).max(axis=1)),
     }
-    if speed is not None:
-        caps["speed"] = cap(speed, wheels.mean(axis=1))
-    return caps

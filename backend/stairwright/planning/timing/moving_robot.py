@@ -60,7 +60,7 @@ def moving_robot(reference: Reference, robot: Robot) -> MovingRobot:
     wheels, com = sampled(reference.wheel_progress), sampled(reference.com)
     x, z, pitch = trunk[0].T
     frames = kinematics.forward(robot, x, z, pitch, joints[0])
-    momentum = _momentum(robot, grid, wheels[0], joints[0], trunk[0], com[0])
+    momentum = _momentum(robot, grid, frames, wheels[0], joints[0], trunk[0], com[0])
     return MovingRobot(
         way=grid,
         progress=np.interp(grid, at, reference.progress),
@@ -74,11 +74,11 @@ def moving_robot(reference: Reference, robot: Robot) -> MovingRobot:
 
 
 def _momentum(
-    robot: Robot, grid: Floats, wheels: Floats, joints: Floats, trunk: Floats, com: Floats
-) -> Floats:
+    robot: Robot, grid: Floats, frames: kinematics.Frames, wheels: Floats, joints: Floats,
+    trunk: Floats, com: Floats,
+) -> Floats:  # fmt: skip
     """Angular momentum (n,) of all bodies about the CoM per speed along the way [kg m]."""
-    x, z, pitch = trunk.T
-    frames = kinematics.forward(robot, x, z, pitch, joints)
+    pitch = trunk[:, 2]
 
     def part(mass: float, inertia: float, place: Floats, angle: Floats) -> Floats:
         r, v = place - com, slopes(grid, grid, place, REACH)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+from stairwright._core import GRAVITY
+
 from .motors import Drive
 from .pair import Pair
 from .report import Notes
 
 _SPEEDS = {"thigh": 20.0, "calf": 20.0, "wheel": 30.0}  # rad/s, of what is on the market
-_GRAVITY = 9.81
 _ROTOR = 0.01 / 33.5  # kg m^2 per Nm, the A1's leg motors
 _MOST_TORQUE, _MOST_SPEED, _MOST_ROTOR, _MOST_DAMPING = 1000.0, 1000.0, 10.0, 10.0
 
@@ -31,7 +32,7 @@ def actuators(
     for part in ("thigh", "calf", "wheel"):
         drive: Drive = getattr(pair, part).drive
         arm = radius if part == "wheel" else 0.7 * sum(pair.lengths)
-        made[part] = _motor(part, drive, arm * mass * _GRAVITY / 2, kind, known, notes)
+        made[part] = _motor(part, drive, arm * mass * GRAVITY / 2, kind, known, notes)
     return made
 
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from stairwright._core import GRAVITY
 from stairwright.robot.description import Robot
 
 from .alike import note_differences
 from .report import Notes
 
-_GRAVITY = 9.81
 _STRONG = 3.0  # traction of all wheels over the weight: no plan needs more
 
 
 def note_traps(robot: Robot, known: Sequence[Robot], notes: Notes) -> None:
     """Weak wheels, knees that bend both ways, capsules beyond the tyre, and unlike sources."""
     pull = sum(2 * leg.wheel_motor.torque / leg.wheel.radius for leg in robot.legs)
-    ratio = pull / (robot.mass * _GRAVITY)
+    ratio = pull / (robot.mass * GRAVITY)
     if ratio < _STRONG:
         notes.warn(
             f"all wheels together pull {ratio:.2f} times the robot's weight: wheel torque may bind"
