@@ -7,9 +7,8 @@ import time
 from collections.abc import AsyncIterator
 from typing import Annotated, Literal, cast
 
-from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
-from starlette.responses import StreamingResponse
 
 from stairwright.api.bodies import JobDocument
 from stairwright.api.deps import Limit, Offset, Service
@@ -17,6 +16,8 @@ from stairwright.api.problems import describe, not_found
 from stairwright.api.responses import models_json
 from stairwright.jobs.job import Job, State
 from stairwright.jobs.live import EVERY, LiveSeries
+
+from . import event_streams
 
 EVENTS = """Events named `job`, each with the job as JSON and its revision as the event's id; and,
 while a rollout runs, events named `series` without an id, about ten a second, each with the samples
@@ -29,7 +30,6 @@ died begins anew: its job is queued again, and its series from sample 0."""
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 
 Kind = Literal["rollout", "trials"]
-QUIET = 15.0  # s after which a comment keeps proxies from closing the stream
 
 
 def job_document(job: Job) -> JobDocument:
@@ -101,35 +101,25 @@ async def cancel_job(services: Service, job: FoundJob) -> JobDocument:
 @router.get(
     "/{job_id}/events",
     response_class=Response,
-    responses={
-        200: {
-            "description": EVENTS,
-            "content": {"text/event-stream": {"schema": {"type": "string"}}},
-        },
-        204: {"description": "Nothing will change after the event that was seen last"},
-        **describe(404),
-    },
+    responses=event_streams.described(EVENTS),
 )
 async def job_events(
     job: FoundJob,
-    last_event_id: Annotated[str | None, Header(max_length=20)] = None,
+    last_event_id: event_streams.LastEventId = None,
     series: Annotated[bool, Query(description="events named `series` as well")] = True,
 ) -> Response:
     """The job now and at every change until it is finished, and its series as it grows."""
-    seen = 0
-    if last_event_id and last_event_id.isascii() and last_event_id.isdigit():
-        seen = int(last_event_id)
+    seen = event_streams.revision_seen(last_event_id)
     if job.finished and seen >= job.revision:
         return Response(status_code=204)  # tells an EventSource not to come back
-    headers = {"cache-control": "no-store", "x-accel-buffering": "no"}
-    # FastAPI's own event streams check nothing before the answer has begun; this one has.
-    stream = _events(job, seen if seen < job.revision else 0, job.live if series else None)
-    return StreamingResponse(stream, headers=headers, media_type="text/event-stream")
+    return event_streams.streamed(
+        _events(job, seen if seen < job.revision else 0, job.live if series else None)
+    )
 
 
 async def _events(job: Job, seen: int, live: LiveSeries | None) -> AsyncIterator[bytes]:
     changes, offset = job.changes(seen), 0
-    look_every = QUIET if live is None else EVERY
+    look_every = event_streams.QUIET if live is None else EVERY
     spoken = time.monotonic()
     while True:
         following = asyncio.ensure_future(anext(changes, None))
@@ -142,7 +132,7 @@ async def _events(job: Job, seen: int, live: LiveSeries | None) -> AsyncIterator
                     yield format_sse_event(data_str=chunk.decode(), event="series")
                 if chunks or done:
                     spoken = time.monotonic()
-                elif time.monotonic() - spoken >= QUIET:
+                elif time.monotonic() - spoken >= event_streams.QUIET:
                     spoken = time.monotonic()
                     yield KEEPALIVE_COMMENT
         except BaseException:

@@ -5,15 +5,13 @@ from __future__ import annotations
 import asyncio
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Annotated, Any, Literal
-from urllib.parse import quote
 
 from fastapi import APIRouter, File, Form, Path, Query, Request, Response, UploadFile
 
 from stairwright.api.bodies import RobotDocument, SentRobot
 from stairwright.api.deps import JSON_BODY, Limit, Offset, Service
-from stairwright.api.problems import Problem, describe, not_found
-from stairwright.api.responses import model_json, models_json
-from stairwright.api.services import UPLOAD_DEADLINE, Services
+from stairwright.api.problems import describe
+from stairwright.api.services import UPLOAD_DEADLINE
 from stairwright.errors import InputError
 from stairwright.export.table import ROBOT_FORMATS
 from stairwright.jobs import robot_uploads
@@ -23,18 +21,21 @@ from stairwright.robot.description import Robot
 from stairwright.robot.importing.report import Imported
 
 from . import stored
+from .named import Named
 
 router = APIRouter(prefix="/robots", tags=["robots"])
 RobotName = Annotated[str, Path(min_length=1, max_length=100, pattern=r"^[\w .+-]+$")]
-MOST_SAVED = 10_000
 if TYPE_CHECKING:
     RobotFormat = str
 else:
     RobotFormat = Literal[tuple(ROBOT_FORMATS)]
 
 
-def _shown(robot: Robot, *, readonly: bool) -> RobotDocument:
+def _shown(robot: Robot, readonly: bool) -> RobotDocument:
     return RobotDocument(**robot.model_dump(), readonly=readonly, version=robot.hash)
+
+
+NAMED = Named("robot", robots, load_robot, lambda services: services.store.robots, _shown)
 
 
 @router.get("", response_model=list[RobotDocument])
@@ -42,10 +43,7 @@ def list_robots(
     request: Request, services: Service, limit: Limit = 1000, offset: Offset = 0
 ) -> Response:
     """All robots: presets first, then saved ones by name."""
-    shown = [_shown(load_robot(name), readonly=True) for name in robots()]
-    shown += [_shown(each, readonly=False) for each in services.store.robots.all()]
-    page = shown[offset : offset + limit]
-    return models_json(request, page, total=len(shown), limit=limit, offset=offset)
+    return NAMED.listing(request, services, limit, offset)
 
 
 @router.post("/import", responses=describe(503))
@@ -93,7 +91,7 @@ async def export_sent_robot(
 @router.get("/{name}", response_model=RobotDocument, responses=describe(404))
 def get_robot(request: Request, services: Service, name: RobotName) -> Response:
     """One robot."""
-    return model_json(request, _find(services, name))
+    return NAMED.get(request, services, name)
 
 
 @router.put(
@@ -104,22 +102,13 @@ def get_robot(request: Request, services: Service, name: RobotName) -> Response:
 )
 def put_robot(request: Request, services: Service, name: RobotName, body: SentRobot) -> Response:
     """Save a robot under a name; 201 if the name is new."""
-    _refuse_preset(name)
-    if body.name != name:
-        raise InputError(f"the body says {body.name!r}, the address {name!r}", ("name",))
-    if services.store.robots.count() >= MOST_SAVED:
-        raise Problem(409, f"{MOST_SAVED} robots are saved already", kind="full")
-    new = services.store.robots.put(body)
-    headers = {"location": quote(request.url.path)} if new else None
-    return model_json(request, _shown(body, readonly=False), 201 if new else 200, headers)
+    return NAMED.put(request, services, name, body.name, body)
 
 
 @router.delete("/{name}", status_code=204, responses=describe(403, 404))
 def delete_robot(services: Service, name: RobotName) -> None:
     """Remove a saved robot."""
-    _refuse_preset(name)
-    if not services.store.robots.delete(name):
-        raise not_found("robot", name)
+    NAMED.delete(services, name)
 
 
 @router.get(
@@ -134,23 +123,5 @@ async def export_robot(
     format_name: Annotated[RobotFormat, Query(alias="format")] = "urdf",
 ) -> Response:
     """One robot as a file for other tools."""
-    robot = await asyncio.to_thread(_known, services, name)
+    robot = await asyncio.to_thread(NAMED.find, services, name)
     return await stored.export_document(request, services, "robot", name, robot, format_name)
-
-
-def _find(services: Services, name: str) -> RobotDocument:
-    return _shown(_known(services, name), readonly=name in robots())
-
-
-def _known(services: Services, name: str) -> Robot:
-    if name in robots():
-        return load_robot(name)
-    saved = services.store.robots.get(name)
-    if saved is None:
-        raise not_found("robot", name)
-    return saved
-
-
-def _refuse_preset(name: str) -> None:
-    if name in robots():
-        raise Problem(403, f"{name!r} is a preset: save under another name", kind="read-only")

@@ -11,9 +11,8 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import orjson
-from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
-from starlette.responses import StreamingResponse
 
 from stairwright.api.bodies import AxisDocument, CellDocument, StudyDocument
 from stairwright.api.deps import (
@@ -40,6 +39,8 @@ from stairwright.studies.service import Following
 from stairwright.studies.targets import target
 from stairwright.studies.version import engine_of
 
+from . import event_streams
+
 EVENTS = """Events named `study`, each with the study's state as JSON and its revision as the
 event's id; and events named `cells` without an id, each with the cells that are new since the last
 one: `{"cell": [n], "state": [n], "feasible": [n], ...}`, a list for each variable of the dataset.
@@ -49,7 +50,6 @@ they come again. Numbers that there are none of are null."""
 
 router = APIRouter(prefix="/studies", tags=["studies"])
 EVERY = 0.1  # s between looks at what is new
-QUIET = 15.0  # s after which a comment keeps proxies from closing the stream
 if TYPE_CHECKING:
     StudyFormat = str
 else:
@@ -278,29 +278,18 @@ def _read_store(what: str, path: str, *args: Any) -> bytes:
 @router.get(
     "/{study_id}/events",
     response_class=Response,
-    responses={
-        200: {
-            "description": EVENTS,
-            "content": {"text/event-stream": {"schema": {"type": "string"}}},
-        },
-        204: {"description": "Nothing will change after the event that was seen last"},
-        **describe(404),
-    },
+    responses=event_streams.described(EVENTS),
 )
 async def study_events(
     services: Service,
     following: FoundStudy,
-    last_event_id: Annotated[str | None, Header(max_length=20)] = None,
+    last_event_id: event_streams.LastEventId = None,
 ) -> Response:
     """The study now and at every change until it is finished, and its cells as they come."""
-    seen = 0
-    if last_event_id and last_event_id.isascii() and last_event_id.isdigit():
-        seen = int(last_event_id)
+    seen = event_streams.revision_seen(last_event_id)
     if following.job.finished and seen >= following.job.revision:
         return Response(status_code=204)  # tells an EventSource not to come back
-    headers = {"cache-control": "no-store", "x-accel-buffering": "no"}
-    stream = _events(services, following)
-    return StreamingResponse(stream, headers=headers, media_type="text/event-stream")
+    return event_streams.streamed(_events(services, following))
 
 
 async def _events(services: Services, following: Following) -> AsyncIterator[bytes]:
@@ -327,7 +316,7 @@ async def _events(services: Services, following: Following) -> AsyncIterator[byt
             return
         if fresh:
             spoken = time.monotonic()
-        elif time.monotonic() - spoken >= QUIET:
+        elif time.monotonic() - spoken >= event_streams.QUIET:
             spoken = time.monotonic()
             yield KEEPALIVE_COMMENT
         await asyncio.sleep(EVERY)

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from pathlib import PurePath
 from typing import Annotated, Any
-from urllib.parse import quote
 
 from fastapi import APIRouter, File, Form, Path, Request, Response, UploadFile
 from pydantic import ValidationError
 
 from stairwright.api.bodies import SentTerrain, TerrainDocument
 from stairwright.api.deps import JSON_BODY, Limit, Offset, Service
-from stairwright.api.problems import Problem, describe, from_validation, not_found
-from stairwright.api.responses import model_json, models_json
-from stairwright.api.services import UPLOAD_DEADLINE, Services
+from stairwright.api.problems import describe, from_validation
+from stairwright.api.services import UPLOAD_DEADLINE
 from stairwright.arguments import MOST_FRICTION
 from stairwright.errors import InputError
 from stairwright.jobs import uploads
@@ -23,14 +21,18 @@ from stairwright.terrain.generation import Generation, Name
 from stairwright.terrain.generation import generate as make_terrain
 from stairwright.terrain.profile import Terrain
 
+from .named import Named
+
 router = APIRouter(prefix="/terrains", tags=["terrains"])
 
 TerrainName = Annotated[str, Path(min_length=1, max_length=100, pattern=r"^[\w .+-]+$")]
-MOST_SAVED = 10_000
 
 
-def _shown(terrain: Terrain, *, readonly: bool) -> TerrainDocument:
+def _shown(terrain: Terrain, readonly: bool) -> TerrainDocument:
     return TerrainDocument(**terrain.model_dump(), readonly=readonly)
+
+
+NAMED = Named("terrain", terrains, load_terrain, lambda services: services.store.terrains, _shown)
 
 
 @router.get("", response_model=list[TerrainDocument])
@@ -38,10 +40,7 @@ def list_terrains(
     request: Request, services: Service, limit: Limit = 1000, offset: Offset = 0
 ) -> Response:
     """All terrains: presets first, then saved ones by name."""
-    shown = [_shown(load_terrain(name), readonly=True) for name in terrains()]
-    shown += [_shown(each, readonly=False) for each in services.store.terrains.all()]
-    page = shown[offset : offset + limit]
-    return models_json(request, page, total=len(shown), limit=limit, offset=offset)
+    return NAMED.listing(request, services, limit, offset)
 
 
 @router.post("/generate", dependencies=[JSON_BODY], responses=describe(415))
@@ -96,16 +95,7 @@ def _usable(stem: str) -> str:
 @router.get("/{name}", response_model=TerrainDocument, responses=describe(404))
 def get_terrain(request: Request, services: Service, name: TerrainName) -> Response:
     """One terrain."""
-    return model_json(request, _find(services, name))
-
-
-def _find(services: Services, name: str) -> TerrainDocument:
-    if name in terrains():
-        return _shown(load_terrain(name), readonly=True)
-    saved = services.store.terrains.get(name)
-    if saved is None:
-        raise not_found("terrain", name)
-    return _shown(saved, readonly=False)
+    return NAMED.get(request, services, name)
 
 
 @router.put(
@@ -118,25 +108,12 @@ def put_terrain(
     request: Request, services: Service, name: TerrainName, body: SentTerrain
 ) -> Response:
     """Save a terrain under a name; 201 if the name is new."""
-    _refuse_preset(name)
-    if "name" in body.model_fields_set and body.name != name:
-        raise InputError(f"the body says {body.name!r}, the address {name!r}", ("name",))
-    if services.store.terrains.count() >= MOST_SAVED:
-        raise Problem(409, f"{MOST_SAVED} terrains are saved already", kind="full")
-    terrain = body.model_copy(update={"name": name})
-    new = services.store.terrains.put(terrain)
-    headers = {"location": quote(request.url.path)} if new else None
-    return model_json(request, _shown(terrain, readonly=False), 201 if new else 200, headers)
+    said = body.name if "name" in body.model_fields_set else name
+    document = body.model_copy(update={"name": name})
+    return NAMED.put(request, services, name, said, document)
 
 
 @router.delete("/{name}", status_code=204, responses=describe(403, 404))
 def delete_terrain(services: Service, name: TerrainName) -> None:
     """Remove a saved terrain."""
-    _refuse_preset(name)
-    if not services.store.terrains.delete(name):
-        raise not_found("terrain", name)
-
-
-def _refuse_preset(name: str) -> None:
-    if name in terrains():
-        raise Problem(403, f"{name!r} is a preset: save under another name", kind="read-only")
+    NAMED.delete(services, name)
