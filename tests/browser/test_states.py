@@ -244,6 +244,22 @@ def test_the_scene_is_saved_as_a_picture(product_with_scene: Product) -> None:
     assert len(picture) > 20_000
 
 
+def test_the_replay_is_saved_as_a_video(product_with_scene: Product) -> None:
+    page = product_with_scene.open().page
+    frame = page.frame_locator(".v3 iframe")
+    frame.locator("canvas").first.wait_for(timeout=PATIENCE)
+    page.get_by_role("button", name="Record the replay as a video").click()
+    page.wait_for_timeout(3000)
+    with page.expect_download(timeout=PATIENCE) as saved:
+        page.get_by_role("button", name="Stop and save the video").click()
+    assert saved.value.suggested_filename == "three-stairs-up-a1_wheeled_x-scene.webm"
+    video = saved.value.path().read_bytes()
+    assert video.startswith(b"\x1a\x45\xdf\xa3")  # EBML, as WebM begins
+    assert b"V_VP" in video[:1000]
+    assert len(video) > 10_000
+    page.get_by_role("button", name="Record the replay as a video").wait_for()
+
+
 def _serve(port: int, data: Path) -> subprocess.Popen[bytes]:
     command = [sys.executable, "-m", "stairwright", "serve", "--port", str(port)]
     process = subprocess.Popen(
