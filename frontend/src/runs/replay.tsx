@@ -20,6 +20,9 @@ const LONGEST_FRAME = 1;
 /** Room for the robot above and beside its centre of mass [m]. */
 const ROOM = 0.3;
 
+/** Height of a letter, which stands over its robot, above those of the pins before [m]. */
+const LETTER = 0.07;
+
 const chain = (points: readonly Vec2[]) =>
   points.map((p) => `${p[0].toFixed(4)},${(-p[1]).toFixed(4)}`).join(" ");
 
@@ -84,10 +87,10 @@ export function Replay({ all }: { all: readonly Shown[] }) {
 function Side({ all, time }: { all: readonly Shown[]; time: number }) {
   const body = all.flatMap(({ track }) => track.com);
   if (body.length === 0) return null;
-  const terrain = all[0]!.track.terrain;
+  const terrains = new Map(all.map(({ track }) => [chain(track.terrain), track.terrain]));
   const x0 = Math.min(...body.map((p) => p[0])) - 1.5 * ROOM;
   const x1 = Math.max(...body.map((p) => p[0])) + 1.5 * ROOM;
-  const near = terrain.filter((p) => p[0] >= x0 && p[0] <= x1);
+  const near = [...terrains.values()].flat().filter((p) => p[0] >= x0 && p[0] <= x1);
   const z0 = Math.min(...body.map((p) => p[1]), ...near.map((p) => p[1])) - 0.05;
   const z1 = Math.max(...body.map((p) => p[1])) + ROOM;
   return (
@@ -97,7 +100,9 @@ function Side({ all, time }: { all: readonly Shown[]; time: number }) {
       role="img"
       aria-label={`CoM paths and poses of ${all.map(({ place }) => letter(place)).join(", ")}`}
     >
-      <polyline class="profile" points={chain(terrain)} />
+      {[...terrains.keys()].map((points) => (
+        <polyline key={points} class="profile" points={points} />
+      ))}
       {all.map(({ place, track }) => (
         <polyline
           key={place}
@@ -128,7 +133,12 @@ function Ghost({ shown: { place, track }, time }: { shown: Shown; time: number }
           <circle cx={joints[2]![0]} cy={-joints[2]![1]} r={track.shape!.wheel} />
         </g>
       ))}
-      <text x={frame.x} y={-frame.z} font-size={0.1} text-anchor="middle" dy="0.035">
+      <text
+        x={frame.x}
+        y={-frame.z - LETTER * (1.6 + place)}
+        font-size={LETTER}
+        text-anchor="middle"
+      >
         {letter(place)}
       </text>
     </g>
