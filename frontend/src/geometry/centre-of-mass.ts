@@ -26,6 +26,7 @@ export function centreOfMass(file: SentRobot): (frame: Frame) => Vec2 {
     [file.thigh, file.calf],
     [rear?.thigh ?? file.thigh, rear?.calf ?? file.calf],
   ];
+  const wheels = [file.wheel.mass, (rear?.wheel ?? file.wheel).mass];
   const bodyCentre = file.trunk.com ?? [0, 0, 0];
   return (frame) => {
     const { legs } = skeleton(shape, frame);
@@ -46,7 +47,7 @@ export function centreOfMass(file: SentRobot): (frame: Frame) => Vec2 {
       const [thigh, calf] = links[k]!;
       add(2 * thigh.mass, linkCentre(thigh, hip!, knee!));
       add(2 * calf.mass, linkCentre(calf, knee!, wheel!));
-      add(2 * file.wheel.mass, wheel!);
+      add(2 * wheels[k]!, wheel!);
     });
     return [sum[1] / sum[0], sum[2] / sum[0]];
   };

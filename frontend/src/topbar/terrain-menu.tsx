@@ -8,6 +8,7 @@ import { clear, drawing, isEmpty } from "../state/drawing";
 import { terrains } from "../state/setup";
 import { Icon } from "../ui/icon";
 import { Menu } from "../ui/menu";
+import { NameField } from "../ui/name-field";
 import { GenerateForm } from "./generate-form";
 import { pointsOpen } from "./points-table";
 import {
@@ -151,17 +152,7 @@ function SaveForm({ close }: { close: () => void }) {
   };
   return (
     <form class="save" onSubmit={save}>
-      <label>
-        <span>Save as</span>
-        <input
-          value={name}
-          maxLength={100}
-          required
-          pattern="[\w .+\-]*\w[\w .+\-]*"
-          title="A letter or digit at least; besides those space and . + - _"
-          onInput={(event) => setName(event.currentTarget.value)}
-        />
-      </label>
+      <NameField value={name} onChange={setName} />
       <button type="submit" class="btn" disabled={isEmpty.value}>
         <Icon name="save" />
         Save
