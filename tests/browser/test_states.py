@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import httpx
 import pytest
+from playwright.sync_api import expect
 
 from tests.conftest import TAB
 
@@ -99,10 +100,13 @@ def test_running_can_be_cancelled(shared: Product, server: Any) -> None:
     held: list[Route] = []
     # The answer to the start is held back, so that the rollout runs until it is cancelled.
     product.page.route("**/rollouts", lambda route: held.append(route))
-    product.page.get_by_role("button", name="Run rollout").click()
+    # By keyboard: run and cancel take each other's place, and the focus goes along.
+    product.page.get_by_role("button", name="Run rollout").press("Enter")
     product.page.get_by_role("progressbar", name="Rollout").wait_for()
-    product.page.get_by_role("button", name="Cancel").click()
+    expect(product.page.get_by_role("button", name="Cancel")).to_be_focused()
+    product.page.keyboard.press("Enter")
     product.page.locator(".app[data-run=cancelled]").wait_for()
+    expect(product.page.get_by_role("button", name="Run rollout")).to_be_focused()
     # The job that was started nevertheless is stopped as soon as its name is known.
     with product.page.expect_response(lambda answer: answer.request.method == "DELETE") as stopped:
         held[0].continue_()
