@@ -1,6 +1,9 @@
 /** The page: top bar, the open workspace, status line. */
 
 import { useEffect } from "preact/hooks";
+import { CutDialog } from "./import/cut-dialog";
+import { DropZone } from "./import/drop-zone";
+import { ImportProblem } from "./import/import-problem";
 import { Plan } from "./plan/plan";
 import { isField, onPageKey, onPageKeyUp } from "./profile-editor/commands";
 import { assertive, polite } from "./state/announce";
@@ -11,7 +14,6 @@ import { plan, refusal, stale } from "./state/planning";
 import { activity, run } from "./state/rollouts";
 import { tab } from "./state/view";
 import { Status } from "./status";
-import { ImportZone } from "./topbar/import-zone";
 import { PointsTable } from "./topbar/points-table";
 import { TopBar } from "./topbar/topbar";
 import { Shortcuts, shortcutsOpen } from "./ui/shortcuts";
@@ -71,7 +73,9 @@ export function App() {
         </div>
       )}
       <Status />
-      <ImportZone />
+      <DropZone />
+      <CutDialog />
+      <ImportProblem place="page" />
       <PointsTable />
       <Shortcuts />
       <Toast />

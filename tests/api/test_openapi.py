@@ -32,6 +32,7 @@ def test_every_route_of_the_contract_is_there(document: dict[str, dict[str, obje
         "/terrains/{name}": "get put delete",
         "/terrains/generate": "post",
         "/terrains/import": "post",
+        "/terrains/import/heights": "post",
         "/settings": "get",
         "/plans": "post",
         "/plans/{plan_id}": "get",

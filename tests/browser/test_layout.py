@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from .conftest import Product
+from .conftest import DESK, Product
 
 if TYPE_CHECKING:
     from playwright.sync_api import FloatRect, Locator
@@ -98,3 +98,31 @@ def test_a_closed_inspector_leaves_its_room_to_the_stage(product: Product) -> No
     assert _scene(product)["width"] + _editor(product)["width"] > before + 200
     page.get_by_role("button", name="Expand inspector").click()
     assert _scene(product)["width"] + _editor(product)["width"] == pytest.approx(before, abs=1)
+
+
+def test_a_tablet_has_two_panels_and_the_inspector_beside_them(product: Product) -> None:
+    page = product.page
+    try:
+        for width, least in ((1200, 440), (1024, 360), (900, 300)):
+            page.set_viewport_size({"width": width, "height": 768})
+            for panel in (_editor(product), _scene(product)):
+                assert panel["width"] > least
+                assert panel["height"] > 250
+            page.keyboard.press("i")
+            assert _scene(product)["width"] > width / 2 - 40
+            page.keyboard.press("i")
+    finally:
+        page.set_viewport_size(DESK)
+
+
+def test_bars_of_margins_reach_as_far_as_the_timeline_at_any_width(product: Product) -> None:
+    page = product.page
+    try:
+        for width in (1440, 1024, 820, 390):
+            page.set_viewport_size({"width": width, "height": 900})
+            tracks = _box(page.locator(".rows .track").first)
+            ticks = _box(page.locator(".ticks"))
+            assert tracks["x"] == pytest.approx(ticks["x"], abs=1)
+            assert tracks["width"] == pytest.approx(ticks["width"], abs=1)
+    finally:
+        page.set_viewport_size(DESK)

@@ -113,9 +113,19 @@ def test_skip_links_and_one_stop_for_a_toolbar(product: Product) -> None:
     page.get_by_role("button", name="Skip to the profile").focus()
     page.keyboard.press("Enter")
     assert product.focused() == 0
+    # Corners are one stop of the Tab key, dimensions another; keys walk through each.
+    stops = "all => all.filter(g => g.tabIndex >= 0).length"
+    for kind in ("[data-vertex]", "[data-dimension]"):
+        assert page.locator(kind).evaluate_all(stops) == 1, kind
+    page.keyboard.press("End")
+    assert product.focused() == product.corners() - 1
+    page.keyboard.press("PageUp")
+    assert product.focused() == product.corners() - 2
+    assert page.locator("[data-vertex]").evaluate_all(stops) == 1
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.dataset.vertex") is None
     bar = page.get_by_role("toolbar", name="Profile tools")
-    stops = bar.locator("button:visible").evaluate_all("all => all.filter(b => b.tabIndex >= 0)")
-    assert len(stops) == 1
+    assert bar.locator("button:visible").evaluate_all(stops) == 1
     page.get_by_role("button", name=re.compile("^Select")).focus()
     page.keyboard.press("ArrowRight")
     assert page.evaluate("document.activeElement.title").startswith("Stair")

@@ -20,8 +20,11 @@ SIZES: list[ViewportSize] = [
     {"width": 1280, "height": 720},
     DESK,
     {"width": 1920, "height": 1080},
+    {"width": 1024, "height": 768},
+    {"width": 820, "height": 1180},
     PHONE,
 ]
+ONE_AREA = 900  # px of width below which one tab shows one area
 TABS = ("Scene", "Results", "Profile")
 # Two frames: what a new size changes has been laid out then.
 DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
@@ -33,7 +36,7 @@ def _faults(product: Product) -> list[str]:
 
 
 def _everywhere(product: Product) -> list[str]:
-    """The faults at all sizes, in both themes; on a phone in each of its tabs."""
+    """The faults at all sizes, in both themes; where tabs are, in each of them."""
     page = product.page
     found = []
     for theme in ("light", "dark"):
@@ -42,7 +45,7 @@ def _everywhere(product: Product) -> list[str]:
         for size in SIZES:
             page.set_viewport_size(size)
             areas = page.get_by_role("navigation", name="Areas")
-            for tab in TABS if size == PHONE else ("",):
+            for tab in TABS if size["width"] < ONE_AREA else ("",):
                 if tab:
                     areas.get_by_role("button", name=tab).click()
                 found += [f"{theme} {size['width']} {tab}: {f}" for f in _faults(product)]

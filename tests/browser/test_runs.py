@@ -6,9 +6,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
 
 import stairwright as sw
+from stairwright.robot import kinematics
 from tests.conftest import TAB, Server
 
 from .conftest import PATIENCE, PHONE, Product
@@ -83,7 +85,7 @@ def test_two_pinned_runs_lie_over_each_other(runs: Product, tmp_path: Path) -> N
     page = runs.page
     for friction in ("0.60", "0.80"):
         _row(runs, friction).locator(".run-pin").click()
-    page.locator(".ovl-paths polyline").nth(2).wait_for(state="attached")
+    page.locator(".ovl-com").nth(1).wait_for(state="attached")
     for title in ("Pitch error", "Peak leg torque"):
         lines = page.get_by_label(title, exact=True).locator("polyline")
         dashes = [line.evaluate("e => getComputedStyle(e).strokeDasharray")
@@ -97,6 +99,37 @@ def test_two_pinned_runs_lie_over_each_other(runs: Product, tmp_path: Path) -> N
     table = (tmp_path / "table.csv").read_text().splitlines()
     assert len(table) == 3
     assert "Time [s]" in table[0]
+
+
+def test_pinned_runs_are_replayed_together_on_one_timeline(runs: Product) -> None:
+    page = runs.page
+    clock = page.get_by_role("slider", name="Time of the replay")
+    ghosts = page.locator(".ovl-ghost")
+    assert ghosts.count() == 2
+    before = [ghost.locator("polygon").get_attribute("points") for ghost in ghosts.all()]
+    clock.press("End")
+    after = [ghost.locator("polygon").get_attribute("points") for ghost in ghosts.all()]
+    assert all(a != b for a, b in zip(before, after, strict=True))
+    clock.press("Home")
+    page.get_by_role("button", name="Play together").click()
+    page.wait_for_function("document.querySelector('.ovl-clock input').value > 0.3")
+    page.get_by_role("button", name="Pause the replay").click()
+
+
+def test_the_com_path_of_a_run_is_the_run_s(runs: Product, server: Server) -> None:
+    """The robot's poses, and not the plan's, give the line: recomputed in Python."""
+    points = runs.page.locator('.ovl-com[data-pin="A"]').get_attribute("points") or ""
+    drawn = [tuple(map(float, each.split(","))) for each in points.split()]
+    with sw.Client(server.url) as service:
+        run = service.rollout(CURB, friction=0.6)
+    robot = sw.load_robot("a1_wheeled")
+    for row, i in ((drawn[0], 0), (drawn[-1], -1)):
+        x, _, z = run.series.base_position[i]
+        q = np.mean(np.reshape(run.series.q[i], (2, 2, 3))[:, :, :2], axis=1).reshape(4)
+        at = np.asarray([float(run.series.pitch[i])])
+        frames = kinematics.forward(robot, np.array([x]), np.array([z]), at, q[None])
+        com = kinematics.com(robot, np.array([x]), np.array([z]), at, frames)[0]
+        assert (row[0], -row[1]) == pytest.approx(tuple(com), abs=2e-3)
 
 
 @pytest.mark.parametrize("size", [(1280, 720), (1440, 900), (PHONE["width"], PHONE["height"])])

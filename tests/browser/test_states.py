@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import httpx
 import pytest
+from playwright.sync_api import expect
 
 from tests.conftest import TAB
 
@@ -99,10 +100,13 @@ def test_running_can_be_cancelled(shared: Product, server: Any) -> None:
     held: list[Route] = []
     # The answer to the start is held back, so that the rollout runs until it is cancelled.
     product.page.route("**/rollouts", lambda route: held.append(route))
-    product.page.get_by_role("button", name="Run rollout").click()
+    # By keyboard: run and cancel take each other's place, and the focus goes along.
+    product.page.get_by_role("button", name="Run rollout").press("Enter")
     product.page.get_by_role("progressbar", name="Rollout").wait_for()
-    product.page.get_by_role("button", name="Cancel").click()
+    expect(product.page.get_by_role("button", name="Cancel")).to_be_focused()
+    product.page.keyboard.press("Enter")
     product.page.locator(".app[data-run=cancelled]").wait_for()
+    expect(product.page.get_by_role("button", name="Run rollout")).to_be_focused()
     # The job that was started nevertheless is stopped as soon as its name is known.
     with product.page.expect_response(lambda answer: answer.request.method == "DELETE") as stopped:
         held[0].continue_()
@@ -242,6 +246,22 @@ def test_the_scene_is_saved_as_a_picture(product_with_scene: Product) -> None:
     picture = saved.value.path().read_bytes()
     assert picture.startswith(b"\x89PNG")
     assert len(picture) > 20_000
+
+
+def test_the_replay_is_saved_as_a_video(product_with_scene: Product) -> None:
+    page = product_with_scene.open().page
+    frame = page.frame_locator(".v3 iframe")
+    frame.locator("canvas").first.wait_for(timeout=PATIENCE)
+    page.get_by_role("button", name="Record the replay as a video").click()
+    page.wait_for_timeout(3000)
+    with page.expect_download(timeout=PATIENCE) as saved:
+        page.get_by_role("button", name="Stop and save the video").click()
+    assert saved.value.suggested_filename == "three-stairs-up-a1_wheeled_x-scene.webm"
+    video = saved.value.path().read_bytes()
+    assert video.startswith(b"\x1a\x45\xdf\xa3")  # EBML, as WebM begins
+    assert b"V_VP" in video[:1000]
+    assert len(video) > 10_000
+    page.get_by_role("button", name="Record the replay as a video").wait_for()
 
 
 def _serve(port: int, data: Path) -> subprocess.Popen[bytes]:

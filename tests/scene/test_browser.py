@@ -221,6 +221,24 @@ def test_the_camera_follows_the_robot_and_keeps_its_angle(site, visit, plan):
     assert seen(pixels(page))
 
 
+def test_the_camera_cannot_stay_below_the_ground(site, visit, plan):
+    session = site.open("g")
+    session.show(plan=plan)
+    page = visit("/scene/g/?embedded=1")
+    wait_until(page, seen)
+    (client,) = session._server.get_clients().values()
+    height = page.viewport_size["height"]
+    middle = page.viewport_size["width"] / 2
+    for _ in range(3):  # turned upwards from below, as far as it goes
+        page.mouse.move(middle, height * 0.9)
+        page.mouse.down()
+        page.mouse.move(middle, height * 0.1, steps=8)
+        page.mouse.up()
+    page.wait_for_timeout(700)
+    assert client.camera.position[2] > 0.0
+    assert client.camera.position[2] < 0.5  # it was turned down there
+
+
 def test_two_sessions_do_not_see_each_other(site, visit, plan):
     site.open("d").show(plan=plan)
     site.open("e").show(theme="light")

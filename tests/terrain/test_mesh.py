@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from stairwright.errors import InputError
 from stairwright.terrain.mesh import slice_mesh
+from stairwright.terrain.mesh_heights import mesh_heights
 from stairwright.terrain.profile import height_at
 
 
@@ -34,6 +35,41 @@ def test_stairs_of_boxes(stairs, kind):
     data = data.encode() if isinstance(data, str) else data
     terrain = slice_mesh(data, kind, origin=(0.0, 0.1))
     assert np.allclose(terrain.points, EXPECTED, atol=1e-6)
+
+
+def test_a_mesh_keeps_its_x(stairs):
+    for shift in (0.0, 1.5):
+        moved = stairs.copy().apply_translation([shift, 7.0, 0.0])
+        terrain = slice_mesh(moved.export(file_type="stl"), "stl")
+        assert np.allclose(terrain.points, [(x + shift, z) for x, z in EXPECTED], atol=1e-6)
+
+
+def test_y_may_point_up(stairs):
+    turned = stairs.copy()
+    turned.apply_transform(trimesh.transformations.rotation_matrix(-math.pi / 2, [1, 0, 0]))
+    terrain = slice_mesh(turned.export(file_type="stl"), "stl", up="y")
+    assert np.allclose(terrain.points, EXPECTED, atol=1e-6)
+
+
+def test_heights_seen_from_above_are_the_cut_s(stairs):
+    seen = mesh_heights(stairs.export(file_type="stl"), "stl")
+    assert seen.triangles == len(stairs.faces)
+    assert seen.low == pytest.approx((-1, -0.5, -0.1), abs=1e-6)
+    assert seen.high == pytest.approx((3, 0.5, 0.375), abs=1e-6)
+    heights = np.array(seen.heights)
+    assert heights.shape == (32, 128)
+    x = -1 + (np.arange(128) + 0.5) * 4 / 128
+    terrain = slice_mesh(stairs.export(file_type="stl"), "stl")
+    away = np.abs(x[:, None] - [0, 0.3, 0.6]).min(axis=1) > 1e-6
+    expected = height_at(terrain.vertices, x)
+    assert np.allclose(heights[:, away], expected[away], atol=1e-4)
+
+
+def test_heights_leave_holes_open():
+    apart = trimesh.util.concatenate([_box(0, 1, -0.1, 0), _box(1.2, 2, -0.1, 0)])
+    seen = mesh_heights(apart.export(file_type="stl"), "stl")
+    x = (np.arange(128) + 0.5) * 2 / 128
+    assert [z is None for z in seen.heights[10]] == [1 < at < 1.2 for at in x]
 
 
 def test_backwards_is_mirrored(stairs):

@@ -1,3 +1,5 @@
+import re
+
 import pytest
 
 from stairwright.errors import InputError
@@ -29,9 +31,13 @@ def test_separators_headers_comments(text):
         ("0,0\n1,2,3\n", "line 2"),
         ("x,z\ny,w\n0,0\n1,1\n", "line 2"),
         ("0,0\n1,nan\n", "line 2"),
-        ("0,0\n-1,0\n", "never decrease"),
+        ("# kerb\n0,0\n\n-1,0\n", "^line 4: .* in line 2"),
+        ("0,0\n101,0\n", "^line 2: "),
     ],
 )
 def test_bad_tables_say_where(text, message):
-    with pytest.raises(InputError, match=message):
+    with pytest.raises(InputError) as caught:
         parse_table(text)
+    assert re.search(message, caught.value.message)
+    assert caught.value.field == ("file",)
+    assert "point" not in caught.value.message  # lines are numbered from 1, points from 0

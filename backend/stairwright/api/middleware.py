@@ -23,7 +23,11 @@ request_id: ContextVar[str] = ContextVar("request_id", default="")
 _REQUEST_ID = re.compile(r"[\w.-]{1,64}", re.ASCII)
 PREFIX = "/api/v1"
 PLANS_PATH = f"{PREFIX}/plans"
-IMPORT_PATHS = (f"{PREFIX}/terrains/import", f"{PREFIX}/robots/import")
+IMPORT_PATHS = (
+    f"{PREFIX}/terrains/import",
+    f"{PREFIX}/terrains/import/heights",
+    f"{PREFIX}/robots/import",
+)
 
 
 class Observe:

@@ -9,6 +9,7 @@ from typing import Any
 from stairwright.documents import parse, parse_mapping
 from stairwright.errors import InputError
 from stairwright.terrain.mesh import FILE_TYPES, slice_mesh
+from stairwright.terrain.mesh_heights import mesh_heights
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.tables import parse_table
 
@@ -25,7 +26,7 @@ def import_terrain(data: bytes, file_name: str, options: Options) -> dict[str, A
         data: The file.
         file_name: Its name.
         options: What a mesh or a table does not say itself: ``name``, ``friction``, and for a
-            mesh ``origin`` (x, y) [m], ``heading`` [rad] and ``scale`` [m per unit].
+            mesh ``origin`` (x, y) [m], ``heading`` [rad], ``scale`` [m per unit] and ``up``.
 
     Raises:
         InputError: If it cannot be read.
@@ -41,14 +42,25 @@ def import_terrain(data: bytes, file_name: str, options: Options) -> dict[str, A
     return terrain.model_dump(mode="json")
 
 
+def look_at_mesh(data: bytes, file_name: str, options: Options) -> dict[str, Any]:
+    """Heights of the mesh in a file, with ``scale`` and ``up`` among the options.
+
+    Raises:
+        InputError: If it cannot be read.
+    """
+    suffix = PurePath(file_name).suffix
+    return mesh_heights(data, suffix, **options).model_dump(mode="json")
+
+
 def _mesh(data: bytes, suffix: str, options: Options) -> Terrain:
     return slice_mesh(
         data,
         suffix,
-        options.get("origin"),
+        options.get("origin", (0.0, None)),
         options.get("heading", 0.0),
         options.get("name", "imported"),
         scale=options.get("scale", 1.0),
+        up=options.get("up", "z"),
         friction=options.get("friction", 0.6),
     )
 
@@ -127,3 +139,4 @@ def rehearse() -> None:
     }
     for name, text in samples.items():
         import_terrain(text.encode(), name, {})
+    look_at_mesh(samples["a.obj"].encode(), "a.obj", {})

@@ -22,6 +22,7 @@ _DIRECTIONS = {
     "follow": (-0.45, -0.92, 0.42),
 }
 _DISTANCE = {"side": 2.4, "front": 2.1, "follow": 2.3}
+_ABOVE = 0.05  # m, of the camera over the lowest ground
 _NEAREST, _FARTHEST = 2.7, 9.0  # m, of the view of a whole course
 
 
@@ -72,6 +73,14 @@ def keep_in_view(clients: Iterable[Any], robot: Floats) -> None:
     for client in clients:
         # From the viewer's last report both points are equally old: their difference holds.
         _move(client, View(place + client.camera.position - client.camera.look_at, place))
+
+
+def keep_above(client: Any, floor: float) -> None:
+    """Lift a viewer's camera that went below the ground at height `floor` [m]; its aim stays."""
+    place, aimed = np.array(client.camera.position), np.array(client.camera.look_at)
+    if place[2] < floor + _ABOVE - 1e-3:  # the viewer reports it back in single precision
+        place[2] = floor + _ABOVE
+        _move(client, View(place, aimed))
 
 
 def point(client: Any, view: View) -> None:

@@ -67,6 +67,7 @@ class SceneSession:
         self._panel = Panel(self._server, self, replan)
         self._apply_theme("dark")
         self._aim(cameras.view("follow", self._subject))
+        self._floor = 0.0  # m, the lowest ground
         self._server.on_client_connect(self._welcome)
 
     @property
@@ -250,6 +251,7 @@ class SceneSession:
         terrain = parse(Terrain, source["terrain"])
         robot = _robot_of(source)
         self._stage.draw_terrain(terrain, source.get("friction"))
+        self._floor = float(terrain.vertices[:, 1].min())
         self._stage.set_robot(robot)
         planned = None if plan is None else from_plan(plan, robot)
         run = None if rollout is None else from_rollout(rollout)
@@ -286,10 +288,18 @@ class SceneSession:
             self._move_cameras(cameras.point, client, view)
 
     def _welcome(self, client: Any) -> None:
-        """A viewer that comes while the camera follows starts where the robot is by now."""
+        """A viewer that comes while the camera follows starts where the robot is by now.
+
+        Its camera never stays below the ground.
+        """
         with self._lock:
             if self._follow and not self._closed:
                 self._move_cameras(cameras.point, client, cameras.view("follow", self._subject))
+
+        @client.camera.on_update
+        def _(_camera: Any) -> None:
+            if not self._closed:
+                self._move_cameras(cameras.keep_above, client, self._floor)
 
     def _move_cameras(self, move: Callable[..., None], *arguments: Any) -> None:
         """Move cameras on viser's own thread.

@@ -6,7 +6,7 @@ import io
 import itertools
 import math
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import shapely
@@ -18,6 +18,10 @@ from stairwright.errors import InputError
 from .profile import Terrain, simplify
 
 Floats = NDArray[np.float64]
+
+Up = Literal["z", "y"]
+Mesh = tuple[Floats, NDArray[np.int64]]
+"""Vertices (n, 3) [m] and faces (m, 3)."""
 
 FILE_TYPES = ("stl", "obj", "ply", "off")
 MAX_BYTES = 32 * 2**20
@@ -31,34 +35,39 @@ FINEST, COARSEST = 1e-4, 1e-2  # m, tolerances tried to bring a cut below MAX_PO
 def slice_mesh(
     data: bytes,
     file_type: str,
-    origin: tuple[float, float] | None = None,
+    origin: tuple[float, float | None] = (0.0, None),
     heading: float = 0.0,
     name: str = "imported",
     *,
     scale: float = 1.0,
+    up: Up = "z",
     friction: float = 0.6,
 ) -> Terrain:
     """The terrain that a robot meets which drives over a mesh in a straight line.
 
     Args:
-        data: Content of the file; z is up.
+        data: Content of the file.
         file_type: One of ``stl``, ``obj``, ``ply``, ``off``.
-        origin: A point (x, y) of the cut [m, after scaling], where the profile's x is zero; the
-            middle of the mesh by default.
+        origin: A point (x, y) of the cut [m, after scaling], where the profile's x is zero. The
+            mesh's own x is kept by default, and without a y the cut goes through its middle.
         heading: Direction of travel, counter-clockwise from +x [rad].
         name: Name of the terrain.
         scale: Metres per unit of the file (0.001 for millimetres).
+        up: The file's axis that points up; with ``y`` its x stays and its -z becomes y.
         friction: Coulomb friction, wheel on terrain.
 
     Raises:
         InputError: If the file cannot be read, is too large, is missed by the plane, or if the cut
             has a gap.
     """
-    segments, tall = _cut(_load(data, file_type, scale), origin, heading)
+    segments, tall = cut(load_mesh(data, file_type, scale, up), origin, heading)
     profile = simplify(_upper_envelope(segments))
     if not np.all(np.abs(profile) <= 100.0):
+        low, high = profile[[0, -1], 0]
         raise InputError(
-            "the profile reaches further than 100 m: is the scale right (0.001 for millimetres)?",
+            f"the profile reaches from x = {low:.4g} to {high:.4g} m and to a height of "
+            f"{profile[:, 1].max():.4g} m, further than 100 m: is the scale right "
+            "(0.001 for millimetres), and the x that becomes 0?",
             ("scale",),
         )
     profile, tolerance = _thin(profile)
@@ -69,8 +78,12 @@ def slice_mesh(
     )
 
 
-def _load(data: bytes, file_type: str, scale: float) -> tuple[Floats, NDArray[np.int64]]:
-    """Vertices (n, 3) [m] and faces (m, 3) of the file."""
+def load_mesh(data: bytes, file_type: str, scale: float = 1.0, up: Up = "z") -> Mesh:
+    """The triangles in a file, z up.
+
+    Raises:
+        InputError: If it cannot be read, is too large or holds no triangles.
+    """
     import trimesh  # slow to import and needed by nobody else
 
     kind = file_type.lower().lstrip(".")
@@ -100,24 +113,24 @@ def _load(data: bytes, file_type: str, scale: float) -> tuple[Floats, NDArray[np
         )
     if not np.all(np.isfinite(vertices)) or faces.min() < 0 or faces.max() >= len(vertices):
         raise InputError("the mesh holds vertices that are not numbers or are missing", ("file",))
+    if up == "y":
+        vertices = np.stack([vertices[:, 0], -vertices[:, 2], vertices[:, 1]], axis=1)
     return vertices, faces
 
 
-def _cut(
-    mesh: tuple[Floats, NDArray[np.int64]], origin: tuple[float, float] | None, heading: float
-) -> tuple[Floats, int]:
+def cut(mesh: Mesh, origin: tuple[float, float | None], heading: float) -> tuple[Floats, int]:
     """Segments (n, 2, 2) of (x along the heading, z) where the vertical plane cuts triangles."""
     vertices, faces = mesh
     if not math.isfinite(heading):
         raise InputError("must be a finite angle in rad", ("heading",))
-    if origin is None:
-        middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
-        origin = (float(middle[0]), float(middle[1]))
-    if not all(math.isfinite(value) for value in origin):
+    x, y = origin
+    if y is None:
+        y = float(vertices[:, 1].min() + vertices[:, 1].max()) / 2
+    if not (math.isfinite(x) and math.isfinite(y)):
         raise InputError("must be finite", ("origin",))
     c, s = math.cos(heading), math.sin(heading)
-    across = -s * (vertices[:, 0] - origin[0]) + c * (vertices[:, 1] - origin[1])
-    along = c * (vertices[:, 0] - origin[0]) + s * (vertices[:, 1] - origin[1])
+    across = -s * (vertices[:, 0] - x) + c * (vertices[:, 1] - y)
+    along = c * (vertices[:, 0] - x) + s * (vertices[:, 1] - y)
     # A plane through vertices would cut triangles in single points: shift it by a nanometre.
     across = np.where(np.abs(across) < 1e-9, 1e-9, across)
     flat = np.stack([along, vertices[:, 2]], axis=1)

@@ -16,7 +16,8 @@ from stairwright.documents import Model, content_hash
 from stairwright.errors import InputError
 
 Floats = NDArray[np.float64]
-Coordinate = Annotated[float, Field(ge=-100.0, le=100.0)]
+MOST_COORDINATE = 100.0  # m
+Coordinate = Annotated[float, Field(ge=-MOST_COORDINATE, le=MOST_COORDINATE)]
 Point = tuple[Coordinate, Coordinate]
 
 MERGE_DISTANCE = 1e-9  # m; nearer points are one point

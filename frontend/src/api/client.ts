@@ -3,6 +3,7 @@
 import type {
   ImportedRobot,
   Job,
+  MeshHeights,
   Plan,
   PlanRequest,
   ProblemDetail,
@@ -100,11 +101,15 @@ export const putRobot = (robot: SentRobot) =>
 
 export const deleteRobot = (name: string) => call("DELETE", `robots/${encodeURIComponent(name)}`);
 
-export function importRobot(file: File, abort?: AbortSignal) {
+function sent(file: File, fields: Record<string, string>): FormData {
   const form = new FormData();
   form.append("file", file, file.name);
-  return json<ImportedRobot>("POST", "robots/import", form, abort);
+  for (const [name, value] of Object.entries(fields)) form.append(name, value);
+  return form;
 }
+
+export const importRobot = (file: File, abort?: AbortSignal) =>
+  json<ImportedRobot>("POST", "robots/import", sent(file, {}), abort);
 
 /** A robot as a file for other tools, whether it is saved or not. */
 export async function robotFile(robot: SentRobot, format: string): Promise<Blob> {
@@ -114,12 +119,13 @@ export async function robotFile(robot: SentRobot, format: string): Promise<Blob>
 export const generateTerrain = (parameters: Record<string, unknown>) =>
   json<TerrainDocument>("POST", "terrains/generate", parameters);
 
-export function importTerrain(file: File, fields: Record<string, string>) {
-  const form = new FormData();
-  form.append("file", file, file.name);
-  for (const [name, value] of Object.entries(fields)) form.append(name, value);
-  return json<TerrainDocument>("POST", "terrains/import", form);
+export function importTerrain(file: File, fields: Record<string, string>, abort?: AbortSignal) {
+  return json<TerrainDocument>("POST", "terrains/import", sent(file, fields), abort);
 }
+
+/** A mesh from above, in units of the file. */
+export const lookAtMesh = (file: File, up: "z" | "y") =>
+  json<MeshHeights>("POST", "terrains/import/heights", sent(file, { up }));
 
 export interface RolloutRequest {
   plan_id: string;

@@ -214,6 +214,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/terrains/import/heights": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Get Mesh Heights
+         * @description A mesh seen from above, to choose the cut by. Nothing is saved.
+         */
+        post: operations["get_mesh_heights"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/terrains/{name}": {
         parameters: {
             query?: never;
@@ -891,6 +911,28 @@ export interface components {
              */
             progress: number;
         };
+        /** Body_get_mesh_heights */
+        Body_get_mesh_heights: {
+            /**
+             * File
+             * Format: binary
+             * @description STL, OBJ, PLY or OFF
+             */
+            file: string;
+            /**
+             * Scale
+             * @description metres per unit of a mesh
+             * @default 1
+             */
+            scale: number;
+            /**
+             * Up
+             * @description the axis of a mesh that points up
+             * @default z
+             * @enum {string}
+             */
+            up: "z" | "y";
+        };
         /** Body_import_robot */
         Body_import_robot: {
             /**
@@ -928,13 +970,13 @@ export interface components {
             friction?: number | null;
             /**
              * X
-             * @description of the cut's origin [m]
+             * @description of a mesh that becomes 0 [m]
              * @default 0
              */
             x: number;
             /**
              * Y
-             * @description of the cut [m]
+             * @description of the cut [m]; by default the middle
              */
             y?: number | null;
             /**
@@ -945,10 +987,17 @@ export interface components {
             heading: number;
             /**
              * Scale
-             * @description metres per unit
+             * @description metres per unit of a mesh
              * @default 1
              */
             scale: number;
+            /**
+             * Up
+             * @description the axis of a mesh that points up
+             * @default z
+             * @enum {string}
+             */
+            up: "z" | "y";
         };
         /**
          * CellDocument
@@ -1734,6 +1783,37 @@ export interface components {
              * @description limit minus the largest static joint torque [Nm]
              */
             torque: number;
+        };
+        /**
+         * MeshHeights
+         * @description The highest surface at each place of a grid (``stairwright/mesh-heights/1``). Metres.
+         */
+        MeshHeights: {
+            /**
+             * Schema
+             * @default stairwright/mesh-heights/1
+             */
+            schema: string;
+            /**
+             * Triangles
+             * @description of the file
+             */
+            triangles: number;
+            /**
+             * Low
+             * @description least x, y, z [m]
+             */
+            low: number[];
+            /**
+             * High
+             * @description most x, y, z [m]
+             */
+            high: number[];
+            /**
+             * Heights
+             * @description rows from least to most y, columns from least to most x: height in the middle of each cell [m]; null where there is no surface
+             */
+            heights: (number | null)[][];
         };
         /**
          * Metrics
@@ -4403,6 +4483,86 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Terrain"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            503: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    get_mesh_heights: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "multipart/form-data": components["schemas"]["Body_get_mesh_heights"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MeshHeights"];
                 };
             };
             /** @description Bad Request: `bad-json`, `host` */

@@ -108,6 +108,11 @@ export type Trial = Schemas["Trial"];
 
 export type Job = Omit<Schemas["JobDocument"], "error"> & { error: ProblemDetail | null };
 
+export type MeshHeights = Omit<Schemas["MeshHeights"], "low" | "high"> & {
+  low: [number, number, number];
+  high: [number, number, number];
+};
+
 /** RFC 9457. */
 export interface ProblemDetail {
   title?: string;

@@ -1,6 +1,6 @@
 /** Where the robot's points lie for a pose: only for drawing what the service answered. */
 
-import type { RobotDocument, Vec2 } from "../api/types";
+import type { SentRobot, Vec2 } from "../api/types";
 
 /** A bar with round ends, in the frame of its link [m]. */
 export interface Capsule {
@@ -76,7 +76,7 @@ const STANDARD_POINTS: RobotShape["collisionPoints"] = {
   calf: [0.2, 0.4, 0.6, 0.8],
 };
 
-export function robotShape(file: RobotDocument): RobotShape {
+export function robotShape(file: SentRobot): RobotShape {
   const size: Vec2 = [file.trunk.size[0]!, file.trunk.size[2]!];
   const outline = (file.trunk.outline ?? []).map((piece) => piece.points.map(pair));
   const rear = file.rear;
@@ -100,7 +100,7 @@ export function robotShape(file: RobotDocument): RobotShape {
   };
 }
 
-function linkShape(link: RobotDocument["thigh"]): LinkShape {
+function linkShape(link: SentRobot["thigh"]): LinkShape {
   const { length, radius } = link;
   const shape = link.shape ?? [];
   return {
@@ -113,7 +113,7 @@ function linkShape(link: RobotDocument["thigh"]): LinkShape {
 }
 
 /** Where the service puts them: the paper's 25, and the corners of a trunk beyond its box. */
-function pointsOf(file: RobotDocument, corners: Vec2[], size: Vec2) {
+function pointsOf(file: SentRobot, corners: Vec2[], size: Vec2) {
   const own = file.collision_points;
   if (own) return { trunk: own.trunk.map(pair), thigh: own.thigh, calf: own.calf };
   const beyond = corners
@@ -141,7 +141,7 @@ function loadBox(robot: RobotShape): Vec2[] | null {
 }
 
 /** The weaker of thigh's and calf's peak torque [Nm]. */
-function legTorque(file: RobotDocument): number {
+function legTorque(file: SentRobot): number {
   const { leg, thigh, calf } = file.actuators;
   return Math.min((thigh ?? leg)?.torque ?? Infinity, (calf ?? leg)?.torque ?? Infinity);
 }

@@ -127,10 +127,23 @@ const isButton = (target: EventTarget | null) =>
   target instanceof HTMLElement &&
   target.closest("button, [role=slider], [role=menu], a, iframe") !== null;
 
+/** Which corner a key goes to from the selected one; the arrows move the corner itself. */
+function cornerByKey(key: string): number | undefined {
+  const last = drawing.peek().points.length - 1;
+  const at = selection.peek()[0] ?? 0;
+  const to = { PageDown: at + 1, PageUp: at - 1, Home: 0, End: last }[key];
+  return to === undefined ? undefined : Math.min(last, Math.max(0, to));
+}
+
 /** Keys while a corner has the focus. */
 export function onVertexKey(event: KeyboardEvent): void {
   const arrow = ARROWS[event.key];
-  if (arrow) {
+  const corner = cornerByKey(event.key);
+  if (corner !== undefined) {
+    event.preventDefault();
+    event.stopPropagation();
+    focusVertex(corner);
+  } else if (arrow) {
     event.preventDefault();
     event.stopPropagation();
     const step = event.shiftKey ? FAR : event.altKey ? FINE : NEAR;

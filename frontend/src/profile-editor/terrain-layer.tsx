@@ -1,5 +1,6 @@
 /** The ground itself, the wheel centre's path over it, and its dimensions. */
 
+import { useRef } from "preact/hooks";
 import type { Vec2 } from "../api/types";
 import { fixed, slope } from "../geometry/format";
 import { segmentKind } from "../geometry/profile";
@@ -7,6 +8,7 @@ import { wheelPath } from "../geometry/wheel-path";
 import { drawing, isEmpty, selection } from "../state/drawing";
 import { robot } from "../state/setup";
 import { layers } from "../state/view";
+import { useRoving } from "../ui/roving";
 import { editingDimension } from "./dimension-field";
 import { around, overlap, type Rect } from "./place";
 import { canvasBox, projection, view } from "./viewport";
@@ -78,6 +80,8 @@ function room(): (middle: Vec2, half: Vec2) => boolean {
  * room is left out.
  */
 export function Dimensions() {
+  const root = useRef<SVGGElement>(null);
+  useRoving(root, "[data-dimension]");
   if (!layers.value.has("dimensions")) return null;
   const points = shown();
   const { px, py } = projection.value;
@@ -87,7 +91,7 @@ export function Dimensions() {
   const fits = room();
   const segments = points.slice(0, -1).map((a, i) => ({ i, a, b: points[i + 1]! }));
   return (
-    <g>
+    <g ref={root}>
       {segments.map(({ i, a, b }) => {
         const kind = segmentKind(a, b);
         const edit = (which: "run" | "rise") => () => {

@@ -19,7 +19,7 @@ const MANY = 150;
 const APART = 6;
 
 /** The corners to draw: all, or of many those in view that stand apart, and the selected one's
- * neighbours, so that Tab and the arrows reach every corner. */
+ * neighbours, so that Page Up and Page Down reach every corner. */
 const drawn = computed<number[]>(() => {
   const points = drawing.value.points;
   if (points.length <= MANY) return points.map((_, i) => i);
@@ -71,6 +71,8 @@ export function Vertices() {
   const { px, py } = projection.value;
   const chosen = selection.value;
   const words = names.value;
+  // All corners are one stop of the Tab key: the selected one, or the first.
+  const stop = drawn.value.find((i) => i === chosen[0]) ?? drawn.value[0];
   return (
     <g>
       {drawn.value.map((i) => {
@@ -83,7 +85,7 @@ export function Vertices() {
             key={i}
             class="vertex"
             role="button"
-            tabindex={0}
+            tabindex={i === stop ? 0 : -1}
             aria-pressed={selected}
             aria-label={`${words[i]}, x ${fixed(p[0], 3)}, z ${fixed(p[1], 3)} m`}
             data-vertex={i}

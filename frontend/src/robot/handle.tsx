@@ -54,7 +54,7 @@ export function Handle({ id, class: kind, onHold, children }: HandleProps) {
       class={`handle ${kind}${selected.value === id ? " sel" : ""}`}
       data-handle={id}
       role="slider"
-      tabIndex={0}
+      tabindex={0}
       aria-label={q.label}
       aria-valuenow={Number((value * q.factor).toFixed(4))}
       aria-valuemin={Number((q.min * q.factor).toFixed(4))}

@@ -1,63 +1,21 @@
 /** Every number of a robot that can be seen and changed here: where it lies, its unit, its bounds. */
 
 import type { RobotDocument } from "../api/types";
-import { bigger, heavier, heights, longer, resized, standing } from "./stretch";
+import { MASSES, wheels } from "./masses";
+import {
+  ANGLE,
+  type Kind,
+  MASS,
+  METRES,
+  type Quantity,
+  quantity,
+  ROTOR,
+  SPEED,
+  TORQUE,
+} from "./quantity";
+import { bigger, heavier, heights, longer, resized } from "./stretch";
 
-export type Group = "Geometry" | "Masses" | "Motors" | "Joint ranges";
-export const GROUPS: readonly Group[] = ["Geometry", "Masses", "Motors", "Joint ranges"];
-
-export interface Quantity {
-  id: string;
-  group: Group;
-  label: string;
-  unit: string;
-  /** What is shown per SI unit. */
-  factor: number;
-  /** Decimals on screen. */
-  digits: number;
-  /** In SI units. */
-  min: number;
-  max: number;
-  step: number;
-  /** Null where this robot has no such number. */
-  read: (file: RobotDocument) => number | null;
-  write: (file: RobotDocument, value: number) => RobotDocument;
-  /** Found in the sentences of `assumed` that speak of it. */
-  words: RegExp;
-}
-
-type Write = Quantity["write"];
-type Kind = Pick<Quantity, "unit" | "factor" | "digits" | "min" | "max" | "step">;
-
-const METRES: Kind = { unit: "m", factor: 1, digits: 3, min: 0.01, max: 5, step: 0.001 };
-const OFFSET: Kind = { unit: "mm", factor: 1000, digits: 0, min: -2, max: 2, step: 0.001 };
-const MASS: Kind = { unit: "kg", factor: 1, digits: 2, min: 0.01, max: 500, step: 0.05 };
-const TORQUE: Kind = { unit: "Nm", factor: 1, digits: 1, min: 0.1, max: 1000, step: 0.5 };
-const SPEED: Kind = { unit: "rad/s", factor: 1, digits: 1, min: 0.1, max: 500, step: 0.5 };
-const ROTOR: Kind = { unit: "kg m²", factor: 1, digits: 4, min: 0, max: 10, step: 0.001 };
-const ANGLE: Kind = {
-  unit: "°",
-  factor: 180 / Math.PI,
-  digits: 0,
-  min: -5 * Math.PI,
-  max: 5 * Math.PI,
-  step: Math.PI / 180,
-};
-
-/** A document of the first schema says all that one of the second does. */
-const latest = (file: RobotDocument): RobotDocument => ({ ...file, schema: "stairwright/robot/2" });
-
-function quantity(
-  id: string,
-  group: Group,
-  label: string,
-  kind: Kind,
-  words: RegExp,
-  read: Quantity["read"],
-  write: Write,
-): Quantity {
-  return { id, group, label, ...kind, words, read, write: (f, v) => standing(write(latest(f), v)) };
-}
+export { GROUPS, type Group, type Quantity } from "./quantity";
 
 type End = "front" | "rear";
 type LinkName = "thigh" | "calf";
@@ -103,18 +61,6 @@ function linkRows(end: End, name: LinkName): Quantity[] {
 const LINKS = (["front", "rear"] as const).flatMap((end) =>
   (["thigh", "calf"] as const).flatMap((name) => linkRows(end, name)),
 );
-
-function wheels(
-  file: RobotDocument,
-  change: (w: RobotDocument["wheel"]) => RobotDocument["wheel"],
-) {
-  const rear = file.rear?.wheel;
-  return {
-    ...file,
-    wheel: change(file.wheel),
-    ...(rear ? { rear: { ...file.rear, wheel: change(rear) } } : {}),
-  };
-}
 
 const GEOMETRY: Quantity[] = [
   quantity(
@@ -179,89 +125,6 @@ const GEOMETRY: Quantity[] = [
       return { ...f, nominal_height: Math.min(most, Math.max(least, v)) };
     },
   ),
-];
-
-const com = (file: RobotDocument) => file.trunk.com ?? [0, 0, 0];
-
-function withCom(file: RobotDocument, axis: 0 | 2, value: number): RobotDocument {
-  const place = com(file).map((v, i) => (i === axis ? value : v)) as [number, number, number];
-  return { ...file, trunk: { ...file.trunk, com: place } };
-}
-
-/** Where a load goes that was nowhere before: on the trunk. */
-const onTop = (file: RobotDocument): [number, number] => [0, 0.65 * file.trunk.size[2]!];
-
-function withLoad(file: RobotDocument, mass: number): RobotDocument {
-  const { payload, ...rest } = file;
-  if (mass < MASS.min) return rest as RobotDocument;
-  return { ...rest, payload: { mass, place: payload?.place ?? onTop(file) } } as RobotDocument;
-}
-
-function loadPlace(axis: 0 | 1, label: string): Quantity {
-  return quantity(
-    `payload.${axis === 0 ? "x" : "z"}`,
-    "Masses",
-    label,
-    OFFSET,
-    /payload|load/i,
-    (f) => (f.payload ? (f.payload.place ?? [0, 0])[axis]! : null),
-    (f, v) => {
-      if (!f.payload) return f;
-      const place = [...(f.payload.place ?? [0, 0])] as [number, number];
-      place[axis] = v;
-      return { ...f, payload: { ...f.payload, place } };
-    },
-  );
-}
-
-const MASSES: Quantity[] = [
-  quantity(
-    "trunk.mass",
-    "Masses",
-    "Trunk",
-    MASS,
-    /(trunk|body).*mass/i,
-    (f) => f.trunk.mass,
-    (f, v) => ({ ...f, trunk: heavier(f.trunk, v) }),
-  ),
-  quantity(
-    "com.x",
-    "Masses",
-    "Trunk CoM, x",
-    OFFSET,
-    /\bcom\b|mass centre/i,
-    (f) => com(f)[0]!,
-    (f, v) => withCom(f, 0, v),
-  ),
-  quantity(
-    "com.z",
-    "Masses",
-    "Trunk CoM, z",
-    OFFSET,
-    /\bcom\b|mass centre/i,
-    (f) => com(f)[2]!,
-    (f, v) => withCom(f, 2, v),
-  ),
-  quantity(
-    "wheel.mass",
-    "Masses",
-    "Wheel",
-    MASS,
-    /wheel.*mass/i,
-    (f) => f.wheel.mass,
-    (f, v) => wheels(f, (w) => heavier(w, v)),
-  ),
-  quantity(
-    "payload.mass",
-    "Masses",
-    "Payload",
-    { ...MASS, min: 0, step: 0.5 },
-    /payload|load/i,
-    (f) => f.payload?.mass ?? 0,
-    withLoad,
-  ),
-  loadPlace(0, "Payload, x"),
-  loadPlace(1, "Payload, z"),
 ];
 
 type MotorName = "leg" | "thigh" | "calf" | "wheel";

@@ -4,7 +4,9 @@ import { useState } from "preact/hooks";
 import { canRedo, canUndo, redo, undo } from "../state/drawing";
 import { robotDocument, robotEdits, robotName, robots, settings } from "../state/setup";
 import { Icon } from "../ui/icon";
+import { IconButton } from "../ui/icon-button";
 import { Menu, MenuItem } from "../ui/menu";
+import { NameField } from "../ui/name-field";
 import { changed, imports, posture, resetRobot } from "./edit";
 import { download, saveAs, shelfError } from "./shelf";
 import { LAYERS, type Layer, shown, toggle } from "./view";
@@ -36,26 +38,8 @@ export function Toolbar() {
         </button>
       ))}
       <div class="sep" />
-      <button
-        type="button"
-        class="t ico"
-        aria-label="Undo"
-        title="Undo (Ctrl Z)"
-        disabled={!canUndo.value}
-        onClick={undo}
-      >
-        <Icon name="undo" />
-      </button>
-      <button
-        type="button"
-        class="t ico"
-        aria-label="Redo"
-        title="Redo (Ctrl Shift Z)"
-        disabled={!canRedo.value}
-        onClick={redo}
-      >
-        <Icon name="redo" />
-      </button>
+      <IconButton action={undo} label="Undo" icon="undo" off={!canUndo.value} />
+      <IconButton action={redo} label="Redo" icon="redo" off={!canRedo.value} />
       <button
         type="button"
         class="t ico"
@@ -133,17 +117,7 @@ function SaveForm({ close }: { close: () => void }) {
   };
   return (
     <form class="save" onSubmit={save}>
-      <label>
-        <span>Save as</span>
-        <input
-          value={name}
-          maxLength={100}
-          required
-          pattern="[\w .+\-]*\w[\w .+\-]*"
-          title="A letter or digit at least; besides those space and . + - _"
-          onInput={(event) => setName(event.currentTarget.value)}
-        />
-      </label>
+      <NameField value={name} onChange={setName} />
       <button type="submit" class="btn pri">
         Save
       </button>

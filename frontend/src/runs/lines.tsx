@@ -1,6 +1,5 @@
 /** Lines of several results on common axes: colour and dash tell them apart. */
 
-import type { Vec2 } from "../api/types";
 import { fixed } from "../geometry/format";
 import { decimate } from "../plots/decimate";
 import { letter, styleOf } from "./pins";
@@ -92,40 +91,4 @@ const said = (title: string, lines: readonly PinLine[]) =>
 export function pen(place: number) {
   const { color, dash } = styleOf(place);
   return { stroke: color, "stroke-dasharray": dash || "none" };
-}
-
-interface PathProps {
-  paths: readonly { place: number; points: readonly Vec2[] }[];
-  terrain: readonly Vec2[];
-}
-
-/** CoM paths over the terrain of the first, one scale for x and z. */
-export function Paths({ paths, terrain }: PathProps) {
-  const body = paths.flatMap((path) => path.points);
-  if (body.length === 0) return null;
-  const x0 = Math.min(...body.map((p) => p[0])) - 0.1;
-  const x1 = Math.max(...body.map((p) => p[0])) + 0.1;
-  const near = terrain.filter((p) => p[0] >= x0 && p[0] <= x1);
-  const z0 = Math.min(...body.map((p) => p[1]), ...near.map((p) => p[1])) - 0.05;
-  const z1 = Math.max(...body.map((p) => p[1])) + 0.05;
-  const chain = (points: readonly Vec2[]) =>
-    points.map((p) => `${p[0].toFixed(4)},${(-p[1]).toFixed(4)}`).join(" ");
-  return (
-    <section class="ovl" aria-label="CoM paths">
-      <h3>
-        CoM path as planned <small>{fixed(x1 - x0, 1)} m wide, x and z to one scale</small>
-      </h3>
-      <svg
-        class="ovl-paths"
-        viewBox={`${x0} ${-z1} ${x1 - x0} ${z1 - z0}`}
-        role="img"
-        aria-label={`CoM paths of ${paths.map((path) => letter(path.place)).join(", ")}`}
-      >
-        <polyline class="profile" points={chain(terrain)} />
-        {paths.map((path) => (
-          <polyline key={path.place} points={chain(path.points)} style={pen(path.place)} />
-        ))}
-      </svg>
-    </section>
-  );
 }

@@ -2,9 +2,11 @@
 
 import { useEffect, useState } from "preact/hooks";
 import { Icon } from "../ui/icon";
+import { saveFile } from "../ui/save-file";
 import { Comparison, csv } from "./comparison";
-import { Lines, Paths, type PinLine } from "./lines";
+import { Lines, type PinLine } from "./lines";
 import { letter, styleOf } from "./pins";
+import { Replay } from "./replay";
 import { pinned, unpinAll } from "./store";
 import { load, type Track, tracks } from "./tracks";
 
@@ -42,7 +44,7 @@ export function Overlay({ back }: { back: () => void }) {
               class="t ico"
               aria-label="Download the table as CSV"
               title="Download the table as CSV"
-              onClick={() => download(csv(shown))}
+              onClick={() => saveFile("stairwright-comparison.csv", csv(shown), "text/csv")}
             >
               <Icon name="download" />
             </button>
@@ -118,10 +120,7 @@ function Plots({ axis }: { axis: Axis }) {
   return (
     <>
       {waiting && <p class="runs-none">Reading the series…</p>}
-      <Paths
-        paths={there.map(({ place, track }) => ({ place, points: track.com }))}
-        terrain={there[0]?.track.terrain ?? []}
-      />
+      <Replay all={there} />
       {PLOTS.map(([key, title, unit]) => {
         const all = lines(key);
         return (
@@ -130,12 +129,4 @@ function Plots({ axis }: { axis: Axis }) {
       })}
     </>
   );
-}
-
-function download(text: string): void {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
-  link.download = "stairwright-comparison.csv";
-  link.click();
-  URL.revokeObjectURL(link.href);
 }

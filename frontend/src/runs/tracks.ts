@@ -4,8 +4,10 @@ import { signal } from "@preact/signals";
 import { getPlan, getRollout } from "../api/client";
 import type { Entry } from "../api/stored";
 import type { Plan, Rollout, Vec2 } from "../api/types";
+import { centreOfMass } from "../geometry/centre-of-mass";
 import { degrees } from "../geometry/format";
-import { interpolate, poseTimes } from "../geometry/frames";
+import { interpolate, planFrame, poseTimes, runFrame } from "../geometry/frames";
+import { type Frame, type RobotShape, robotShape } from "../geometry/robot";
 import { report } from "../state/connection";
 
 export interface Track {
@@ -19,8 +21,12 @@ export interface Track {
   torque: number[] | null;
   /** Of the planned pose at the same progress [mm]. */
   comMargin: number[] | null;
-  /** The plan's [m]. */
+  /** Of the run, or of a plan as planned [m]. */
   com: Vec2[];
+  /** The pose at a time [s]. */
+  frameAt: (time: number) => Frame | null;
+  /** None where the run's plan, which names the robot, is gone. */
+  shape: RobotShape | null;
   terrain: readonly Vec2[];
 }
 
@@ -63,6 +69,8 @@ function ofPlan(plan: Plan): Track {
     torque: Number.isFinite(limit) ? poses.map((pose) => limit - pose.margins.torque) : null,
     comMargin: poses.map((pose) => pose.margins.com * 1000),
     com: poses.map((pose) => pose.com),
+    frameAt: (time) => planFrame(plan, time),
+    shape: robotShape(plan.robot_description),
     terrain: plan.terrain.points,
   };
 }
@@ -81,7 +89,23 @@ function ofRollout(run: Rollout, plan: Plan | null): Track {
       null,
     comMargin:
       way.length > 1 ? series.progress.map((value) => interpolate(way, margins, value)) : null,
-    com: plan?.poses.map((pose) => pose.com) ?? [],
+    com: plan ? driven(run, plan) : [],
+    frameAt: (time) => runFrame(run, time),
+    shape: plan && robotShape(plan.robot_description),
     terrain: plan?.terrain.points ?? [],
   };
+}
+
+/** Points of a line that is drawn a few hundred pixels wide. */
+const FINE_ENOUGH = 400;
+
+/** Where the robot's centre of mass really was. */
+function driven(run: Rollout, plan: Plan): Vec2[] {
+  const centre = centreOfMass(plan.robot_description);
+  const { time } = run.series;
+  const step = Math.max(1, Math.floor(time.length / FINE_ENOUGH));
+  return time.flatMap((t, i) => {
+    const frame = i % step === 0 || i === time.length - 1 ? runFrame(run, t) : null;
+    return frame ? [centre(frame)] : [];
+  });
 }

@@ -1,6 +1,7 @@
 /** What the scene's marks mean; each row shows or hides its own. L hides the legend. */
 
 import {
+  type Layer,
   layers,
   legendOpen,
   type SceneLayer,
@@ -13,6 +14,14 @@ const OWN: [SceneLayer, string, string][] = [
   ["forces", "arrow", "Contact force, 3 mm per N"],
   ["support", "plate", "Support polygon"],
   ["com", "ball", "Centre of mass"],
+];
+
+/** Layers that the profile has too. */
+const SHARED: [Layer, string, string][] = [
+  ["collision", "dots", "Collision points"],
+  ["com", "com-line", "CoM path"],
+  ["wheel", "wheel-line", "Wheel-centre path"],
+  ["keys", "box", "Key poses"],
 ];
 
 export function SceneLegend() {
@@ -28,30 +37,15 @@ export function SceneLegend() {
           toggle={() => toggleSceneLayer(layer)}
         />
       ))}
-      <Row
-        mark="dots"
-        title="Collision points"
-        on={layers.value.has("collision")}
-        toggle={() => toggleLayer("collision")}
-      />
-      <Row
-        mark="com-line"
-        title="CoM path"
-        on={layers.value.has("com")}
-        toggle={() => toggleLayer("com")}
-      />
-      <Row
-        mark="wheel-line"
-        title="Wheel-centre path"
-        on={layers.value.has("wheel")}
-        toggle={() => toggleLayer("wheel")}
-      />
-      <Row
-        mark="box"
-        title="Key poses"
-        on={layers.value.has("keys")}
-        toggle={() => toggleLayer("keys")}
-      />
+      {SHARED.map(([layer, mark, title]) => (
+        <Row
+          key={layer}
+          mark={mark}
+          title={title}
+          on={layers.value.has(layer)}
+          toggle={() => toggleLayer(layer)}
+        />
+      ))}
     </fieldset>
   );
 }

@@ -42,20 +42,28 @@ function grab(frame: Window, canvas: HTMLCanvasElement): Promise<Blob> {
   });
 }
 
-export async function saveScene(): Promise<void> {
+/** The frame that the scene is drawn in, and its canvas, once there is one. */
+export function drawnScene(): { frame: Window; canvas: HTMLCanvasElement } | null {
   const frame = document.querySelector<HTMLIFrameElement>(".v3 iframe")?.contentWindow;
   // viser keeps further ones, of no size.
   const canvas = [...(frame?.document.querySelectorAll("canvas") ?? [])].find(
     (each) => each.width > PROBE && each.height > PROBE,
   );
+  if (frame && canvas && session.peek()) return { frame, canvas };
+  toast.value = { text: "The scene has not been drawn yet" };
+  return null;
+}
+
+export function sceneFileName(ending: string): string {
   const shown = plan.peek();
-  if (!frame || !canvas || !session.peek()) {
-    toast.value = { text: "The scene has not been drawn yet" };
-    return;
-  }
+  return `${shown?.terrain.name ?? "scene"}-${shown?.robot ?? "robot"}-scene.${ending}`;
+}
+
+export async function saveScene(): Promise<void> {
+  const drawn = drawnScene();
+  if (!drawn) return;
   try {
-    const name = `${shown?.terrain.name ?? "scene"}-${shown?.robot ?? "robot"}-scene.png`;
-    saveFile(name, await grab(frame, canvas));
+    saveFile(sceneFileName("png"), await grab(drawn.frame, drawn.canvas));
   } catch (error) {
     const why = error instanceof Error ? error.message : String(error);
     toast.value = { text: `No picture was saved: ${why}` };

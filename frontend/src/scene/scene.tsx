@@ -17,6 +17,7 @@ import { useRoving } from "../ui/roving";
 import { session, setCamera } from "./drive";
 import { SceneLegend } from "./legend";
 import { saveScene } from "./picture";
+import { recording, recordVideo, stopVideo } from "./video";
 
 const CAMERAS: [string, string][] = [
   ["follow", "Follow the robot"],
@@ -73,6 +74,7 @@ export function Scene() {
           icon="download"
           off={!address}
         />
+        <RecordButton off={!address || duration.value <= 0} />
         <button
           type="button"
           class={legendOpen.value ? "t ico on" : "t ico"}
@@ -102,6 +104,23 @@ export function Scene() {
         {(!connected.value || isEmpty.value) && <SceneVeil />}
       </div>
     </>
+  );
+}
+
+function RecordButton({ off }: { off: boolean }) {
+  const now = recording.value;
+  const label = now ? "Stop and save the video" : "Record the replay as a video";
+  return (
+    <button
+      type="button"
+      class={now ? "t ico rec" : "t ico"}
+      aria-label={label}
+      title={label}
+      disabled={off}
+      onClick={now ? stopVideo : recordVideo}
+    >
+      <Icon name="record" />
+    </button>
   );
 }
 

@@ -21,7 +21,9 @@ export const DOCK: Limits = { least: 0.12, most: 0.6, first: 0.25 };
 export const split = kept("split", SPLIT.first, readWithin(SPLIT.least, SPLIT.most));
 export const dock = kept("dock", DOCK.first, readWithin(DOCK.least, DOCK.most));
 export const swapped = kept("swapped", false, readFlag);
-export const inspectorOpen = kept("inspector", true, readFlag);
+/** Beside two panels there is no room for it on a small screen, until it is asked for. */
+const isSmall = matchMedia("(min-width: 900px) and (max-width: 1200px)").matches;
+export const inspectorOpen = kept("inspector", !isSmall, readFlag);
 
 export const maximised = signal<StagePanel | null>(null);
 /** The panel that pointer or focus was in last: the one that the key M means. */

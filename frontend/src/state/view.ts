@@ -61,7 +61,7 @@ effect(() => {
   document.documentElement.dataset.theme = theme.value;
 });
 
-const narrow = matchMedia("(max-width: 1200px)");
+const narrow = matchMedia("(max-width: 899px)");
 export const isNarrow = signal(narrow.matches);
 narrow.addEventListener("change", () => {
   isNarrow.value = narrow.matches;

@@ -23,7 +23,9 @@ export function DownloadMenu() {
       {!isNarrow.value && (
         <>
           <span class="dl-text">Download</span>
-          <Icon name="down" />
+          <span class="wide">
+            <Icon name="down" />
+          </span>
         </>
       )}
     </>

@@ -30,7 +30,7 @@ export function Friction() {
         }
         onPointerUp={() => commit()}
       >
-        Friction <span class="wide">μ</span>
+        <span class="of">Friction</span> <span class="wide">μ</span>
       </small>
       <NumberField
         label="Friction coefficient"

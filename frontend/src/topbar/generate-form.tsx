@@ -5,7 +5,7 @@ import { fixed } from "../geometry/format";
 import { CODES } from "../profile-editor/codes";
 import { Icon } from "../ui/icon";
 import { NumberField } from "../ui/number-field";
-import { generate, terrainError } from "./terrain-actions";
+import { generate, generateError } from "./terrain-actions";
 
 type Kind = "stair" | "ramp" | "flat";
 
@@ -101,9 +101,9 @@ export function GenerateForm({ back, close }: { back: () => void; close: () => v
           ))}
         </div>
       )}
-      {terrainError.value && (
+      {generateError.value && (
         <p class="error" role="alert">
-          {terrainError.value}
+          {generateError.value}
         </p>
       )}
       <div class="acts end">

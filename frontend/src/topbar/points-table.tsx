@@ -3,6 +3,8 @@
 import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { fixed } from "../geometry/format";
+import { ImportProblem } from "../import/import-problem";
+import { importProblem, takeText } from "../import/take";
 import { addVertex, moveVertices, removeVertices } from "../profile-editor/edits";
 import { names } from "../profile-editor/vertices";
 import { commit, draft, drawing } from "../state/drawing";
@@ -10,7 +12,6 @@ import { Icon } from "../ui/icon";
 import { IconButton } from "../ui/icon-button";
 import { NumberField } from "../ui/number-field";
 import { saveFile } from "../ui/save-file";
-import { takeText } from "./terrain-actions";
 
 export const pointsOpen = signal(false);
 
@@ -48,9 +49,7 @@ function Sheet() {
     if (!/[\s,;]/.test(text.trim())) return;
     event.preventDefault();
     event.stopPropagation();
-    // Spreadsheets put tabs between columns, and some no heading above them.
-    const table = text.trim().replaceAll("\t", ",");
-    takeText(/^[-\d.]/.test(table) && !/^[{[]/.test(table) ? `x,z\n${table}` : table);
+    takeText(text, "table");
   };
   return (
     <dialog
@@ -60,6 +59,7 @@ function Sheet() {
       onPaste={paste}
       onClose={() => {
         pointsOpen.value = false;
+        importProblem.value = null;
       }}
     >
       <h2 id="points-title">Points of {name}</h2>
@@ -114,6 +114,7 @@ function Sheet() {
           </tbody>
         </table>
       </section>
+      <ImportProblem place="table" />
       <form method="dialog" class="acts end">
         <button
           type="button"

@@ -1,13 +1,7 @@
-/** Opening, saving, importing and making terrains. */
+/** Opening, saving and making terrains. */
 
 import { signal } from "@preact/signals";
-import {
-  deleteTerrain,
-  generateTerrain,
-  getTerrains,
-  importTerrain,
-  putTerrain,
-} from "../api/client";
+import { deleteTerrain, generateTerrain, getTerrains, putTerrain } from "../api/client";
 import type { TerrainDocument } from "../api/types";
 import { fit } from "../profile-editor/viewport";
 import { report } from "../state/connection";
@@ -17,15 +11,13 @@ import { terrains } from "../state/setup";
 import { toast } from "../state/toast";
 import { tool } from "../state/view";
 
-/** What went wrong with a file or a name; shown where it happened. */
-export const terrainError = signal<string | null>(null);
+/** Why nothing was generated; the form shows it. */
+export const generateError = signal<string | null>(null);
 /** Why a terrain was not saved; the menu shows it below the name. */
 export const saveError = signal<string | null>(null);
-/** A mesh that waits for the plane to cut it along. */
-export const meshToCut = signal<File | null>(null);
 
-function show(terrain: TerrainDocument, stored: TerrainDocument | null): void {
-  terrainError.value = null;
+/** Draw a terrain; `stored` is what it is saved as. */
+export function show(terrain: TerrainDocument, stored: TerrainDocument | null): void {
   forgetRollout();
   open(terrain, stored);
   tool.value = "select";
@@ -36,10 +28,7 @@ export function openStored(terrain: TerrainDocument): void {
   show(terrain, terrain);
 }
 
-function fail(error: unknown): void {
-  report(error);
-  terrainError.value = error instanceof Error ? error.message : String(error);
-}
+const reason = (error: unknown) => (error instanceof Error ? error.message : String(error));
 
 /** Save the drawing; what it replaces can be brought back. */
 export async function saveAs(name: string, description: string): Promise<boolean> {
@@ -57,7 +46,7 @@ export async function saveAs(name: string, description: string): Promise<boolean
     return true;
   } catch (error) {
     report(error);
-    saveError.value = error instanceof Error ? error.message : String(error);
+    saveError.value = reason(error);
     return false;
   }
 }
@@ -89,7 +78,8 @@ export async function removeStored(terrain: TerrainDocument): Promise<void> {
     if (opened) origin.value = null;
     toast.value = { text: `${name} is deleted.`, undo: () => void putBack(terrain, opened) };
   } catch (error) {
-    fail(error);
+    report(error);
+    toast.value = { text: `${name} is not deleted: ${reason(error)}` };
   }
 }
 
@@ -99,58 +89,19 @@ async function putBack(terrain: TerrainDocument, opened: boolean): Promise<void>
     terrains.value = await getTerrains();
     if (opened && drawing.peek().name === terrain.name) origin.value = terrain;
   } catch (error) {
-    fail(error);
+    report(error);
+    toast.value = { text: `${terrain.name} is not back: ${reason(error)}` };
   }
 }
 
 export async function generate(parameters: Record<string, unknown>): Promise<boolean> {
+  generateError.value = null;
   try {
     show(await generateTerrain(parameters), null);
     return true;
   } catch (error) {
-    fail(error);
+    report(error);
+    generateError.value = reason(error);
     return false;
   }
-}
-
-const MESH = /\.(stl|obj)$/i;
-
-/** A dropped or chosen file; meshes ask for a plane first. */
-export async function takeFile(file: File): Promise<void> {
-  if (MESH.test(file.name)) meshToCut.value = file;
-  else await importFile(await terrainIn(file), {});
-}
-
-/** A plan holds the terrain that it is for; any other file is taken as it is. */
-async function terrainIn(file: File): Promise<File> {
-  if (!/\.json$/i.test(file.name)) return file;
-  try {
-    const document = JSON.parse(await file.text());
-    if (!/^stairwright\/plan\//.test(document.schema) || !document.terrain) return file;
-    return new File([JSON.stringify(document.terrain)], file.name, { type: file.type });
-  } catch {
-    // What is wrong with it is for the service to say.
-    return file;
-  }
-}
-
-export async function importFile(file: File, fields: Record<string, string>): Promise<boolean> {
-  try {
-    show(await importTerrain(file, fields), null);
-    return true;
-  } catch (error) {
-    fail(error);
-    return false;
-  }
-}
-
-/** Pasted text becomes a file whose ending says what it looks like. */
-export function takeText(text: string): void {
-  const trimmed = text.trim();
-  const ending = /^[{[]/.test(trimmed)
-    ? "json"
-    : /(^|\n)\s*points\s*:/.test(trimmed)
-      ? "yaml"
-      : "csv";
-  void takeFile(new File([trimmed], `pasted.${ending}`, { type: "text/plain" }));
 }

@@ -2,10 +2,13 @@
 
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
+import { ImportProblem } from "../import/import-problem";
+import { importProblem, takeFile } from "../import/take";
 import { clear, drawing, isEmpty } from "../state/drawing";
 import { terrains } from "../state/setup";
 import { Icon } from "../ui/icon";
 import { Menu } from "../ui/menu";
+import { NameField } from "../ui/name-field";
 import { GenerateForm } from "./generate-form";
 import { pointsOpen } from "./points-table";
 import {
@@ -15,7 +18,6 @@ import {
   saveError,
   suggestedDescription,
   suggestedName,
-  takeFile,
 } from "./terrain-actions";
 
 export function TerrainMenu({ button }: { button: ComponentChildren }) {
@@ -79,14 +81,17 @@ function TerrainPanel({ close }: { close: () => void }) {
           type="file"
           hidden
           aria-label="Terrain file"
-          accept=".csv,.json,.yaml,.yml,.stl,.obj"
-          onChange={(event) => {
-            const chosen = event.currentTarget.files?.[0];
-            if (chosen) void takeFile(chosen);
-            close();
+          accept=".csv,.txt,.json,.yaml,.yml,.stl,.obj,.ply,.off"
+          onChange={async (event) => {
+            const input = event.currentTarget;
+            const chosen = input.files?.[0];
+            if (chosen && (await takeFile(chosen, "menu"))) close();
+            // The same file, mended, can be chosen again.
+            else input.value = "";
           }}
         />
       </div>
+      <ImportProblem place="menu" />
       <div class="lists">
         {saved.length > 0 && <h4>Saved</h4>}
         {saved.map((terrain) => (
@@ -139,6 +144,7 @@ function SaveForm({ close }: { close: () => void }) {
   // What failed the last time is not about this attempt.
   useEffect(() => {
     saveError.value = null;
+    importProblem.value = null;
   }, []);
   const save = async (event: Event) => {
     event.preventDefault();
@@ -146,17 +152,7 @@ function SaveForm({ close }: { close: () => void }) {
   };
   return (
     <form class="save" onSubmit={save}>
-      <label>
-        <span>Save as</span>
-        <input
-          value={name}
-          maxLength={100}
-          required
-          pattern="[\w .+\-]*\w[\w .+\-]*"
-          title="A letter or digit at least; besides those space and . + - _"
-          onInput={(event) => setName(event.currentTarget.value)}
-        />
-      </label>
+      <NameField value={name} onChange={setName} />
       <button type="submit" class="btn" disabled={isEmpty.value}>
         <Icon name="save" />
         Save

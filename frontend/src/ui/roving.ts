@@ -3,28 +3,33 @@
 import type { RefObject } from "preact";
 import { useLayoutEffect } from "preact/hooks";
 
-const items = (bar: HTMLElement) =>
-  [...bar.querySelectorAll<HTMLElement>("button:not([disabled]), a[href]")].filter(
+type Item = HTMLElement | SVGElement;
+
+const BUTTONS = "button:not([disabled]), a[href]";
+
+const items = (bar: Item, of: string) =>
+  [...bar.querySelectorAll<Item>(of)].filter(
     (each) => !each.closest(".panel") && each.getClientRects().length > 0,
   );
 
-function tend(bar: HTMLElement): void {
-  const all = items(bar);
-  const active = document.activeElement as HTMLElement;
+function tend(bar: Item, of: string): void {
+  const all = items(bar, of);
+  const active = document.activeElement as Item;
   const one = all.includes(active) ? active : (all.find((each) => each.tabIndex === 0) ?? all[0]);
   for (const each of all) each.tabIndex = each === one ? 0 : -1;
 }
 
-export function useRoving(root: RefObject<HTMLElement | null>): void {
+export function useRoving(root: RefObject<Item | null>, of = BUTTONS): void {
   // After each render: what can be pressed may be another.
   useLayoutEffect(() => {
     const bar = root.current;
     if (!bar) return;
-    tend(bar);
-    const onFocus = () => tend(bar);
-    const onKey = (event: KeyboardEvent) => {
-      const all = items(bar);
-      const at = all.indexOf(event.target as HTMLElement);
+    tend(bar, of);
+    const onFocus = () => tend(bar, of);
+    const onKey = (raw: Event) => {
+      const event = raw as KeyboardEvent;
+      const all = items(bar, of);
+      const at = all.indexOf(event.target as Item);
       const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: -1 }[event.key];
       if (at < 0 || to === undefined) return;
       event.preventDefault();

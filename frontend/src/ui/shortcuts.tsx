@@ -29,7 +29,7 @@ const SHEET: [string, [string, string][]][] = [
     "Profile",
     [
       ["V S R F P", "select, stair, ramp, flat, free"],
-      ["Tab", "to the next corner"],
+      ["Page Up, Page Down", "to the corner before, after"],
       ["Arrows", "move by 1 cm; Shift 10 cm, Alt 1 mm"],
       ["Insert, Delete", "add or delete a corner"],
       ["Enter", "type its x and z"],

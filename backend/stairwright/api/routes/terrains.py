@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import PurePath
 from typing import Annotated, Any
 
@@ -19,6 +20,8 @@ from stairwright.jobs.failures import DeadlineExceeded, WorkerDied
 from stairwright.library import load_terrain, terrains
 from stairwright.terrain.generation import Generation, Name
 from stairwright.terrain.generation import generate as make_terrain
+from stairwright.terrain.mesh import Up
+from stairwright.terrain.mesh_heights import MeshHeights
 from stairwright.terrain.profile import Terrain
 
 from .named import Named
@@ -52,38 +55,59 @@ def generate(body: Generation) -> Terrain:
         raise from_validation(error.errors()) from None
 
 
+MeshFile = Annotated[UploadFile, File(description="STL, OBJ, PLY or OFF")]
+Scale = Annotated[float, Form(gt=0.0, le=1e3, description="metres per unit of a mesh")]
+Upward = Annotated[Up, Form(description="the axis of a mesh that points up")]
+
+
 @router.post("/import", responses=describe(503))
 async def import_terrain(
     services: Service,
     file: Annotated[UploadFile, File(description="STL, OBJ, PLY, OFF, CSV, JSON or YAML")],
     name: Annotated[Name | None, Form(description="the file's by default")] = None,
     friction: Annotated[float | None, Form(gt=0.0, le=MOST_FRICTION)] = None,
-    x: Annotated[float, Form(ge=-1e6, le=1e6, description="of the cut's origin [m]")] = 0.0,
-    y: Annotated[float | None, Form(ge=-1e6, le=1e6, description="of the cut [m]")] = None,
+    x: Annotated[float, Form(ge=-1e6, le=1e6, description="of a mesh that becomes 0 [m]")] = 0.0,
+    y: Annotated[
+        float | None, Form(ge=-1e6, le=1e6, description="of the cut [m]; by default the middle")
+    ] = None,
     heading: Annotated[float, Form(ge=-7.0, le=7.0, description="of the cut [rad]")] = 0.0,
-    scale: Annotated[float, Form(gt=0.0, le=1e3, description="metres per unit")] = 1.0,
+    scale: Scale = 1.0,
+    up: Upward = "z",
 ) -> Terrain:
     """The profile in a file; of a mesh, the upper edge of a vertical cut. It is not saved."""
-    options: dict[str, Any] = {"heading": heading, "scale": scale}
-    if y is not None:
-        options["origin"] = (x, y)
+    options: dict[str, Any] = {"heading": heading, "scale": scale, "up": up, "origin": (x, y)}
     if friction is not None:
         options["friction"] = friction
     file_name = PurePath(file.filename or "").name
-    suffix = PurePath(file_name).suffix.lower()
     if name is not None:
         options["name"] = name
-    elif suffix not in (".json", ".yaml", ".yml"):
+    elif PurePath(file_name).suffix.lower() not in (".json", ".yaml", ".yml"):
         options["name"] = _usable(PurePath(file_name).stem)
+    return Terrain.model_validate(await _read(services, uploads.import_terrain, file, options))
+
+
+@router.post("/import/heights", responses=describe(503))
+async def get_mesh_heights(
+    services: Service, file: MeshFile, scale: Scale = 1.0, up: Upward = "z"
+) -> MeshHeights:
+    """A mesh seen from above, to choose the cut by. Nothing is saved."""
+    options = {"scale": scale, "up": up}
+    return MeshHeights.model_validate(await _read(services, uploads.look_at_mesh, file, options))
+
+
+async def _read(
+    services: Services, reader: Callable[..., dict[str, Any]], file: UploadFile, options: Any
+) -> dict[str, Any]:
+    """What the sealed worker reads in a file."""
+    suffix = PurePath(file.filename or "").suffix.lower()
     data = await file.read()
     try:
         async with services.uploading:
-            document = await services.upload_pool.run(
-                uploads.import_terrain, data, f"upload{suffix}", options, deadline=UPLOAD_DEADLINE
+            return await services.upload_pool.run(
+                reader, data, f"upload{suffix}", options, deadline=UPLOAD_DEADLINE
             )
     except (DeadlineExceeded, WorkerDied, MemoryError):
         raise InputError("takes too much time or memory to read", ("file",)) from None
-    return Terrain.model_validate(document)
 
 
 def _usable(stem: str) -> str:
