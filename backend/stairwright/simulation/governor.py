@@ -19,16 +19,14 @@ from numpy.typing import NDArray
 from stairwright import _core
 from stairwright.control.rigid_body import GRAVITY
 from stairwright.control.setpoint import (
+    ACCELERATIONS,
     COM,
     FORCES,
     JOINTS,
     LEANS,
-    PITCH,
     PROGRESS,
     RATES,
     SHARE,
-    SURGES,
-    TRUNK,
     WHEELS,
     WIDTH,
 )
@@ -36,7 +34,7 @@ from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
 from stairwright.planning.poses.pose_reference import Reference
 from stairwright.planning.timing.limits import WHEEL_SPEED_SHARE
-from stairwright.planning.timing.way import even_grid, way_of
+from stairwright.planning.timing.way import even_grid, slopes, way_of
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
@@ -56,7 +54,7 @@ class Track:
     Attributes:
         start: Way of the first row, which is its progress [m].
         step: Way between rows [m].
-        rows: (n, 33) set points; rates are per metre of way, accelerations per its square.
+        rows: (n, 41) set points; rates are per metre of way, accelerations per its square.
         speeds: (n,) allowed speed along the way [m/s].
     """
 
@@ -104,7 +102,6 @@ def track(
         text = f"the poses are {last - first:.3g} m apart in all; at most {LONGEST_WAY:g} m can be"
         raise InputError(f"{text} carried out", ("plan", "poses"))
     grid = even_grid(way)
-    count = len(grid)
     columns = np.column_stack(
         [
             reference.wheel_progress,
@@ -114,25 +111,12 @@ def track(
             reference.trunk[:, :2],
         ]
     )
-    rows = np.zeros((count, WIDTH))
-    order = [*range(11)]
-    assert (
-        slice(0, 2),
-        slice(2, 6),
-        6,
-        slice(7, 9),
-        slice(9, 11),
-    ) == (WHEELS, JOINTS, PITCH, COM, TRUNK)
-    for k in order:
-        column = columns[:, k]
-        rows[:, k] = np.interp(grid, way, column)
-        low, high = np.maximum(grid - RATE_REACH, first), np.minimum(grid + RATE_REACH, last)
-        rise = np.interp(high, way, column) - np.interp(low, way, column)
-        rows[:, RATES + k] = rise / (high - low)
-    for k in range(SURGES, SHARE):
-        rate = rows[:, RATES + PITCH + k - SURGES]
-        low, high = np.maximum(grid - RATE_REACH, first), np.minimum(grid + RATE_REACH, last)
-        rows[:, k] = (np.interp(high, grid, rate) - np.interp(low, grid, rate)) / (high - low)
+    rows = np.zeros((len(grid), WIDTH))
+    for k in range(RATES):
+        rows[:, k] = np.interp(grid, way, columns[:, k])
+    rates = slopes(grid, way, columns, RATE_REACH)
+    rows[:, RATES:ACCELERATIONS] = rates
+    rows[:, ACCELERATIONS : ACCELERATIONS + RATES] = slopes(grid, grid, rates, RATE_REACH)
     places, com = np.ascontiguousarray(rows[:, WHEELS]), np.ascontiguousarray(rows[:, COM])
     weight = robot.mass * GRAVITY
     resting = _core.static_forces(path.native, weight, friction, places, com)
