@@ -40,7 +40,7 @@ RobotState robot_state(const Fixed<19>& qpos, const Fixed<18>& qvel) {
     return out;
 }
 
-Reference reference(const Fixed<33>& row) {
+Reference reference(const Fixed<kReferenceWidth>& row) {
     std::array<double, kReferenceWidth> numbers;
     std::copy_n(row.data(), kReferenceWidth, numbers.begin());
     return std::bit_cast<Reference>(numbers);
@@ -103,7 +103,7 @@ void bind_control(nb::module_& m) {
     bind_gains(m);
     nb::class_<Controller>(m, "Controller", "The balance controller, form contact; keeps forces and places.")
         .def(nb::init<Robot, WheelPath, double, const Gains&>(), nb::arg("robot"), nb::arg("path"), nb::arg("friction"), nb::arg("gains"))
-        .def("step", [](Controller& self, const Fixed<19>& qpos, const Fixed<18>& qvel, const Fixed<33>& target, double yaw_rate) {
+        .def("step", [](Controller& self, const Fixed<19>& qpos, const Fixed<18>& qvel, const Fixed<kReferenceWidth>& target, double yaw_rate) {
             return numbers(self.step(robot_state(qpos, qvel), reference(target), yaw_rate));
         }, nb::arg("qpos"), nb::arg("qvel"), nb::arg("target"), nb::arg("yaw_rate") = 0.0, nb::rv_policy::automatic,
            "Torques (12,) before the motors' limits [Nm]; `target` is a row in the order of control.setpoint.")

@@ -8,7 +8,7 @@ import pytest
 from stairwright import _core, load_robot, load_terrain, robots
 from stairwright.control.controller import Controller
 from stairwright.control.native import native_controller
-from stairwright.control.setpoint import Setpoint
+from stairwright.control.setpoint import RATES, Setpoint
 from stairwright.control.settings import ControllerSettings
 from stairwright.terrain.wheel_path import wheel_path
 
@@ -21,8 +21,9 @@ def state_and_row(robot, random: np.random.Generator):
     qpos = np.concatenate([place, quaternion / np.linalg.norm(quaternion), joints])
     near = place[[0, 2]] + random.normal(0.0, 0.05, 2)
     values = [random.uniform(0.5, 3.0, 2), random.normal(0.0, 1.0, 5), near, near]
-    forces = [[3.0, 29.0, -2.0, 27.0], random.normal(0.0, 0.5, 3), [random.uniform(0.5, 1.0)]]
-    row = [*values, random.normal(0.0, 0.2, 11), *forces, [0.4], random.integers(0, 3, 2)]
+    moving = [random.normal(0.0, 0.2, RATES), random.normal(0.0, 0.5, RATES)]
+    forces = [[3.0, 29.0, -2.0, 27.0], [random.uniform(0.5, 1.0)]]
+    row = [*values, *moving, *forces, [0.4], random.integers(0, 3, 2)]
     return qpos, random.normal(0.0, 0.5, 18), np.concatenate(row)
 
 

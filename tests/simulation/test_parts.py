@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import stairwright as sw
 from stairwright import _core
-from stairwright.control.setpoint import PROGRESS, RATES, SURGES, WIDTH
+from stairwright.control.setpoint import ACCELERATIONS, COM, PROGRESS, RATES, WIDTH
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
 from stairwright.planning.poses.interpolation import reference
@@ -115,7 +115,10 @@ def test_accelerations_belong_to_the_speeds() -> None:
     places, rows = np.full(4, np.nan), []
     while plan.way < line.end - 1e-9:
         rows.append(plan.advance(places, True, dt))
-    velocity, surge = np.array(rows)[:, RATES + 7], np.array(rows)[:, SURGES + 1]
+    velocity, surge = (
+        np.array(rows)[:, RATES + COM.start],
+        np.array(rows)[:, ACCELERATIONS + COM.start],
+    )
     window = 25  # control steps: the table's rows are coarser than one
     change = (velocity[window:] - velocity[:-window]) / (window * dt)
     mean = np.convolve(surge, np.full(window, 1 / window), "valid")[: len(change)]

@@ -10,7 +10,7 @@ from stairwright.robot.description import Robot
 
 from .measurement import Measurement
 from .rigid_body import wrench
-from .setpoint import Setpoint
+from .setpoint import COM, Setpoint
 from .settings import ControllerSettings
 
 Floats = NDArray[np.float64]
@@ -33,20 +33,21 @@ def desired_wrench(
     drift: Floats,
     state: Measurement,
     target: Setpoint,
+    moment: float,
     pitch_integral: float = 0.0,
 ) -> Floats:
     """(3,) ``b_des`` of eqs 8-9.
 
     `offset` and `drift` (2,) are desired minus measured position [m] and velocity [m/s] of the
-    body's centre; `pitch_integral` [rad/s^2] is what the pitch integral adds.
+    body's centre; `moment` [Nm] is what the planned motion takes; `pitch_integral` [rad/s^2] is
+    what the pitch integral adds.
     """
-    acceleration = target.com_acceleration + settings.com_stiffness * offset
+    acceleration = target.accelerations[COM] + settings.com_stiffness * offset
     acceleration += settings.com_damping * drift
     acceleration[0] = np.clip(acceleration[0], -MAX_ACCELERATION, MAX_ACCELERATION)
-    spin = pitch_integral + target.pitch_acceleration
-    spin += settings.pitch_stiffness * (target.pitch - state.pitch)
+    spin = pitch_integral + settings.pitch_stiffness * (target.pitch - state.pitch)
     spin += settings.pitch_damping * (target.pitch_rate - state.pitch_rate)
-    return wrench(robot.mass, state.inertia, acceleration, spin)
+    return wrench(robot.mass, acceleration, moment + state.inertia * spin)
 
 
 def integrate_pitch(

@@ -2,7 +2,8 @@
 
 Form ``contact`` (default): forces act at the contact points, each in its own wheel's frame; the QP
 is pulled to the plan's static forces; the wheel motors get the QP's tangential force fed forward
-plus feedback on the absolute wheel rate; the legs' own weight is carried by feed-forward.
+plus feedback on the absolute wheel rate; the legs' own weight and inertia are carried by
+feed-forward.
 
 Form ``paper``: forces act at the wheel centres, the traction comes from the rolling control alone
 and enters the QP as a known wrench (eq 10); the body is the trunk's point with the whole mass; a
@@ -22,8 +23,9 @@ from stairwright.terrain.wheel_path import WheelPath
 
 from . import balance, qp, rigid_body, rolling, tracking
 from .contact import locate, support, wheel_traction
+from .inertial_loads import inertial_loads
 from .measurement import Measurement, measure
-from .setpoint import Setpoint
+from .setpoint import PITCH, Setpoint
 from .settings import ControllerSettings
 
 Floats = NDArray[np.float64]
@@ -109,6 +111,7 @@ class Controller:
         self.pitch_integral = balance.integrate_pitch(
             settings, self.pitch_integral, state, target.pitch
         )
+        moment, moving = inertial_loads(robot, target)
         desired = balance.desired_wrench(
             robot,
             settings,
@@ -116,6 +119,7 @@ class Controller:
             target.com_velocity - state.com_velocity,
             state,
             target,
+            moment,
             self.pitch_integral,
         )
         resting = np.einsum("nji,nj->ni", frames, (target.forces / 2)[LEG_PAIR]).ravel()
@@ -123,14 +127,14 @@ class Controller:
         self._solve(A, desired, resting, friction, balance.EVEN, uneven)
         forces = np.einsum("nij,nj->ni", frames, self.forces.reshape(4, 2))
         torques = balance.force_torques(state, points, forces)
-        torques += balance.leg_weight_torques(robot, state)
+        torques += balance.leg_weight_torques(robot, state) + moving[LEG_PAIR, :2]
         speeds = target.wheel_speed[LEG_PAIR] + settings.wheel_sync * (planned - self.places)
         rates = rolling.wheel_rates(speeds, radius) + self._yaw(state, target)
         driven = np.array([wheel_traction(row, *f) for row, f in zip(held, forces, strict=True)])
         wheel = radius * driven + rolling.wheel_torques(
             self.gains.wheel_damping, rates, state.rolling_rates
         )
-        return self._joined(state, target, torques, wheel)
+        return self._joined(state, target, torques, wheel + moving[LEG_PAIR, 2])
 
     def _paper(self, state: Measurement, target: Setpoint) -> Floats:
         robot, radius = self.robot, self.path.radius
@@ -150,6 +154,7 @@ class Controller:
             target.trunk_velocity - state.trunk_velocity,
             state,
             target,
+            state.inertia * float(target.accelerations[PITCH]),
         )
         usable = np.full(4, self.settings.friction_share * self.friction)
         self._solve(

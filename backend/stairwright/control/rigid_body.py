@@ -44,6 +44,6 @@ def force_map(frames: Floats, levers: Floats) -> Floats:
     return rows.transpose(1, 0, 2).reshape(3, -1)
 
 
-def wrench(mass: float, inertia: float, acceleration: Floats, spin: float) -> Floats:
+def wrench(mass: float, acceleration: Floats, moment: float) -> Floats:
     """(3,) the right-hand side ``b``: what gives the body this acceleration (eqs 3 and 6)."""
-    return np.array([mass * acceleration[0], mass * (acceleration[1] + GRAVITY), inertia * spin])
+    return np.array([mass * acceleration[0], mass * (acceleration[1] + GRAVITY), moment])

@@ -11,7 +11,8 @@ from .contact import BOTH
 
 Floats = NDArray[np.float64]
 
-# Columns of a set point's row: values, their rates of change, static forces, accelerations.
+# Columns of a set point's row: values, their rates of change, their accelerations, static
+# forces.
 # Compiled code and reference tables use the same order.
 WHEELS = slice(0, 2)
 JOINTS = slice(2, 6)
@@ -19,12 +20,12 @@ PITCH = 6
 COM = slice(7, 9)
 TRUNK = slice(9, 11)
 RATES = 11  # the rate of column k is column RATES + k
-FORCES = slice(22, 26)
-SURGES = 26  # accelerations of pitch and CoM, the columns from `PITCH` on
-SHARE = 29  # of the friction that the static forces need
-PROGRESS = 30  # the plan's
-LEANS = slice(31, 33)  # what each wheel pair leans on in a corner, see `contact`; not to be mixed
-WIDTH = 33
+ACCELERATIONS = 22  # likewise
+FORCES = slice(33, 37)
+SHARE = 37  # of the friction that the static forces need
+PROGRESS = 38  # the plan's
+LEANS = slice(39, 41)  # what each wheel pair leans on in a corner, see `contact`; not to be mixed
+WIDTH = 41
 
 
 @dataclass(frozen=True)
@@ -43,8 +44,7 @@ class Setpoint:
         com_velocity: (2,) [m/s].
         trunk_velocity: (2,) [m/s].
         forces: (2, 2) static force of each wheel pair, world x and z [N].
-        pitch_acceleration: [rad/s^2].
-        com_acceleration: (2,) [m/s^2].
+        accelerations: (11,) of the first eleven, in the order of a row.
         friction_share: part of the friction that the static forces need.
         leans: (2,) what each wheel pair leans on in a corner, see `contact`.
         yaw_rate: commanded [rad/s].
@@ -61,15 +61,14 @@ class Setpoint:
     com_velocity: Floats
     trunk_velocity: Floats
     forces: Floats
-    pitch_acceleration: float
-    com_acceleration: Floats
+    accelerations: Floats
     friction_share: float = 0.0
     leans: tuple[int, int] = (BOTH, BOTH)
     yaw_rate: float = 0.0
 
     @classmethod
     def from_row(cls, row: Floats, yaw_rate: float = 0.0) -> Setpoint:
-        """The set point held by a row (33,) in the module's order."""
+        """The set point held by a row (41,) in the module's order."""
         rates = row[RATES : 2 * RATES]
         return cls(
             wheel_progress=row[WHEELS],
@@ -83,8 +82,7 @@ class Setpoint:
             com_velocity=rates[COM],
             trunk_velocity=rates[TRUNK],
             forces=row[FORCES].reshape(2, 2),
-            pitch_acceleration=float(row[SURGES]),
-            com_acceleration=row[SURGES + 1 : SURGES + 3],
+            accelerations=row[ACCELERATIONS : ACCELERATIONS + RATES],
             friction_share=float(row[SHARE]),
             leans=(int(row[LEANS][0]), int(row[LEANS][1])),
             yaw_rate=yaw_rate,

@@ -18,7 +18,7 @@ from stairwright import _core
 from stairwright._core import GRAVITY
 from stairwright.control.controller import LEG_PAIR, Controller
 from stairwright.control.measurement import measure
-from stairwright.control.setpoint import Setpoint
+from stairwright.control.setpoint import RATES, Setpoint
 from stairwright.control.settings import ControllerSettings
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
@@ -159,8 +159,7 @@ def _standing(robot: Robot, controller: Controller, q: Floats) -> Setpoint:
         com_velocity=still,
         trunk_velocity=still,
         forces=forces,
-        pitch_acceleration=0.0,
-        com_acceleration=still,
+        accelerations=np.zeros(RATES),
     )
 
 

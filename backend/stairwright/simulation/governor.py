@@ -19,16 +19,14 @@ from numpy.typing import NDArray
 from stairwright import _core
 from stairwright._core import GRAVITY
 from stairwright.control.setpoint import (
+    ACCELERATIONS,
     COM,
     FORCES,
     JOINTS,
     LEANS,
-    PITCH,
     PROGRESS,
     RATES,
     SHARE,
-    SURGES,
-    TRUNK,
     WHEELS,
     WIDTH,
 )
@@ -56,7 +54,7 @@ class Track:
     Attributes:
         start: Way of the first row, which is its progress [m].
         step: Way between rows [m].
-        rows: (n, 33) set points; rates are per metre of way, accelerations per its square.
+        rows: (n, 41) set points; rates are per metre of way, accelerations per its square.
         speeds: (n,) allowed speed along the way [m/s].
     """
 
@@ -114,18 +112,10 @@ def track(
         ]
     )
     rows = np.zeros((len(grid), WIDTH))
-    assert (
-        slice(0, 2),
-        slice(2, 6),
-        6,
-        slice(7, 9),
-        slice(9, 11),
-    ) == (WHEELS, JOINTS, PITCH, COM, TRUNK)
-    count = columns.shape[1]
-    rows[:, :count] = np.stack([np.interp(grid, way, column) for column in columns.T], axis=1)
-    rows[:, RATES : RATES + count] = slopes(grid, way, columns, RATE_REACH)
-    surging = rows[:, RATES + PITCH : RATES + PITCH + SHARE - SURGES]
-    rows[:, SURGES:SHARE] = slopes(grid, grid, surging, RATE_REACH)
+    rows[:, :RATES] = np.stack([np.interp(grid, way, column) for column in columns.T], axis=1)
+    rates = slopes(grid, way, columns, RATE_REACH)
+    rows[:, RATES:ACCELERATIONS] = rates
+    rows[:, ACCELERATIONS : ACCELERATIONS + RATES] = slopes(grid, grid, rates, RATE_REACH)
     places, com = np.ascontiguousarray(rows[:, WHEELS]), np.ascontiguousarray(rows[:, COM])
     weight = robot.mass * GRAVITY
     resting = _core.static_forces(path.native, weight, friction, places, com)

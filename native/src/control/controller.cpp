@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "inertial_loads.hpp"
 #include "measurement.hpp"
 #include "stairwright/control/static_forces.hpp"
 
@@ -39,16 +40,17 @@ std::array<Wrench, 8> force_map(const Measurement& m, const Supports& supports) 
     return A;
 }
 
-// What gives the body the wanted accelerations (eqs 8-9).
-Wrench desired_wrench(const Gains& g, double mass, const Measurement& m, const Reference& target, double integral) {
-    double ax = target.com_acceleration.x + g.com_stiffness * (target.value.com.x - m.com.x);
+// What gives the body the wanted accelerations (eqs 8-9). `moment` is what the planned motion takes.
+Wrench desired_wrench(const Gains& g, double mass, const Measurement& m, const Reference& target, double moment,
+                      double integral) {
+    double ax = target.acceleration.com.x + g.com_stiffness * (target.value.com.x - m.com.x);
     ax += g.com_damping * (target.rate.com.x - m.com_velocity.x);
     ax = std::clamp(ax, -kMaxAcceleration, kMaxAcceleration);
-    double az = target.com_acceleration.z + g.com_stiffness * (target.value.com.z - m.com.z);
+    double az = target.acceleration.com.z + g.com_stiffness * (target.value.com.z - m.com.z);
     az += g.com_damping * (target.rate.com.z - m.com_velocity.z);
-    double spin = integral + target.pitch_acceleration + g.pitch_stiffness * (target.value.pitch - m.pitch);
+    double spin = integral + g.pitch_stiffness * (target.value.pitch - m.pitch);
     spin += g.pitch_damping * (target.rate.pitch - m.pitch_rate);
-    return {mass * ax, mass * (az + kGravity), m.inertia * spin};
+    return {mass * ax, mass * (az + kGravity), moment + m.inertia * spin};
 }
 
 // Left less right normal force, as a share of what each pair carries, that keeps the robot from rolling over.
@@ -139,11 +141,12 @@ Command Controller::command(const RobotState& state, const Reference& target, do
     }
     pitch_integral_ += kPeriod * g.pitch_integral * (target.value.pitch - m.pitch);
     pitch_integral_ = std::clamp(pitch_integral_, -kMaxPitchIntegral, kMaxPitchIntegral);
-    const Wrench wanted = desired_wrench(g, mass_, m, target, pitch_integral_);
+    const InertialLoads inertial = inertial_loads(robot_, target);
+    const Wrench wanted = desired_wrench(g, mass_, m, target, inertial.moment, pitch_integral_);
     const double uneven = uneven_share(g, mass_, robot_, m, target, path_.radius());
     solve(balance_qp(g, force_map(m, supports), wanted, supports, target, forces_, uneven), forces_);
 
-    // Torques: forces and weight, tracking (eq 27), rolling (eqs 14-16) with the traction fed forward.
+    // Torques: forces, weight and inertia, tracking (eq 27), rolling (eqs 14-16) with the traction fed forward.
     const double turn = yaw_rate - g.heading_stiffness * m.heading;
     const double difference = robot_.half_track / path_.radius() * (turn + g.yaw_damping * (turn - m.yaw_rate));
     Command out;
@@ -155,7 +158,8 @@ Command Controller::command(const RobotState& state, const Reference& target, do
         const Vec2 force = {t * s.normal.z + n * s.normal.x, n * s.normal.z - t * s.normal.x};
         const Vec2 point = m.legs[i].wheel - s.reach * s.normal;
         const LegTorques carrying = force_torques(leg, m.legs[i], point, force);
-        out.torques[j] = carrying.thigh, out.torques[j + 1] = carrying.calf;
+        const LegLoads& moving = inertial.legs[pair];
+        out.torques[j] = carrying.thigh + moving.thigh, out.torques[j + 1] = carrying.calf + moving.calf;
         for (int k = 0; k < 2; ++k) {
             out.joints[j + k] = target.value.joints[2 * pair + k], out.rates[j + k] = target.rate.joints[2 * pair + k];
             out.stiffness[j + k] = g.joint_stiffness, out.damping[j + k] = g.joint_damping;
@@ -163,7 +167,7 @@ Command Controller::command(const RobotState& state, const Reference& target, do
         const double speed = target.rate.wheels[pair] + g.wheel_sync * (target.value.wheels[pair] - places_[i]);
         const double rate = speed / leg.wheel.radius + (i % 2 == 0 ? -difference : difference);
         // A wheel turns against its calf.
-        out.torques[j + 2] = leg.wheel.radius * s.traction(force), out.damping[j + 2] = g.wheel_damping;
+        out.torques[j + 2] = leg.wheel.radius * s.traction(force) + moving.wheel, out.damping[j + 2] = g.wheel_damping;
         out.rates[j + 2] = rate - state.joint_rates[j] - state.joint_rates[j + 1] - m.pitch_rate;
     }
     return out;

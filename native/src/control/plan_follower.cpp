@@ -76,13 +76,14 @@ void PlanFollower::set_target(Spot at) {
     // Speeding up or slowing down as the plan wants it, not as the lead does: that is noise.
     const double rate = rate_, slow = speeds_[at.row], fast = speeds_[at.row + 1];
     const double gain = rate > 0.0 ? rate * rate / mix(slow, fast, at.share) * (fast - slow) / step_ : 0.0;
-    const auto surge = [&](double curvature, double slope) { return curvature * rate * rate + slope * gain; };
-    target_.pitch_acceleration = surge(target_.pitch_acceleration, target_.rate.pitch);
-    target_.com_acceleration = {surge(target_.com_acceleration.x, target_.rate.com.x),
-                                surge(target_.com_acceleration.z, target_.rate.com.z)};
-    auto rates = std::bit_cast<std::array<double, 11>>(target_.rate);
-    for (double& r : rates) r *= rate;
+    auto rates = std::bit_cast<std::array<double, kPlannedWidth>>(target_.rate);
+    auto accelerations = std::bit_cast<std::array<double, kPlannedWidth>>(target_.acceleration);
+    for (std::size_t j = 0; j < kPlannedWidth; ++j) {
+        accelerations[j] = accelerations[j] * rate * rate + rates[j] * gain;
+        rates[j] *= rate;
+    }
     target_.rate = std::bit_cast<Planned>(rates);
+    target_.acceleration = std::bit_cast<Planned>(accelerations);
 }
 
 }  // namespace stairwright::control

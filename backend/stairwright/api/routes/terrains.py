@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from stairwright.api.bodies import SentTerrain, TerrainDocument
 from stairwright.api.deps import JSON_BODY, Limit, Offset, Service
 from stairwright.api.problems import describe, from_validation
-from stairwright.api.services import UPLOAD_DEADLINE
+from stairwright.api.services import UPLOAD_DEADLINE, Services
 from stairwright.arguments import MOST_FRICTION
 from stairwright.errors import InputError
 from stairwright.jobs import uploads
@@ -103,9 +103,10 @@ async def _read(
     data = await file.read()
     try:
         async with services.uploading:
-            return await services.upload_pool.run(
+            document: dict[str, Any] = await services.upload_pool.run(
                 reader, data, f"upload{suffix}", options, deadline=UPLOAD_DEADLINE
             )
+            return document
     except (DeadlineExceeded, WorkerDied, MemoryError):
         raise InputError("takes too much time or memory to read", ("file",)) from None
 

@@ -26,25 +26,25 @@ struct RobotState {
 };
 inline constexpr std::size_t kPositions = 19, kVelocities = 18;  // numbers in the halves of a RobotState
 
-// Planned quantities, and likewise their rates.
+// Planned quantities, and likewise their rates and accelerations.
 struct Planned {
     std::array<double, 2> wheels{};  // place of each pair on the wheel-centre curve [m]
     std::array<double, 4> joints{};  // front thigh, front calf, rear thigh, rear calf [rad]
     double pitch = 0.0;
     Vec2 com, trunk;
 };
+inline constexpr std::size_t kPlannedWidth = 11;
+static_assert(sizeof(Planned) == kPlannedWidth * sizeof(double));
 
 // One instant of the plan: what the robot is asked to do now. All numbers, in the order of a row of the plan's table.
 struct Reference {
-    Planned value, rate;
+    Planned value, rate, acceleration;
     std::array<Vec2, 2> forces{};  // static force of the ground on each pair, world [N]
-    double pitch_acceleration = 0.0;
-    Vec2 com_acceleration;
     double friction_share = 0.0;   // of the friction, that the static forces need
     double progress = 0.0;         // the plan's [m]
     std::array<double, 2> lean{2.0, 2.0};  // what each pair leans on in a corner, see Lean
 };
-inline constexpr std::size_t kReferenceWidth = 33;
+inline constexpr std::size_t kReferenceWidth = 41;
 static_assert(sizeof(Reference) == kReferenceWidth * sizeof(double));
 static_assert(sizeof(RobotState) == (kPositions + kVelocities) * sizeof(double));
 
