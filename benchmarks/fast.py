@@ -1,7 +1,7 @@
 """Fast timing against steady timing: the same paths, how much sooner, and do they still succeed?
 
     python benchmarks/fast.py [--first 0] [--count 30] [--robots a1_wheeled,a1_wheeled_x,go2w]
-                              [--aggressiveness 0.5] [--bundle laboratory] [--sensing ideal]
+                              [--aggressiveness 0.75] [--bundle laboratory] [--sensing ideal]
                               [--friction 0.6] [--quick]
 
 Five stairs of 0.18 m by 0.28 m up and down, and random profiles (`profiles.py`). Speeds are those
@@ -75,7 +75,7 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--count", type=int, default=30)
     parser.add_argument("--robots", default=ROBOTS)
-    parser.add_argument("--aggressiveness", type=float, default=0.5)
+    parser.add_argument("--aggressiveness", type=float, default=0.75)
     parser.add_argument("--friction", type=float, default=0.6)
     parser.add_argument("--bundle")
     parser.add_argument("--sensing", choices=("robot", "ideal"))

@@ -10,11 +10,12 @@ import numpy as np
 from stairwright.errors import InputError
 from stairwright.planning.infeasibility.diagnosis import no_standing_pose
 from stairwright.planning.path_planner import Blocked, PathPlanner, Solved, path_planner
-from stairwright.planning.plan import Plan, Problem
+from stairwright.planning.plan import Plan, PlanTiming, Problem
 from stairwright.planning.smoothing.path_document import make_plan
 from stairwright.planning.standing import NoStandingPose
 from stairwright.planning.strategy import THIN, solve
 from stairwright.planning.threads import search_threads
+from stairwright.planning.timing.fast import hastened
 from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -26,6 +27,7 @@ def plan_path(
     friction: float,
     weights: PathWeights,
     *,
+    timing: PlanTiming = "steady",
     diagnose: bool = True,
 ) -> Plan:
     """Plan a dense path of poses from the first flat stretch to the last.
@@ -40,6 +42,7 @@ def plan_path(
             with some CoM margin, else the one with the most, else the one that comes farthest.
         friction: Coulomb friction between wheels and terrain.
         weights: What to trade off.
+        timing: ``fast`` looks for a path that can be driven fast, and times it so.
         diagnose: Find out what would open the way where there is none.
 
     Returns:
@@ -47,8 +50,9 @@ def plan_path(
     """
     begun = clock.perf_counter()
     robot = robots[0]
+    searched = weights.for_speed() if timing == "fast" else weights
     try:
-        planners = [path_planner(terrain, one, friction, weights) for one in robots]
+        planners = [path_planner(terrain, one, friction, searched) for one in robots]
     except NoStandingPose as error:
         problem = no_standing_pose(terrain, robot, error)
         return make_plan(terrain, robot, friction, weights, begun, problem=problem)
@@ -60,7 +64,8 @@ def plan_path(
     robot = planner.robot
     if isinstance(found, Solved):
         plan = make_plan(terrain, robot, friction, weights, begun, *planner.document(found.nodes))
-        return plan.model_copy(update={"certificate": found.certificate})
+        plan = plan.model_copy(update={"certificate": found.certificate})
+        return hastened(plan, weights.aggressiveness) if timing == "fast" else plan
     # They plan again, so they import us.
     from stairwright.planning.infeasibility.obstruction import explain, undiagnosed
 

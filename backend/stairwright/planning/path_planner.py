@@ -175,7 +175,8 @@ class PathPlanner(PathProblem):
     @cached_property
     def unweighted(self) -> PathPlanner | None:
         """The same problem with default weights, if these are others."""
-        usual = PathWeights(speed=self.weights.speed)
+        kept = self.weights.model_dump(include={"speed", "aggressiveness"})
+        usual = PathWeights(**kept)
         return None if usual == self.weights else replace(self, weights=usual, searches={})
 
     def partial(self) -> tuple[Path, Place | None]:

@@ -93,11 +93,7 @@ def plan(
     if method == "path":
         from stairwright.planning.path import plan_path
 
-        found = plan_path(ground, configured, mu, chosen, diagnose=diagnose)
-        if timing == "fast" and found.feasible:
-            from stairwright.planning.timing.fast import hastened
-
-            found = hastened(found, chosen.aggressiveness)
+        found = plan_path(ground, configured, mu, chosen, timing=timing, diagnose=diagnose)
     elif method == "critical":
         from stairwright.planning.poses.critical_poses import plan_critical
 

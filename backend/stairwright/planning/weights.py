@@ -104,14 +104,29 @@ class PathWeights(Model):
     )
     speed: float = _SPEED
     aggressiveness: float = Field(
-        0.5,
+        0.75,
         ge=0.0,
         le=1.0,
         title="Aggressiveness",
-        description="How hard a plan with fast timing is driven: accelerations, joint speeds and "
-        "the share of the CoM margin that inertia may take",
+        description="How hard a plan with fast timing is driven: accelerations, joint speeds, "
+        "the share of the CoM margin that inertia may take, and clearance given up for a "
+        "straighter path",
         json_schema_extra={"unit": "1", "scale": "linear", "timing": "fast"},
     )
+
+    def for_speed(self) -> PathWeights:
+        """With clearance traded for a path that bends less, the more the harder it is driven.
+
+        Speed falls with the square root of a path's bends. CoM margin is not traded: inertia lives
+        on it. docs/performance.md has what each part brings.
+        """
+        a = self.aggressiveness
+        return self.model_copy(
+            update={
+                "smoothness": min(self.smoothness * 400.0**a, 100.0),
+                "clearance": max(self.clearance * 0.05**a, 0.01),
+            }
+        )
 
 
 class NominalWeights(Model):

@@ -102,15 +102,7 @@ def track(
         text = f"the poses are {last - first:.3g} m apart in all; at most {LONGEST_WAY:g} m can be"
         raise InputError(f"{text} carried out", ("plan", "poses"))
     grid = even_grid(way)
-    columns = np.column_stack(
-        [
-            reference.wheel_progress,
-            reference.q,
-            reference.trunk[:, 2],
-            reference.com,
-            reference.trunk[:, :2],
-        ]
-    )
+    columns = reference.planned
     rows = np.zeros((len(grid), WIDTH))
     rows[:, :RATES] = np.stack([np.interp(grid, way, column) for column in columns.T], axis=1)
     rates = slopes(grid, way, columns, RATE_REACH)

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kHurry = 1.5;            // how much faster than planned it may follow a robot that is ahead
 constexpr double kHangingLead = 0.005;    // m
-constexpr double kRateAcceleration = 1.0; // m/s^2 of the plan's rate
+constexpr double kRateAcceleration = 1.0; // m/s^2 of the plan's rate beyond what the plan itself asks for
 
 using Row = std::array<double, kReferenceWidth>;
 
@@ -32,6 +32,12 @@ PlanFollower::Spot PlanFollower::spot(double way) const {
     const double at = std::min(std::max((way - start_) / step_, 0.0), static_cast<double>(last));
     const std::size_t k = whole_part(at, last - 1);
     return {k, at - static_cast<double>(k)};
+}
+
+// Of the rate, by the plan's own times [m/s^2].
+double PlanFollower::planned_acceleration(Spot at) const {
+    const double slow = speeds_[at.row], fast = speeds_[at.row + 1];
+    return mix(slow, fast, at.share) * (fast - slow) / step_;
 }
 
 double PlanFollower::wheel_lag(Spot at, const std::array<double, 4>& places) const {
@@ -57,8 +63,8 @@ const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool
         else
             rate = allowed * std::min(kHurry, 1.0 - lag_ / maximum_lead_ * (kHurry - 1.0));
     }
-    const double reach = kRateAcceleration * dt;
-    rate = std::min(std::max(rate, rate_ - 4 * reach), rate_ + reach);
+    const double reach = kRateAcceleration * dt, gained = std::max(planned_acceleration(now), 0.0) * dt;
+    rate = std::min(std::max(rate, rate_ - 4 * reach), rate_ + reach + gained);
     const double end = start_ + step_ * static_cast<double>(rows_.size() - 1);
     const double way = std::min(std::max(way_ + rate * dt, start_), end);
     rate_ = (way - way_) / dt;
@@ -74,8 +80,8 @@ void PlanFollower::set_target(Spot at) {
     target_ = std::bit_cast<Reference>(mixed);
     target_.lean = rows_[at.share < 0.5 ? at.row : at.row + 1].lean;
     // Speeding up or slowing down as the plan wants it, not as the lead does: that is noise.
-    const double rate = rate_, slow = speeds_[at.row], fast = speeds_[at.row + 1];
-    const double gain = rate > 0.0 ? rate * rate / mix(slow, fast, at.share) * (fast - slow) / step_ : 0.0;
+    const double rate = rate_, share = rate > 0.0 ? rate / mix(speeds_[at.row], speeds_[at.row + 1], at.share) : 0.0;
+    const double gain = share * share * planned_acceleration(at);
     auto rates = std::bit_cast<std::array<double, kPlannedWidth>>(target_.rate);
     auto accelerations = std::bit_cast<std::array<double, kPlannedWidth>>(target_.acceleration);
     for (std::size_t j = 0; j < kPlannedWidth; ++j) {

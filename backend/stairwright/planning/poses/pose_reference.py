@@ -40,6 +40,12 @@ class Reference:
     forces: Floats
 
     @property
+    def planned(self) -> Floats:
+        """(n, 11) in the order of a set point's row: wheels, joints, pitch, CoM, trunk point."""
+        pitch, trunk = self.trunk[:, 2:], self.trunk[:, :2]
+        return np.hstack([self.wheel_progress, self.q, pitch, self.com, trunk])
+
+    @property
     def duration(self) -> float:
         """Planned time of the whole trajectory [s]."""
         return float(self.time[-1])

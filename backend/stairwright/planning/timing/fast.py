@@ -31,7 +31,7 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
     robot = plan.robot_description
     path = wheel_path(plan.terrain, robot.wheel.radius)
     line = reference(plan, joint_rate=None)
-    motion = moving_robot(line, robot)
+    motion = moving_robot(line)
     poses = np.array([pose.progress for pose in plan.poses])
     effort = np.interp(motion.progress, poses, standing_effort(plan))
     limits = limits_of(motion, robot, path, plan.friction, effort, Pace.of(aggressiveness))

@@ -35,6 +35,7 @@ class PlanFollower {
     };
     Spot spot(double way) const;
     double wheel_lag(Spot at, const std::array<double, 4>& places) const;
+    double planned_acceleration(Spot at) const;
     void set_target(Spot at);
 
     double start_, step_, maximum_lead_;
