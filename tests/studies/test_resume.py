@@ -194,29 +194,43 @@ def test_a_killed_client_loses_at_most_a_batch(truth: ResultStore, tmp_path: Pat
     document.write_text(json.dumps(LONG))
     command = [sys.executable, "-m", "stairwright", "study", str(document), "-o", str(path)]
     command += ["--workers", "2"]
-    rounds = 0
-    known = 0
+    rounds = known = 0
     while rounds < 20:
         rounds += 1
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-        try:
-            process.wait(random.uniform(3.0, 8.0))
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-        else:
+        if not _dies_at(process, path, known + random.randint(8, 40)):
             assert process.returncode == 0
             break
-        if path.exists():
-            states = ResultStore(path).states
-            assert int((states != 0).sum()) >= known  # nothing finished is lost
-            known = int((states != 0).sum())
+        done = _done(path)
+        assert done >= known  # nothing finished is lost
+        known = done
     assert rounds > 1
     store = ResultStore(path)
     assert np.all(store.states == 1)
     assert identical(grid_dataset(truth), grid_dataset(store))
     time.sleep(3)
     assert not _stray()
+
+
+def _done(path: Path) -> int:
+    """How many cells the store at `path` has an answer for; 0 before there is a store."""
+    if not path.exists():
+        return 0
+    try:
+        return int((ResultStore(path).states != 0).sum())
+    except InputError:  # it is being made
+        return 0
+
+
+def _dies_at(process: subprocess.Popen[bytes], path: Path, cells: int) -> bool:
+    """Kill `process` once `cells` are done; whether it lived so long as not to be done before."""
+    while process.poll() is None:
+        if _done(path) >= cells:
+            process.kill()
+            process.wait()
+            return True
+        time.sleep(0.05)
+    return False
 
 
 def _stray() -> list[list[str]]:

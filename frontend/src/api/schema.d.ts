@@ -1031,6 +1031,9 @@ export interface components {
         /**
          * Certificate
          * @description Outcome of the independent exact check of the poses and of the motion between them.
+         *
+         *     The motion between sparse poses takes many times as long to judge as the poses: `motion` is
+         *     found when it is first read, written or compared. The document always has it.
          */
         Certificate: {
             /** Passed */

@@ -34,7 +34,8 @@ export const OUTCOMES: Record<Outcome, string> = {
 
 export function Results() {
   return (
-    <section class="res" aria-label="Results">
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: it scrolls, and the keyboard must reach that
+    <section class="res" aria-label="Results" tabIndex={0}>
       <Content />
     </section>
   );
