@@ -34,6 +34,7 @@ from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
 from stairwright.planning.poses.pose_reference import Reference
 from stairwright.planning.timing.limits import WHEEL_SPEED_SHARE
+from stairwright.planning.timing.moving_robot import REACH
 from stairwright.planning.timing.way import even_grid, slopes, way_of
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
@@ -105,21 +106,22 @@ def track(
     columns = reference.planned
     rows = np.zeros((len(grid), WIDTH))
     rows[:, :RATES] = np.stack([np.interp(grid, way, column) for column in columns.T], axis=1)
-    rates = slopes(grid, way, columns, RATE_REACH)
+    reach = REACH if fast else RATE_REACH  # a fast plan keeps its limits over that
+    rates = slopes(grid, way, columns, reach)
     rows[:, RATES:ACCELERATIONS] = rates
-    rows[:, ACCELERATIONS : ACCELERATIONS + RATES] = slopes(grid, grid, rates, RATE_REACH)
+    rows[:, ACCELERATIONS : ACCELERATIONS + RATES] = slopes(grid, grid, rates, reach)
     places, com = np.ascontiguousarray(rows[:, WHEELS]), np.ascontiguousarray(rows[:, COM])
     weight = robot.mass * GRAVITY
     resting = _core.static_forces(path.native, weight, friction, places, com)
     rows[:, FORCES], rows[:, SHARE], rows[:, LEANS] = resting[:, :4], resting[:, 4], resting[:, 5:]
     rows[:, PROGRESS] = np.interp(grid, way, reference.progress)
     time = np.interp(grid, way, reference.time)
-    speeds = _planned(time, grid)
     if fast:
+        speeds = 1.0 / slopes(grid, grid, time, reach)
         if settings.speed is not None:
             speeds = np.minimum(speeds, settings.speed)
     else:
-        speeds = _limited(speeds, grid, rows, robot, settings)
+        speeds = _limited(_planned(time, grid), grid, rows, robot, settings)
     return Track(first, grid[1] - grid[0], rows, speeds)
 
 
