@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from stairwright.errors import InputError
+from stairwright.planning.certificate.certify import with_dynamics
 from stairwright.planning.infeasibility.diagnosis import no_standing_pose
 from stairwright.planning.path_planner import Blocked, PathPlanner, Solved, path_planner
 from stairwright.planning.plan import Plan, PlanTiming, Problem
@@ -65,7 +66,10 @@ def plan_path(
     if isinstance(found, Solved):
         plan = make_plan(terrain, robot, friction, weights, begun, *planner.document(found.nodes))
         plan = plan.model_copy(update={"certificate": found.certificate})
-        return hastened(plan, weights.aggressiveness) if timing == "fast" else plan
+        if timing == "steady":
+            return plan
+        moving = hastened(plan, weights.aggressiveness)
+        return moving.model_copy(update={"certificate": with_dynamics(found.certificate, moving)})
     # They plan again, so they import us.
     from stairwright.planning.infeasibility.obstruction import explain, undiagnosed
 

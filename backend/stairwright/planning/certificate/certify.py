@@ -16,16 +16,15 @@ from numpy.typing import NDArray
 from stairwright.arguments import as_model
 from stairwright.errors import InputError
 from stairwright.planning.certificate.distances import Distances
-from stairwright.planning.certificate.equilibrium import balanced, touching
+from stairwright.planning.certificate.dynamics import dynamics_of
+from stairwright.planning.certificate.equilibrium import TOUCH, WHEEL_GAP, balanced, touching
 from stairwright.planning.certificate.motion import Motion, Samples, sampled
 from stairwright.planning.plan import Certificate, Check, Plan
 from stairwright.robot import kinematics as kin
 
 Floats = NDArray[np.float64]
 
-WHEEL_GAP = 0.002  # m; a wheel this near to the ground touches it
 WHEEL_SINK = 0.001  # m
-TOUCH = 1.01e-4  # m; a second face no farther from a wheel is touched truly, not just nearly
 LEGS_GAP = 0.005  # m between front and rear leg
 _JOINT_STEP = 0.35  # rad between two poses
 
@@ -50,7 +49,22 @@ def certify(plan: Plan | Mapping[str, Any], scope: Scope | None = None) -> Certi
     if not plan.poses:
         missing = Check(name="poses", value=0.0, bound=1.0, unit="1", passed=False)
         return Certificate(passed=False, scope=chosen, checks=[missing])
-    return judge(Motion.of(plan), chosen)
+    found = judge(Motion.of(plan), chosen)
+    return with_dynamics(found, plan) if plan.timing.rule == "fast" else found
+
+
+def with_dynamics(certificate: Certificate, plan: Plan) -> Certificate:
+    """`certificate` with the checks of a plan that moves fast."""
+    least = float(np.diff([pose.time for pose in plan.poses]).min(initial=np.inf))
+    checks = [Check(name="least step of time", value=least, bound=0.0, unit="s", passed=least > 0.0)]
+    if checks[0].passed:
+        checks += dynamics_of(plan).checks()
+    return certificate.model_copy(
+        update={
+            "checks": [*certificate.checks, *checks],
+            "passed": certificate.passed and all(check.passed for check in checks),
+        }
+    )
 
 
 def judge(motion: Motion, scope: Scope = "motion") -> Certificate:

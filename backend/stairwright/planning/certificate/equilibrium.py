@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+WHEEL_GAP = 0.002  # m; a wheel this near to the ground touches it
+TOUCH = 1.01e-4  # m; a second face no farther from a wheel is touched truly, not just nearly
 STRONGEST = 8.0  # robot weights; larger contact forces are not taken as equilibrium
 _FACES = 3  # most faces that one wheel touches
 _ALIKE = 0.9999  # cosine between normals of what counts as one face

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.planning.certificate.dynamics import WINDOW, Dynamics, dynamics_of
 from stairwright.planning.plan import Plan, Timing, plan_id
 from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.smoothing.path_timing import standing_effort
@@ -18,6 +19,8 @@ from .way import way_of
 Floats = NDArray[np.float64]
 
 SLOWEST = 0.01  # m/s along the way, where a plan starts and ends
+_ROUNDS = 8  # of slowing down where a plan would not be certified
+_SLOWER = 0.8  # each time
 _BINDS = 0.02  # of a cap or of a row's room
 
 
@@ -35,8 +38,15 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
     poses = np.array([pose.progress for pose in plan.poses])
     effort = np.interp(motion.progress, poses, standing_effort(plan))
     limits = limits_of(motion, robot, path, plan.friction, effort, Pace.of(aggressiveness))
-    squares = fastest(motion, limits)
     at = np.interp(poses, line.progress, way_of(line))
+    squares = fastest(motion, limits)
+    for _ in range(_ROUNDS):
+        passed = _times(motion, squares)
+        found = dynamics_of(plan, np.interp(at, motion.way, passed))
+        if not (found.out_of_balance | found.overloaded).any():
+            break
+        slow_down(limits, found, passed, squares)
+        squares = fastest(motion, limits)
     times = np.interp(at, motion.way, _times(motion, squares)).tolist()
     names = binding(motion, limits, squares)
     places = np.searchsorted(motion.way, at).clip(0, len(names) - 1)
@@ -46,6 +56,24 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
     timing = Timing(total=times[-1], rule="fast", limits=[names[k] for k in places])
     asked = (plan.terrain, robot, plan.friction, plan.method, plan.weights, timing.rule)
     return plan.model_copy(update={"id": plan_id(*asked), "poses": timed, "timing": timing})
+
+
+def slow_down(limits: Limits, found: Dynamics, passed: Floats, squares: Floats) -> None:
+    """Lower caps where the certificate's own dynamics find too much asked for.
+
+    Rows hold at samples of the way, with differences over a part of it; the certificate judges
+    poses, with differences over a time.
+    """
+    failures: dict[LimitName, Floats] = {
+        "balance": found.time[found.out_of_balance],
+        "torque": found.time[found.overloaded],
+    }
+    for name, times in failures.items():
+        near = np.zeros(len(passed), np.bool_)
+        for time in times:
+            near |= np.abs(passed - time) <= WINDOW
+        cap = limits.caps.get(name, np.full(len(passed), np.inf))
+        limits.caps[name] = np.where(near, np.minimum(cap, _SLOWER**2 * squares), cap)
 
 
 def fastest(motion: MovingRobot, limits: Limits) -> Floats:
