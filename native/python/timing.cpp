@@ -32,7 +32,7 @@ nb::ndarray<nb::numpy, double> table(const std::vector<std::vector<timing::Limit
     return give(std::move(out), {limits.size(), most, 3});
 }
 
-nb::tuple dynamic_limits_along(const Robot& robot, const WheelPath& path, double friction, const PlannedRows& values,
+std::pair<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, double>> dynamic_limits_along(const Robot& robot, const WheelPath& path, double friction, const PlannedRows& values,
                                const PlannedRows& first, const PlannedRows& second, const timing::Reserve& reserve) {
     const std::size_t n = values.shape(0);
     if (first.shape(0) != n || second.shape(0) != n) throw nb::value_error("values and derivatives need as many rows");
@@ -45,7 +45,7 @@ nb::tuple dynamic_limits_along(const Robot& robot, const WheelPath& path, double
             balance[k] = std::move(limits.balance), torque[k] = std::move(limits.torque);
         }
     }
-    return nb::make_tuple(table(balance), table(torque));
+    return {table(balance), table(torque)};
 }
 
 }  // namespace

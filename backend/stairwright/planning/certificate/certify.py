@@ -56,7 +56,9 @@ def certify(plan: Plan | Mapping[str, Any], scope: Scope | None = None) -> Certi
 def with_dynamics(certificate: Certificate, plan: Plan) -> Certificate:
     """`certificate` with the checks of a plan that moves fast."""
     least = float(np.diff([pose.time for pose in plan.poses]).min(initial=np.inf))
-    checks = [Check(name="least step of time", value=least, bound=0.0, unit="s", passed=least > 0.0)]
+    checks = [
+        Check(name="least step of time", value=least, bound=0.0, unit="s", passed=least > 0.0)
+    ]
     if checks[0].passed:
         checks += dynamics_of(plan).checks()
     return certificate.model_copy(

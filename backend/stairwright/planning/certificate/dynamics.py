@@ -159,9 +159,7 @@ class _Motion:
         com = kin.com(robot, x, z, pitch, frames)
 
         def body(mass: float, inertia: float, place: Floats, angle: Floats) -> _Body:
-            return _Body(
-                mass, inertia, place, times.acceleration(place), times.acceleration(angle)
-            )
+            return _Body(mass, inertia, place, times.acceleration(place), times.acceleration(angle))
 
         trunk = np.stack([x, z], axis=1) + kin.rotate(pitch, np.array(robot.body.com)[[0, 2]])
         loads = body(robot.body.mass, robot.body.inertia[1], trunk, pitch).load(com)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Self
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,6 +27,43 @@ _SLOWER = 0.8  # each time
 _BINDS = 0.02  # of a cap or of a row's room
 
 
+@dataclass(frozen=True)
+class TimingProblem:
+    """How fast may this be driven?
+
+    Attributes:
+        motion: Along the path.
+        limits: Of speed and acceleration.
+        poses: (p,) way of the plan's poses [m].
+    """
+
+    motion: MovingRobot
+    limits: Limits
+    poses: Floats
+
+    @classmethod
+    def of(cls, plan: Plan, aggressiveness: float) -> Self:
+        """Of a feasible plan of method ``path``; for `aggressiveness` see `limits.Pace`."""
+        robot = plan.robot_description
+        path = wheel_path(plan.terrain, robot.wheel.radius)
+        line = reference(plan, joint_rate=None)
+        motion = moving_robot(line)
+        progress = [pose.progress for pose in plan.poses]
+        effort = np.interp(motion.progress, progress, standing_effort(plan))
+        limits = limits_of(motion, robot, path, plan.friction, effort, Pace.of(aggressiveness))
+        return cls(motion, limits, np.interp(progress, line.progress, way_of(line)))
+
+    def times(self, squares: Floats) -> Floats:
+        """When each sample is reached (n,) [s]: constant acceleration between two."""
+        speeds = np.maximum(np.sqrt(squares), SLOWEST)
+        steps = 2.0 * self.motion.step / (speeds[:-1] + speeds[1:])
+        return np.concatenate([[0.0], np.cumsum(steps)])
+
+    def pose_times(self, squares: Floats) -> Floats:
+        """When each pose is reached (p,) [s]."""
+        return np.interp(self.poses, self.motion.way, self.times(squares))
+
+
 def hastened(plan: Plan, aggressiveness: float) -> Plan:
     """A certified path at the times in which it is driven fastest.
 
@@ -31,39 +71,33 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
         plan: A feasible plan of method ``path``; its poses stay.
         aggressiveness: 0..1, see `limits.Pace`.
     """
-    robot = plan.robot_description
-    path = wheel_path(plan.terrain, robot.wheel.radius)
-    line = reference(plan, joint_rate=None)
-    motion = moving_robot(line)
-    poses = np.array([pose.progress for pose in plan.poses])
-    effort = np.interp(motion.progress, poses, standing_effort(plan))
-    limits = limits_of(motion, robot, path, plan.friction, effort, Pace.of(aggressiveness))
-    at = np.interp(poses, line.progress, way_of(line))
-    squares = fastest(motion, limits)
+    problem = TimingProblem.of(plan, aggressiveness)
+    squares = fastest(problem)
     for _ in range(_ROUNDS):
-        passed = _times(motion, squares)
-        found = dynamics_of(plan, np.interp(at, motion.way, passed))
+        found = dynamics_of(plan, problem.pose_times(squares))
         if not (found.out_of_balance | found.overloaded).any():
             break
-        slow_down(limits, found, passed, squares)
-        squares = fastest(motion, limits)
-    times = np.interp(at, motion.way, _times(motion, squares)).tolist()
-    names = binding(motion, limits, squares)
-    places = np.searchsorted(motion.way, at).clip(0, len(names) - 1)
+        slow_down(problem, found, squares)
+        squares = fastest(problem)
+    times = problem.pose_times(squares).tolist()
+    names = binding(problem, squares)
+    places = np.searchsorted(problem.motion.way, problem.poses).clip(0, len(names) - 1)
     timed = [
         pose.model_copy(update={"time": time}) for pose, time in zip(plan.poses, times, strict=True)
     ]
     timing = Timing(total=times[-1], rule="fast", limits=[names[k] for k in places])
+    robot = plan.robot_description
     asked = (plan.terrain, robot, plan.friction, plan.method, plan.weights, timing.rule)
     return plan.model_copy(update={"id": plan_id(*asked), "poses": timed, "timing": timing})
 
 
-def slow_down(limits: Limits, found: Dynamics, passed: Floats, squares: Floats) -> None:
+def slow_down(problem: TimingProblem, found: Dynamics, squares: Floats) -> None:
     """Lower caps where the certificate's own dynamics find too much asked for.
 
     Rows hold at samples of the way, with differences over a part of it; the certificate judges
     poses, with differences over a time.
     """
+    passed, caps = problem.times(squares), problem.limits.caps
     failures: dict[LimitName, Floats] = {
         "balance": found.time[found.out_of_balance],
         "torque": found.time[found.overloaded],
@@ -72,26 +106,20 @@ def slow_down(limits: Limits, found: Dynamics, passed: Floats, squares: Floats) 
         near = np.zeros(len(passed), np.bool_)
         for time in times:
             near |= np.abs(passed - time) <= WINDOW
-        cap = limits.caps.get(name, np.full(len(passed), np.inf))
-        limits.caps[name] = np.where(near, np.minimum(cap, _SLOWER**2 * squares), cap)
+        cap = caps.get(name, np.full(len(passed), np.inf))
+        caps[name] = np.where(near, np.minimum(cap, _SLOWER**2 * squares), cap)
 
 
-def fastest(motion: MovingRobot, limits: Limits) -> Floats:
+def fastest(problem: TimingProblem) -> Floats:
     """Squared speeds (n,) along the way [m^2/s^2], from rest to rest."""
-    caps = np.minimum.reduce(list(limits.caps.values()))
-    return _core.fastest_squares(limits.rows, caps, motion.step)
+    caps = np.minimum.reduce(list(problem.limits.caps.values()))
+    return _core.fastest_squares(problem.limits.rows, caps, problem.motion.step)
 
 
-def _times(motion: MovingRobot, squares: Floats) -> Floats:
-    """When each sample is reached (n,) [s]: constant acceleration between two."""
-    speeds = np.maximum(np.sqrt(squares), SLOWEST)
-    steps = 2.0 * motion.step / (speeds[:-1] + speeds[1:])
-    return np.concatenate([[0.0], np.cumsum(steps)])
-
-
-def binding(motion: MovingRobot, limits: Limits, squares: Floats) -> list[LimitName]:
+def binding(problem: TimingProblem, squares: Floats) -> list[LimitName]:
     """What keeps the robot from being faster at each sample."""
-    u = np.append(np.diff(squares), 0.0) / (2.0 * motion.step)
+    limits = problem.limits
+    u = np.append(np.diff(squares), 0.0) / (2.0 * problem.motion.step)
     a, b, c = np.moveaxis(limits.rows, -1, 0)
     room = (a * squares[:, None] + b * u[:, None] + c) / np.maximum(c, 1e-6)
     row = room.argmin(axis=1)
