@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kHurry = 1.5;            // how much faster than planned it may follow a robot that is ahead
 constexpr double kHangingLead = 0.005;    // m
-constexpr double kRateAcceleration = 1.0; // m/s^2 of the plan's rate beyond what the plan itself asks for
+constexpr double kRateAcceleration = 1.0; // m/s^2 of the plan's rate, where the plan itself asks for no more
 
 using Row = std::array<double, kReferenceWidth>;
 
@@ -63,8 +63,8 @@ const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool
         else
             rate = allowed * std::min(kHurry, 1.0 - lag_ / maximum_lead_ * (kHurry - 1.0));
     }
-    const double reach = kRateAcceleration * dt, gained = std::max(planned_acceleration(now), 0.0) * dt;
-    rate = std::min(std::max(rate, rate_ - 4 * reach), rate_ + reach + gained);
+    const double reach = std::max(kRateAcceleration, planned_acceleration(now)) * dt;
+    rate = std::min(std::max(rate, rate_ - 4 * reach), rate_ + reach);
     const double end = start_ + step_ * static_cast<double>(rows_.size() - 1);
     const double way = std::min(std::max(way_ + rate * dt, start_), end);
     rate_ = (way - way_) / dt;
