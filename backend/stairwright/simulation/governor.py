@@ -32,7 +32,10 @@ from stairwright.control.setpoint import (
 )
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
+from stairwright.planning.plan import Plan
+from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.poses.pose_reference import Reference
+from stairwright.planning.smoothing.path_timing import retimed
 from stairwright.planning.timing.limits import WHEEL_SPEED_SHARE
 from stairwright.planning.timing.way import even_grid, slopes, way_of
 from stairwright.robot.description import Robot
@@ -45,6 +48,7 @@ RATE_REACH = 0.005  # m; rates are differences over this far, both ways
 LIMIT_REACH = 0.03  # m; a speed limit holds this far before and after its place
 ACCELERATION = 0.4  # m/s^2, along the plan
 MIN_SPEED = 0.01  # m/s
+FAST_LEAD = 4.0  # of the usual lead, for plans that are driven fast
 
 
 @dataclass(frozen=True)
@@ -75,7 +79,7 @@ class Track:
 
 
 def track(
-    reference: Reference,
+    course: Reference,
     robot: Robot,
     path: WheelPath,
     friction: float,
@@ -83,10 +87,10 @@ def track(
     *,
     fast: bool = False,
 ) -> Track:
-    """Resample `reference` and find the static forces and the allowed speed along it.
+    """Resample `course` and find the static forces and the allowed speed along it.
 
     Args:
-        reference: The plan's trajectory.
+        course: The plan's trajectory.
         robot: Who carries it out.
         path: Its wheel-centre curve.
         friction: The plan's Coulomb friction.
@@ -96,7 +100,7 @@ def track(
     Raises:
         InputError: If the poses are too far apart for any rollout to end.
     """
-    way = way_of(reference)
+    way = way_of(course)
     first, last = float(way[0]), float(way[-1])
     if not last - first <= LONGEST_WAY:
         text = f"the poses are {last - first:.3g} m apart in all; at most {LONGEST_WAY:g} m can be"
@@ -104,11 +108,11 @@ def track(
     grid = even_grid(way)
     columns = np.column_stack(
         [
-            reference.wheel_progress,
-            reference.q,
-            reference.trunk[:, 2],
-            reference.com,
-            reference.trunk[:, :2],
+            course.wheel_progress,
+            course.q,
+            course.trunk[:, 2],
+            course.com,
+            course.trunk[:, :2],
         ]
     )
     rows = np.zeros((len(grid), WIDTH))
@@ -120,8 +124,8 @@ def track(
     weight = robot.mass * GRAVITY
     resting = _core.static_forces(path.native, weight, friction, places, com)
     rows[:, FORCES], rows[:, SHARE], rows[:, LEANS] = resting[:, :4], resting[:, 4], resting[:, 5:]
-    rows[:, PROGRESS] = np.interp(grid, way, reference.progress)
-    time = np.interp(grid, way, reference.time)
+    rows[:, PROGRESS] = np.interp(grid, way, course.progress)
+    time = np.interp(grid, way, course.time)
     speeds = _planned(time, grid)
     if fast:
         if settings.speed is not None:
@@ -129,6 +133,23 @@ def track(
     else:
         speeds = _limited(speeds, grid, rows, robot, settings)
     return Track(first, grid[1] - grid[0], rows, speeds)
+
+
+def plan_track(plan: Plan, path: WheelPath, settings: ControllerSettings) -> Track:
+    """The track of a plan over the wheel-centre curve `path`, at the speed that is wanted."""
+    fast = plan.timing.rule == "fast"
+    steady = plan.method == "path" and settings.form == "contact" and not fast
+    if steady and settings.speed is not None:
+        # Another speed keeps what slows a plan down where margins are thin.
+        plan = retimed(plan, settings.speed)
+        settings = settings.model_copy(update={"speed": None})
+    course = reference(plan, joint_rate=None)
+    return track(course, plan.robot_description, path, plan.friction, settings, fast=fast)
+
+
+def lead_of(plan: Plan, settings: ControllerSettings) -> float:
+    """How far the plan may be ahead of the wheels [m]: they lag the more the faster it is."""
+    return settings.lead * (FAST_LEAD if plan.timing.rule == "fast" else 1.0)
 
 
 def _planned(time: Floats, grid: Floats) -> Floats:

@@ -204,6 +204,7 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
 
     w.at_corner = on.corner ? w.at_corner + dt : 0.0;
     estimate_.touching[i] = touching;
+    estimate_.used_grip[i] = std::abs(w.traction) / std::max(dot(w.felt, on.point.normal), 0.02 * weight_);
     if (!estimate_.touching[i]) return;
     Error error{};
     if (!on.corner || w.at_corner > kSure) measure_place(i, on, along_x, along_z, centre, dt, error);

@@ -18,9 +18,10 @@ constexpr int kAllContacts = 16;  // the sensor that counts every contact; befor
 }  // namespace
 
 Rollout::Rollout(const mjModel* model, mjData* data, control::Controller controller, control::PlanFollower follower,
-                 Perception perception, const Motors& motors, std::size_t log_every, int substeps)
+                 Perception perception, const Motors& motors, std::size_t log_every, int substeps, double grip_need)
     : model_(model), data_(data), controller_(std::move(controller)), follower_(std::move(follower)),
-      perception_(std::move(perception)), scale_(motors.scale), leg_fit_(controller_.robot()), log_(log_every), substeps_(substeps), dt_(substeps * model->opt.timestep) {
+      perception_(std::move(perception)), scale_(motors.scale),
+      grip_test_(controller_.robot(), grip_need), leg_fit_(controller_.robot()), log_(log_every), substeps_(substeps), dt_(substeps * model->opt.timestep) {
     if (model->nq != control::kPositions || model->nv != control::kVelocities || model->nu != 12 ||
         model->nsensordata <= kAllContacts)
         throw std::invalid_argument("the model is not one of a robot with four wheeled legs");
@@ -45,16 +46,22 @@ bool Rollout::diverged() const {
 Perceived Rollout::perceive(std::span<const double> noise) {
     if (auto* ideal = std::get_if<SensorModel>(&perception_)) {
         const RobotState& state = ideal->perceive(truth(), noise);
-        return {state, {}, {}, {}, state.joints, state.joint_rates};
+        return {state, {}, {}, {}, {}, state.joints, state.joint_rates};
     }
     return std::get<RobotSense>(perception_).perceive(truth(), torques_, dt_);
 }
 
 const control::Reference& Rollout::target(const Perceived& seen, bool moving, double time) {
     if (safe_stop_.why() != control::Stop::none) return stand_;
+    moving = moving && grip_test_.over() && !waits_;
     const bool searching = moving && seen.ahead.any();
     const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt_, seen.ahead.hanging);
     if (!seen.places) return drawn;
+    if (!grip_test_.over()) {
+        adapted_ = grip_test_.step(drawn, seen.state, seen.used_grip, seen.ahead.on_tread[0] && seen.ahead.on_tread[1], dt_);
+        waits_ = grip_test_.over() && grip_test_.slipped();
+        return adapted_;
+    }
     adapted_ = face_search_.step(leg_fit_.fit(drawn, seen.ground, dt_), searching ? seen.ahead : control::Ahead{}, *seen.places, dt_);
     const control::Reference& next = adapted_;
     const auto [w, x, y, z] = seen.state.quaternion;
@@ -67,6 +74,13 @@ const control::Reference& Rollout::target(const Perceived& seen, bool moving, do
     stand_ = controller_.standing(seen.state, *seen.places);
     stand_.progress = next.progress;
     return stand_;
+}
+
+void Rollout::adopt(control::PlanFollower follower, double friction) {
+    follower_ = std::move(follower);
+    controller_.believe(friction);
+    safe_stop_ = {};
+    waits_ = false;
 }
 
 void Rollout::control(const Perceived& seen, bool moving, double time) {

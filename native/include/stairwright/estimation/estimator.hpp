@@ -60,6 +60,7 @@ struct Estimate {
     // How much farther ahead and higher each pair's ground lies than drawn, against their mean [m].
     std::array<Vec2, 2> ground{};
     std::array<bool, 2> on_tread{};   // of each pair: it can roll on for a while
+    std::array<double, 4> used_grip{};  // tangential force over normal force of each wheel, as the legs feel them
     bool hanging = false;             // a wheel is in the air where the map has it pass a corner
     std::array<bool, 2> searching{};  // the map has a face where the pair is, and it feels none
 };

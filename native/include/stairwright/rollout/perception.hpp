@@ -17,6 +17,7 @@ struct Perceived {
     std::optional<std::array<double, 4>> places;  // of the wheels on the map, where they are known by themselves
     std::array<Vec2, 2> ground{};                 // how the pairs' ground differs, see estimation::Estimate
     control::Ahead ahead{};
+    std::array<double, 4> used_grip{};            // of the wheels, see estimation::Estimate
     std::array<double, 12> joints{}, joint_rates{};  // what the drives read now
 };
 
