@@ -7,6 +7,7 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/variant.h>
 
 #include "arrays.hpp"
@@ -131,6 +132,13 @@ void bind_rollout(nb::module_& m) {
            "Control steps; returns where it stopped to have contacts looked at, or `last`.")
         .def("go_on", &Rollout::go_on, "The plan goes on after a test of the grip in which wheels slipped.")
         .def("adopt", &Rollout::adopt, nb::arg("follower"), nb::arg("friction"), "Another plan from now on, made for `friction`.")
+        .def("correct_map", &Rollout::correct_map, nb::arg("path"), "A map on which `map_error` is mended; another plan has to follow.")
+        .def_prop_ro("map_error", [](const Rollout& r) -> std::optional<std::tuple<bool, double, double, double>> {
+            if (!r.map_error()) return {};
+            return std::tuple(r.map_error()->face, r.map_error()->s, r.map_error()->off.x, r.map_error()->off.z);
+        }, "What the front wheels found elsewhere than on the map, while the robot waits: whether it is a face, its place on the\n"
+           "wheel-centre curve, and by how much the map is off along and up [m].")
+        .def_prop_ro("places", [](const Rollout& r) { return r.places(); }, "Of the wheels on the wheel-centre curve [m].")
         .def_prop_ro("slipped", [](const Rollout& r) -> std::optional<std::pair<double, bool>> {
             if (!r.slipped()) return {};
             return std::pair(r.slipped()->found, r.slipped()->front);

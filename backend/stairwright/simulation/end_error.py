@@ -20,7 +20,13 @@ DRIFT = 0.01  # of the way: what wheels that roll without slip may be off by
 
 
 def end_error(
-    plan: Plan, real: Terrain, deviation: Disturbance, wheels: Floats, *, own_sensors: bool
+    plan: Plan,
+    drawn: Terrain,
+    real: Terrain,
+    deviation: Disturbance,
+    wheels: Floats,
+    *,
+    own_sensors: bool,
 ) -> float:
     """Largest distance of a wheel from where the plan ends on the real terrain [m].
 
@@ -31,6 +37,7 @@ def end_error(
 
     Args:
         plan: What was carried out.
+        drawn: The terrain as it was believed at the start.
         real: The terrain that was there.
         deviation: How it and the start differ from what the plan believes.
         wheels: (4, 3) centres of the wheels in the world [m].
@@ -43,7 +50,7 @@ def end_error(
     end = np.array(plan.poses[-1].wheels)[[0, 0, 1, 1]]
     start = np.array(plan.poses[0].wheels)[[0, 0, 1, 1]]
     way = np.abs(end[:, 0] - start[:, 0])
-    lost = abs(deviation.x_offset) + _faces_moved(plan.terrain, real)
+    lost = abs(deviation.x_offset) + _faces_moved(drawn, real)
     lost = lost + (abs(deviation.odometry_scale) + 1.0 - math.cos(deviation.heading)) * way
     if own_sensors:
         lost = lost + DRIFT * _since_last_face(plan, end[:, 0])

@@ -185,9 +185,13 @@ def _limited(
     return bounded
 
 
-def follower(line: Track, lead: float) -> _core.PlanFollower:
-    """What advances along `line`, at most `lead` [m] ahead of the wheels."""
-    return _core.PlanFollower(line.start, line.step, line.rows, line.speeds, maximum_lead=lead)
+def follower(line: Track, lead: float, row: int = 0) -> _core.PlanFollower:
+    """What advances along `line` from `row` on, at most `lead` [m] ahead of the wheels."""
+    row = min(row, len(line.rows) - 2)
+    start = line.start + row * line.step
+    return _core.PlanFollower(
+        start, line.step, line.rows[row:], line.speeds[row:], maximum_lead=lead
+    )
 
 
 def cruise(line: Track, way: float) -> Floats:

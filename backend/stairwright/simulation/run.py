@@ -29,11 +29,12 @@ from .crossing import speed_over_faces
 from .disturbance import Disturbance
 from .end_error import end_error
 from .governor import Track, cruise, follower, lead_of, plan_track
+from .map_correction import corrected, nearest_row
 from .measured import SETTLE, measured
 from .outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
 from .perception import perception
 from .record import Recorder
-from .replanning import TESTED, after_slip, needed_friction
+from .replanning import TESTED, after_slip, needed_friction, plan_anew
 from .result import Rollout
 from .sensors import Sensors
 from .world import build_world, real_terrain
@@ -80,6 +81,7 @@ class Run:
         self.friction, self.disturbance = friction, disturbance
         self.robot = robot = plan.robot_description
         self.path = wheel_path(plan.terrain, robot.wheel.radius)
+        self.known = plan.terrain  # as the robot has found it
         self.terrain = terrain = real_terrain(plan.terrain, disturbance, seed)
         self.model, self.data = self._world(terrain)
         self.dt = CONTROL_STEPS * self.model.opt.timestep
@@ -187,7 +189,12 @@ class Run:
         reached = (float(self.target[PROGRESS] - first), float(last - first))
         own = self.settings.sensing == "robot"
         error = end_error(
-            self.followed, self.terrain, self.disturbance, self._wheels(), own_sensors=own
+            self.followed,
+            self.plan.terrain,
+            self.terrain,
+            self.disturbance,
+            self._wheels(),
+            own_sensors=own,
         )
         return Ending(cause[0], self.time, reached, error, cause[1])
 
@@ -218,7 +225,12 @@ class Run:
     def _decide(self, watch: ProgressWatch) -> str:
         """Go on with another plan where the robot waits for one; why it must stop, or nothing."""
         native = self.native
-        if native is None or not native.waits or native.slipped is None:
+        if native is None or not native.waits:
+            return ""
+        if native.map_error is not None:
+            self._mend_map(native, native.map_error, watch)
+            return ""
+        if native.slipped is None:
             return ""
         found, front = native.slipped
         need = needed_friction(self.track, self.plan)
@@ -229,12 +241,39 @@ class Run:
             native.go_on()
         return decision.why
 
-    def _follow(self, plan: Plan, watch: ProgressWatch) -> None:
-        """Follow another plan from now on."""
+    def _mend_map(
+        self,
+        native: _core.Rollout,
+        found: tuple[bool, float, float, float],
+        watch: ProgressWatch,
+    ) -> None:
+        """Go on with a plan on the map as it was found, or with the old one if there is none."""
+        face, s, *by = found
+        off = np.array(by) * ([1.0, 0.0] if face else [0.0, 1.0])
+        front, rear = np.reshape(native.places, (2, 2)).mean(axis=1)
+        centres = self.path.centres(np.array([front, rear])) - [off, [0.0, 0.0]]
+        known = corrected(self.known, self.path, s, face=face, off=off)
+        plan = plan_anew(self.followed, known, self.followed.friction)
+        if plan is None or self.followed.timing.rule == "fast":
+            native.go_on()
+            return
+        path = wheel_path(known, self.robot.wheel.radius)
+        places = np.array([path.project(centre) for centre in centres])
+        line = plan_track(plan, path, self.settings)
+        row = nearest_row(line, places, np.asarray(native.target))
+        if row is None:
+            native.go_on()
+            return
+        self.known, self.path = known, path
+        native.correct_map(path.native)
+        self._follow(plan, watch, row)
+
+    def _follow(self, plan: Plan, watch: ProgressWatch, row: int = 0) -> None:
+        """Follow another plan from now on, from one of its rows."""
         assert self.native is not None
         self.followed = plan
         self.track = plan_track(plan, self.path, self.settings)
-        line = follower(self.track, lead_of(plan, self.settings))
+        line = follower(self.track, lead_of(plan, self.settings), row)
         self.native.adopt(line, plan.friction)
         self.limit = self.time + 2.5 * self.track.duration + 5.0
         watch.best, watch.since = -math.inf, self.time

@@ -3,6 +3,7 @@
 
 #include "stairwright/control/grip_test.hpp"
 #include "stairwright/control/leg_fit.hpp"
+#include "stairwright/control/plan_change.hpp"
 #include "stairwright/control/plan_follower.hpp"
 #include "stairwright/control/safe_stop.hpp"
 #include "stairwright/rollout/log.hpp"
@@ -46,8 +47,11 @@ class Rollout {
 
     // The plan goes on, or another one from now on with the friction that it was made for [1]. The robot stands and
     // waits for this after a test of the grip in which wheels slipped.
-    void go_on() { waits_ = false; }
+    void go_on();
     void adopt(control::PlanFollower follower, double friction);
+    // The map's error that the robot waits for somebody to decide on, and a map without it. Another plan has to follow.
+    const std::optional<estimation::MapError>& map_error() const { return map_error_; }
+    void correct_map(const WheelPath& path);
 
     // Control steps of a chunk; returns where it stopped: before the physics of a step with a contact to look at (one
     // that is not a wheel's, or any while a link is loaded), or at the end; at once when the state has diverged.
@@ -63,6 +67,7 @@ class Rollout {
 
     // What the test of the grip before the start found, if wheels slipped.
     const std::optional<control::Grip>& slipped() const { return grip_test_.slipped(); }
+    const std::array<double, 4>& places() const { return controller_.places(); }
     bool waits() const { return waits_; }
 
     const control::PlanFollower& follower() const { return follower_; }
@@ -92,6 +97,9 @@ class Rollout {
     control::Torques torques_{};
     std::vector<Judged> judged_;
     control::GripTest grip_test_;
+    control::PlanChange plan_change_;
+    std::optional<estimation::MapError> map_error_;
+    double ignored_ = -1e9;         // where an error of the map was let pass [m]
     bool waits_ = false;            // for somebody to decide
     control::SafeStop safe_stop_;
     control::LegFit leg_fit_;
