@@ -1,7 +1,8 @@
 """What does a robot that has only its own sensors do where the world differs from its map?
 
     python benchmarks/deviations.py [--count 60] [--first 5000] [--rows NAME ...] [--robots NAME]
-        [--terrains NAME ...] [--sensing robot] [--workers N] [--quick] [--show] [--json FILE]
+        [--terrains NAME ...] [--sensing robot] [--salt 0] [--workers N] [--quick] [--show]
+        [--json FILE]
 
 Every preset terrain and `--count` profiles of `profiles.py` are planned for each robot; every plan
 is rolled out once for each row of the table, with deviations whose signs and draws differ from plan
@@ -90,9 +91,9 @@ def terrain_of(name: str) -> sw.Terrain:
 
 
 def run_case(
-    case: tuple[str, str], rows: tuple[str, ...], sensing: str, friction: float
+    case: tuple[str, str], rows: tuple[str, ...], sensing: str, friction: float, salt: int
 ) -> list[Result]:
-    """Plan one terrain for one robot and roll it out in all `rows`."""
+    """Plan one terrain for one robot and roll it out in all `rows`; `salt` draws anew."""
     terrain, robot = case
     try:
         plan = sw.plan(terrain_of(terrain), robot, friction)
@@ -100,11 +101,12 @@ def run_case(
         return [Result(terrain, robot, "", "refused", str(error))]
     if not plan.feasible:
         return [Result(terrain, robot, "", plan.status)]
-    seed = zlib.crc32(f"{terrain}/{robot}".encode()) % 100_000
+    drawn = f"{terrain}/{robot}" + (f"/{salt}" if salt else "")
+    seed = zlib.crc32(drawn.encode()) % 100_000
     mass = plan.robot_description.mass
     out = []
     for name in rows:
-        sign = 1.0 if zlib.crc32(f"{terrain}/{robot}/{name}".encode()) % 2 else -1.0
+        sign = 1.0 if zlib.crc32(f"{drawn}/{name}".encode()) % 2 else -1.0
         deviation = Disturbance(**ROWS[name](sign, seed, mass))
         settings = parse_settings({"sensing": sensing})
         run = Run(plan, plan.friction, settings, deviation, seed, 20.0)
@@ -118,10 +120,10 @@ def run_case(
 
 
 def results(
-    cases: list[tuple[str, str]], workers: int, rows: tuple[str, ...], sensing: str
+    cases: list[tuple[str, str]], workers: int, rows: tuple[str, ...], sensing: str, salt: int
 ) -> Iterator[Result]:
     """All results, in order."""
-    work = partial(run_case, rows=rows, sensing=sensing, friction=FRICTION)
+    work = partial(run_case, rows=rows, sensing=sensing, friction=FRICTION, salt=salt)
     if workers == 1:
         for case in cases:
             yield from work(case)
@@ -168,7 +170,8 @@ def run(quick: bool = False, **options: Any) -> list[Row]:
     cases = [(t, r) for t in [*presets, *map(str, range(first, first + count))] for r in robots]
     workers = options.get("workers") or len(os.sched_getaffinity(0))
     found = []
-    for result in results(cases, workers, rows, options.get("sensing", "robot")):
+    sensing, salt = options.get("sensing", "robot"), options.get("salt", 0)
+    for result in results(cases, workers, rows, sensing, salt):
         found.append(result)
         if options.get("show") and result.row and result.outcome != "success":
             print(
@@ -187,6 +190,7 @@ def main() -> None:
     parser.add_argument("--robots", nargs="*")
     parser.add_argument("--sensing", choices=("ideal", "robot"))
     parser.add_argument("--terrains", nargs="*", help="presets; all by default")
+    parser.add_argument("--salt", type=int, help="for other draws: tune on some, report others")
     parser.add_argument("--workers", type=int, help="processes; all cores by default")
     parser.add_argument("--quick", action="store_true", help="6 profiles")
     parser.add_argument("--show", action="store_true", help="print what did not succeed")

@@ -5,6 +5,9 @@
 #include <cstdint>
 
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/variant.h>
 
 #include "arrays.hpp"
@@ -115,17 +118,32 @@ void bind_rollout(nb::module_& m) {
     nb::class_<Rollout>(m, "Rollout", "The closed loop in MuJoCo; keep model and data alive as long as it.")
         .def("__init__", [](Rollout* self, std::uintptr_t model, std::uintptr_t data, const Controller& controller,
                             const PlanFollower& follower, const Perception& perception, double motor_bandwidth,
-                            double torque_scale, std::size_t log_every, int substeps) {
+                            double torque_scale, std::size_t log_every, int substeps, double grip_need) {
             if (model == 0 || data == 0) throw std::invalid_argument("model and data must be addresses");
             new (self) Rollout(reinterpret_cast<const mjModel_*>(model), reinterpret_cast<mjData_*>(data), controller, follower,
-                               perception, {motor_bandwidth, torque_scale}, log_every, substeps);
+                               perception, {motor_bandwidth, torque_scale}, log_every, substeps, grip_need);
         }, nb::arg("model"), nb::arg("data"), nb::arg("controller"), nb::arg("follower"), nb::arg("perception"),
-           nb::arg("motor_bandwidth"), nb::arg("torque_scale"), nb::arg("log_every"), nb::arg("substeps"))
+           nb::arg("motor_bandwidth"), nb::arg("torque_scale"), nb::arg("log_every"), nb::arg("substeps"),
+           nb::arg("grip_need") = 0.0)
         .def("run", [](Rollout& self, int first, int last, bool looked, bool loaded, bool moving, double begun, const Noise& noise) {
             nb::gil_scoped_release release;
             return self.run({std::max(first, 0), last, looked, loaded, moving, begun}, {noise.data(), noise.size()});
         }, nb::arg("first"), nb::arg("last"), nb::arg("looked"), nb::arg("loaded"), nb::arg("moving"), nb::arg("begun"), nb::arg("noise"),
            "Control steps; returns where it stopped to have contacts looked at, or `last`.")
+        .def("go_on", &Rollout::go_on, "The plan goes on after a test of the grip in which wheels slipped.")
+        .def("adopt", &Rollout::adopt, nb::arg("follower"), nb::arg("friction"), "Another plan from now on, made for `friction`.")
+        .def("correct_map", &Rollout::correct_map, nb::arg("path"), "A map on which `map_error` is mended; another plan has to follow.")
+        .def_prop_ro("map_error", [](const Rollout& r) -> std::optional<std::tuple<bool, double, double, double>> {
+            if (!r.map_error()) return {};
+            return std::tuple(r.map_error()->face, r.map_error()->s, r.map_error()->off.x, r.map_error()->off.z);
+        }, "What the front wheels found elsewhere than on the map, while the robot waits: whether it is a face, its place on the\n"
+           "wheel-centre curve, and by how much the map is off along and up [m].")
+        .def_prop_ro("places", [](const Rollout& r) { return r.places(); }, "Of the wheels on the wheel-centre curve [m].")
+        .def_prop_ro("slipped", [](const Rollout& r) -> std::optional<std::pair<double, bool>> {
+            if (!r.slipped()) return {};
+            return std::pair(r.slipped()->found, r.slipped()->front);
+        }, "Friction at which wheels slipped in the test before the start, and whether the front ones did.")
+        .def_prop_ro("waits", &Rollout::waits, "Whether the robot stands until it is told to go on.")
         .def("diverged", &Rollout::diverged)
         .def_prop_ro("stop", [](const Rollout& r) { return static_cast<int>(r.stop()); },
                      "Why the robot has given up: 0 it has not, 1 no progress, 2 tilted.")

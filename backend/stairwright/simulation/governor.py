@@ -32,7 +32,10 @@ from stairwright.control.setpoint import (
 )
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
+from stairwright.planning.plan import Plan
+from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.poses.pose_reference import Reference
+from stairwright.planning.smoothing.path_timing import retimed
 from stairwright.planning.timing.limits import WHEEL_SPEED_SHARE
 from stairwright.planning.timing.moving_robot import REACH
 from stairwright.planning.timing.way import even_grid, slopes, way_of
@@ -46,6 +49,7 @@ RATE_REACH = 0.005  # m; rates are differences over this far, both ways
 LIMIT_REACH = 0.03  # m; a speed limit holds this far before and after its place
 ACCELERATION = 0.4  # m/s^2, along the plan
 MIN_SPEED = 0.01  # m/s
+FAST_LEAD = 4.0  # of the usual lead, for plans that are driven fast
 
 
 @dataclass(frozen=True)
@@ -76,7 +80,7 @@ class Track:
 
 
 def track(
-    reference: Reference,
+    course: Reference,
     robot: Robot,
     path: WheelPath,
     friction: float,
@@ -84,10 +88,10 @@ def track(
     *,
     fast: bool = False,
 ) -> Track:
-    """Resample `reference` and find the static forces and the allowed speed along it.
+    """Resample `course` and find the static forces and the allowed speed along it.
 
     Args:
-        reference: The plan's trajectory.
+        course: The plan's trajectory.
         robot: Who carries it out.
         path: Its wheel-centre curve.
         friction: The plan's Coulomb friction.
@@ -97,13 +101,13 @@ def track(
     Raises:
         InputError: If the poses are too far apart for any rollout to end.
     """
-    way = way_of(reference)
+    way = way_of(course)
     first, last = float(way[0]), float(way[-1])
     if not last - first <= LONGEST_WAY:
         text = f"the poses are {last - first:.3g} m apart in all; at most {LONGEST_WAY:g} m can be"
         raise InputError(f"{text} carried out", ("plan", "poses"))
     grid = even_grid(way)
-    columns = reference.planned
+    columns = course.planned
     rows = np.zeros((len(grid), WIDTH))
     rows[:, :RATES] = np.stack([np.interp(grid, way, column) for column in columns.T], axis=1)
     reach = REACH if fast else RATE_REACH  # a fast plan keeps its limits over that
@@ -114,8 +118,8 @@ def track(
     weight = robot.mass * GRAVITY
     resting = _core.static_forces(path.native, weight, friction, places, com)
     rows[:, FORCES], rows[:, SHARE], rows[:, LEANS] = resting[:, :4], resting[:, 4], resting[:, 5:]
-    rows[:, PROGRESS] = np.interp(grid, way, reference.progress)
-    time = np.interp(grid, way, reference.time)
+    rows[:, PROGRESS] = np.interp(grid, way, course.progress)
+    time = np.interp(grid, way, course.time)
     if fast:
         speeds = 1.0 / slopes(grid, grid, time, reach)
         if settings.speed is not None:
@@ -123,6 +127,23 @@ def track(
     else:
         speeds = _limited(_planned(time, grid), grid, rows, robot, settings)
     return Track(first, grid[1] - grid[0], rows, speeds)
+
+
+def plan_track(plan: Plan, path: WheelPath, settings: ControllerSettings) -> Track:
+    """The track of a plan over the wheel-centre curve `path`, at the speed that is wanted."""
+    fast = plan.timing.rule == "fast"
+    steady = plan.method == "path" and settings.form == "contact" and not fast
+    if steady and settings.speed is not None:
+        # Another speed keeps what slows a plan down where margins are thin.
+        plan = retimed(plan, settings.speed)
+        settings = settings.model_copy(update={"speed": None})
+    course = reference(plan, joint_rate=None)
+    return track(course, plan.robot_description, path, plan.friction, settings, fast=fast)
+
+
+def lead_of(plan: Plan, settings: ControllerSettings) -> float:
+    """How far the plan may be ahead of the wheels [m]: they lag the more the faster it is."""
+    return settings.lead * (FAST_LEAD if plan.timing.rule == "fast" else 1.0)
 
 
 def _planned(time: Floats, grid: Floats) -> Floats:
@@ -158,9 +179,13 @@ def _limited(
     return bounded
 
 
-def follower(line: Track, lead: float) -> _core.PlanFollower:
-    """What advances along `line`, at most `lead` [m] ahead of the wheels."""
-    return _core.PlanFollower(line.start, line.step, line.rows, line.speeds, maximum_lead=lead)
+def follower(line: Track, lead: float, row: int = 0) -> _core.PlanFollower:
+    """What advances along `line` from `row` on, at most `lead` [m] ahead of the wheels."""
+    row = min(row, len(line.rows) - 2)
+    start = line.start + row * line.step
+    return _core.PlanFollower(
+        start, line.step, line.rows[row:], line.speeds[row:], maximum_lead=lead
+    )
 
 
 def cruise(line: Track, way: float) -> Floats:

@@ -13,14 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright._core import GRAVITY
 from stairwright.control.controller import Controller
 from stairwright.control.native import native_controller
 from stairwright.control.setpoint import PROGRESS, RATES, Setpoint
 from stairwright.control.settings import ControllerSettings
 from stairwright.documents import content_hash
 from stairwright.planning.plan import Plan
-from stairwright.planning.poses.interpolation import reference
-from stairwright.planning.smoothing.path_timing import retimed
 from stairwright.robot.description import LEGS
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
@@ -28,27 +27,28 @@ from stairwright.terrain.wheel_path import wheel_path
 from . import score
 from .crossing import speed_over_faces
 from .disturbance import Disturbance
-from .governor import Track, cruise, follower, track
+from .end_error import end_error
+from .governor import Track, cruise, follower, lead_of, plan_track
+from .map_correction import corrected, nearest_row
+from .measured import SETTLE, measured
 from .outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
+from .perception import perception
 from .record import Recorder
-from .result import Metrics, Rollout
+from .replanning import TESTED, after_slip, needed_friction, plan_anew
+from .result import Rollout
 from .sensors import Sensors
-from .world import build_world, course_frame, real_terrain
+from .world import build_world, real_terrain
 
 Floats = NDArray[np.float64]
 
 _PIECE = re.compile(r"(?<=trunk|thigh|_calf)_\d+$")  # of a part that is several shapes
 CONTROL_STEPS = 2  # physics steps per control step: 500 Hz
-SETTLE = 0.4  # s at rest before the plan starts and after it ends
-DRIFT = 0.01  # of the way: what wheels that roll without slip may be off by
-FAST_LEAD = 4.0  # of the usual lead, for plans that are driven fast
 STANDS = 1.0  # s that a robot which gave up must stand
 STOPS = {  # why it gives up, see control/safe_stop.hpp
     1: "the wheels did not follow the plan for 3 s",
     2: "the trunk leant too far from the plan",
 }
 CHUNK = 125  # control steps between reports of progress
-_HUGE = 1e6  # stands for what is not finite, or overflowed on the way there
 _DIVERGED = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
     mujoco.mjtWarning.mjWARN_BADQVEL,
@@ -77,17 +77,19 @@ class Run:
         record_hz: float,
     ) -> None:
         self.plan, self.settings, self.seed = plan, settings, seed
+        self.followed = plan  # another one where the plan was changed on the way
         self.friction, self.disturbance = friction, disturbance
         self.robot = robot = plan.robot_description
         self.path = wheel_path(plan.terrain, robot.wheel.radius)
+        self.known = plan.terrain  # as the robot has found it
         self.terrain = terrain = real_terrain(plan.terrain, disturbance, seed)
         self.model, self.data = self._world(terrain)
         self.dt = CONTROL_STEPS * self.model.opt.timestep
-        self.track: Track = self._track()
+        self.track: Track = plan_track(plan, self.path, settings)
         self.limit = 2.5 * self.track.duration + 5.0
         self.sensors = Sensors(disturbance, self.dt, seed, plan.poses[0].x_c)
         self.way = self.track.start
-        self.follower = follower(self.track, self._lead)
+        self.follower = follower(self.track, lead_of(plan, settings))
         self.places = np.full(4, np.nan)
         self.target = np.zeros(self.track.rows.shape[1])
         self.wanted = np.zeros(12)
@@ -117,65 +119,21 @@ class Run:
         names = [self.model.geom(i).name for i in range(self.model.ngeom)]
         return [_PIECE.sub("", name) for name in names]
 
-    @property
-    def _fast(self) -> bool:
-        """Whether the plan's times are those of a moving robot."""
-        return self.plan.timing.rule == "fast"
-
-    @property
-    def _lead(self) -> float:
-        """How far the plan may be ahead of the wheels [m]: they lag the more the faster it is."""
-        return self.settings.lead * (FAST_LEAD if self._fast else 1.0)
-
-    def _track(self) -> Track:
-        plan, settings = self.plan, self.settings
-        steady = plan.method == "path" and settings.form == "contact" and not self._fast
-        if steady and settings.speed is not None:
-            # Another speed keeps what slows a plan down where margins are thin.
-            plan = retimed(plan, settings.speed)
-            settings = settings.model_copy(update={"speed": None})
-        course = reference(plan, joint_rate=None)
-        return track(course, self.robot, self.path, plan.friction, settings, fast=self._fast)
-
     def _native(self, every: int) -> _core.Rollout:
         controller = native_controller(self.robot, self.path, self.plan.friction, self.settings)
         model, data = int(self.model._address), int(self.data._address)  # noqa: SLF001
-        line = follower(self.track, self._lead)
+        line = follower(self.track, lead_of(self.plan, self.settings))
         bandwidth = self.disturbance.bandwidth
-        perception = self._perception()
+        late = len(self.sensors.history) - 1
+        perceived = perception(
+            self.plan, self.path, self.settings, self.disturbance, late, self.seed
+        )
+        own = self.settings.sensing == "robot"
+        need = TESTED * needed_friction(self.track, self.plan) if own else 0.0
         scale = 1.0 + self.disturbance.torque_scale
         return _core.Rollout(
-            model, data, controller, line, perception, bandwidth, scale, every, CONTROL_STEPS
+            model, data, controller, line, perceived, bandwidth, scale, every, CONTROL_STEPS, need
         )
-
-    def _perception(self) -> _core.IdealSense | _core.RobotSense:
-        """What the controller gets to know."""
-        deviation, start = self.disturbance, self.plan.poses[0]
-        late = len(self.sensors.history) - 1
-        if self.settings.sensing == "ideal":
-            return _core.IdealSense(
-                late, start.x_c, deviation.x_offset, deviation.odometry_scale, deviation.pitch_bias
-            )
-        return _core.RobotSense(
-            self.robot.native,
-            self.path.native,
-            start=(start.x_c, start.z_c),
-            pitch=start.pitch,
-            errors=self._sensor_errors(),
-            delay_steps=late,
-            seed=self.seed,
-        )
-
-    def _sensor_errors(self) -> _core.SensorErrors:
-        deviation, imu = self.disturbance, self.disturbance.imu
-        errors = _core.SensorErrors(max(1.0, deviation.noise))  # real sensors have it anyway
-        errors.wheel_scale, errors.tilt = deviation.odometry_scale, deviation.pitch_bias
-        errors.gyro_offset, errors.force_offset = [imu.gyro_bias] * 3, [imu.accelerometer_bias] * 3
-        if imu.gyro_noise is not None:
-            errors.gyro = imu.gyro_noise
-        if imu.accelerometer_noise is not None:
-            errors.specific_force = imu.accelerometer_noise
-        return errors
 
     def _place(self) -> None:
         """Put the robot into the plan's first pose."""
@@ -200,12 +158,11 @@ class Run:
         """Run the loop to its end."""
         watch, begin = ProgressWatch(), time.perf_counter()
         steps, settled = 0, 0
-        total = self.track.end - self.track.start
         while True:
             cause = self._chunk(steps * self.dt >= SETTLE)
             steps += CHUNK
             now = self.time = steps * self.dt
-            done = (self.way - self.track.start) / total
+            done = (self.way - self.track.start) / (self.track.end - self.track.start)
             if progress is not None:
                 progress(min(1.0, 0.999 * done))
             if observe is not None:
@@ -220,7 +177,7 @@ class Run:
             elif not self._stopping() and watch.stuck(now, self.way):
                 cause = ("stuck", "")
                 break
-            why = self._gave_up(now)
+            why = self._gave_up(now) or self._decide(watch)
             if why:
                 cause = ("stopped", why)
                 break
@@ -230,7 +187,16 @@ class Run:
         self.wall = time.perf_counter() - begin
         first, last = self.track.rows[[0, -1], PROGRESS]
         reached = (float(self.target[PROGRESS] - first), float(last - first))
-        return Ending(cause[0], self.time, reached, self._end_error(), cause[1])
+        own = self.settings.sensing == "robot"
+        error = end_error(
+            self.followed,
+            self.plan.terrain,
+            self.terrain,
+            self.disturbance,
+            self._wheels(),
+            own_sensors=own,
+        )
+        return Ending(cause[0], self.time, reached, error, cause[1])
 
     def _chunk(self, moving: bool) -> tuple[str, str] | None:
         """Some control steps; the cause and its words if the rollout is over."""
@@ -255,6 +221,62 @@ class Run:
         if self.native is None or self.native.stop == 0 or now - self.native.stopped_at < STANDS:
             return ""
         return STOPS[self.native.stop] if self._at_rest() else ""
+
+    def _decide(self, watch: ProgressWatch) -> str:
+        """Go on with another plan where the robot waits for one; why it must stop, or nothing."""
+        native = self.native
+        if native is None or not native.waits:
+            return ""
+        if native.map_error is not None:
+            self._mend_map(native, native.map_error, watch)
+            return ""
+        if native.slipped is None:
+            return ""
+        found, front = native.slipped
+        need = needed_friction(self.track, self.plan)
+        decision = after_slip(self.plan, need, found, front=front)
+        if decision.plan is not None:
+            self._follow(decision.plan, watch)
+        else:
+            native.go_on()
+        return decision.why
+
+    def _mend_map(
+        self,
+        native: _core.Rollout,
+        found: tuple[bool, float, float, float],
+        watch: ProgressWatch,
+    ) -> None:
+        """Go on with a plan on the map as it was found, or with the old one if there is none."""
+        face, s, *by = found
+        off = np.array(by) * ([1.0, 0.0] if face else [0.0, 1.0])
+        front, rear = np.reshape(native.places, (2, 2)).mean(axis=1)
+        centres = self.path.centres(np.array([front, rear])) - [off, [0.0, 0.0]]
+        known = corrected(self.known, self.path, s, face=face, off=off)
+        plan = plan_anew(self.followed, known, self.followed.friction)
+        if plan is None or self.followed.timing.rule == "fast":
+            native.go_on()
+            return
+        path = wheel_path(known, self.robot.wheel.radius)
+        places = np.array([path.project(centre) for centre in centres])
+        line = plan_track(plan, path, self.settings)
+        row = nearest_row(line, places, np.asarray(native.target))
+        if row is None:
+            native.go_on()
+            return
+        self.known, self.path = known, path
+        native.correct_map(path.native)
+        self._follow(plan, watch, row)
+
+    def _follow(self, plan: Plan, watch: ProgressWatch, row: int = 0) -> None:
+        """Follow another plan from now on, from one of its rows."""
+        assert self.native is not None
+        self.followed = plan
+        self.track = plan_track(plan, self.path, self.settings)
+        line = follower(self.track, lead_of(plan, self.settings), row)
+        self.native.adopt(line, plan.friction)
+        self.limit = self.time + 2.5 * self.track.duration + 5.0
+        watch.best, watch.since = -math.inf, self.time
 
     def _native_steps(self, native: _core.Rollout, moving: bool) -> None:
         noise, at, looked = self.sensors.draws(CHUNK), 0, False
@@ -323,82 +345,18 @@ class Run:
         """Centres (4, 3) of the wheels in the world [m]."""
         return np.array([self.data.body(f"{leg}_wheel").xpos for leg in LEGS])
 
-    def _end_error(self) -> float:
-        """Largest distance of a wheel from where the plan ends on the real terrain [m].
-
-        Judged along the path: what a deviation makes of the way itself (a start elsewhere, faces
-        moved, a wrong measure of length), and where the robot senses by itself the drift of its
-        wheels since the last face, is not held against it. It can know where it is on the stairs,
-        not in the world. Across the path what counts is the ground that is there.
-        """
-        deviation = self.disturbance
-        turn, origin = course_frame(deviation, self.plan.poses[0].x_c)
-        wheels = self._wheels()
-        x, _, z = (turn.T @ (wheels - origin).T) + origin[:, None]
-        if not np.isfinite([x, z]).all():
-            return math.inf
-        end = np.array(self.plan.poses[-1].wheels)[[0, 0, 1, 1]]
-        start = np.array(self.plan.poses[0].wheels)[[0, 0, 1, 1]]
-        way = np.abs(end[:, 0] - start[:, 0])
-        lost = abs(deviation.x_offset) + self._faces_moved()
-        lost = lost + (abs(deviation.odometry_scale) + 1.0 - math.cos(deviation.heading)) * way
-        if self.settings.sensing == "robot":
-            lost = lost + DRIFT * self._since_last_face(end[:, 0])
-        off = np.maximum(0.0, np.abs(x - end[:, 0]) - lost)
-        real = wheel_path(self.terrain, self.robot.wheel.radius)
-        places = np.column_stack([x, z])
-        nearest = real.centres(np.array([real.project(place) for place in places]))
-        off_ground = np.hypot(*(places - nearest).T)
-        return float(np.hypot(off, off_ground).max())
-
-    def _faces_moved(self) -> float:
-        """How far a face is from where it was drawn, at most [m]."""
-        real, drawn = (np.array(t.points)[:, 0] for t in (self.terrain, self.plan.terrain))
-        return float(np.abs(real - drawn).max())
-
-    def _since_last_face(self, x: Floats) -> Floats:
-        """Way from the last steep face before each `x` (n,), or from the start (n,) [m]."""
-        vertices, start = self.plan.terrain.vertices, self.plan.poses[0].x_c
-        dx, dz = np.diff(vertices, axis=0).T
-        faces = np.append(vertices[1:, 0][np.abs(dz) > dx], start)
-        return np.array([float((at - faces[faces <= at]).min(initial=at - start)) for at in x])
-
     def _at_rest(self) -> bool:
         return bool(np.abs(self.data.qvel[:3]).max() < 0.02)
 
     def result(self, ending: Ending, keep_plan: bool) -> Rollout:
         """The document of what happened."""
-        plan, robot = self.plan, self.robot
-        outcome, reason = judge(ending, self.loads, robot.mass * 9.81)
-        series = self.recorder.series()
-        # A diverged run still has a document.
-        s = np.nan_to_num(self.score, posinf=_HUGE, neginf=-_HUGE)
-        steps = max(1.0, s[score.STEPS])
-        reached, total = ending.progress
-        metrics = Metrics(
-            duration=ending.time,
-            pitch_error_max=s[score.PITCH_MAX],
-            pitch_error_rms=math.sqrt(s[score.PITCH_SQUARES] / steps),
-            joint_error_rms=math.sqrt(s[score.JOINT_SQUARES] / steps / 8),
-            torque_peak=s[score.LEG_TORQUE],
-            wheel_torque_peak=s[score.WHEEL_TORQUE],
-            energy=s[score.ENERGY],
-            link_contacts=self.loads.contacts,
-            link_force_peak=min(self.loads.peak, _HUGE),
-            self_contacts=self.loads.self_contacts,
-            end_error=min(ending.error, _HUGE),
-            progress=reached / total,
-            speed_mean=reached / max(ending.time - SETTLE, self.dt),
-            speed_stairs=speed_over_faces(series, self.terrain, robot),
-            cost_of_transport=s[score.ENERGY] / (robot.mass * 9.81 * reached)
-            if reached > 0.0
-            else None,
-            real_time_factor=ending.time / max(self.wall, 1e-9),
-        )
+        outcome, reason = judge(ending, self.loads, self.robot.mass * GRAVITY)
+        plan, series = self.plan, self.recorder.series()
         deviations = self.disturbance.model_dump(mode="json", exclude_defaults=True)
         key = [plan.id, plan.friction, self.friction, self.seed, self.settings.model_dump()]
         if self.simulated:
             key.append(self.simulated)
+        speed = speed_over_faces(series, self.terrain, self.robot)
         return Rollout(
             id="r-" + content_hash([*key, deviations]).removeprefix("sha256:"),
             plan_id=plan.id,
@@ -407,7 +365,7 @@ class Run:
             terrain_hash=plan.terrain_hash,
             robot=plan.robot,
             robot_hash=plan.robot_hash,
-            robot_description=robot,
+            robot_description=self.robot,
             model=self.simulated,
             friction=self.friction,
             seed=self.seed,
@@ -415,7 +373,9 @@ class Run:
             disturbance=deviations,
             outcome=outcome,
             reason=reason,
-            metrics=metrics,
+            metrics=measured(
+                ending, self.loads, self.score, self.robot.mass, self.wall, self.dt, speed
+            ),
             series=series,
             plan=plan if keep_plan else None,
         )

@@ -99,6 +99,7 @@ const Estimate& Estimator::step(const Readings& readings, double dt) {
     // One wheel that has found the face is enough: a robot that comes obliquely does not touch with both.
     for (int pair = 0; pair < 2; ++pair) estimate_.searching[pair] = wheels_[2 * pair].missed && wheels_[2 * pair + 1].missed;
     started_ = true;
+    find_map_error();
     report(readings);
     return estimate_;
 }
@@ -202,8 +203,10 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const double room = next < path_.corners().size() ? path_.corners()[next] - on.s : kRoom;
     estimate_.on_tread[i / 2] = !on.corner && on.point.normal.z > kTread && room >= kRoom;
 
+    compare_with_map(i, on, dt);
     w.at_corner = on.corner ? w.at_corner + dt : 0.0;
     estimate_.touching[i] = touching;
+    estimate_.used_grip[i] = std::abs(w.traction) / std::max(dot(w.felt, on.point.normal), 0.02 * weight_);
     if (!estimate_.touching[i]) return;
     Error error{};
     if (!on.corner || w.at_corner > kSure) measure_place(i, on, along_x, along_z, centre, dt, error);

@@ -30,6 +30,7 @@ Perceived RobotSense::perceive(const RobotState& truth, const control::Torques& 
     const estimation::Estimate& estimate = estimator_.step(late_[oldest()], dt);
     Perceived out = {ahead(estimate.state, static_cast<double>(late_.size() - 1) * dt), estimate.places, estimate.ground};
     out.ahead = {estimate.searching, estimate.on_tread, estimate.hanging};
+    out.used_grip = estimate.used_grip, out.map_error = estimate.map_error;
     out.joints = now.joints, out.joint_rates = now.joint_rates;
     return out;
 }

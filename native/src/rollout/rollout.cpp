@@ -13,14 +13,16 @@ namespace stairwright::rollout {
 namespace {
 
 constexpr double kBeyond = 1e6;  // m, m/s, rad or rad/s, summed up: no robot gets there
+constexpr double kSamePlace = 0.15;  // m; an error of the map that was let pass is not told again so near
 constexpr int kAllContacts = 16;  // the sensor that counts every contact; before it 4 numbers a wheel
 
 }  // namespace
 
 Rollout::Rollout(const mjModel* model, mjData* data, control::Controller controller, control::PlanFollower follower,
-                 Perception perception, const Motors& motors, std::size_t log_every, int substeps)
+                 Perception perception, const Motors& motors, std::size_t log_every, int substeps, double grip_need)
     : model_(model), data_(data), controller_(std::move(controller)), follower_(std::move(follower)),
-      perception_(std::move(perception)), scale_(motors.scale), leg_fit_(controller_.robot()), log_(log_every), substeps_(substeps), dt_(substeps * model->opt.timestep) {
+      perception_(std::move(perception)), scale_(motors.scale),
+      grip_test_(controller_.robot(), grip_need), leg_fit_(controller_.robot()), log_(log_every), substeps_(substeps), dt_(substeps * model->opt.timestep) {
     if (model->nq != control::kPositions || model->nv != control::kVelocities || model->nu != 12 ||
         model->nsensordata <= kAllContacts)
         throw std::invalid_argument("the model is not one of a robot with four wheeled legs");
@@ -45,17 +47,26 @@ bool Rollout::diverged() const {
 Perceived Rollout::perceive(std::span<const double> noise) {
     if (auto* ideal = std::get_if<SensorModel>(&perception_)) {
         const RobotState& state = ideal->perceive(truth(), noise);
-        return {state, {}, {}, {}, state.joints, state.joint_rates};
+        return {state, {}, {}, {}, {}, {}, state.joints, state.joint_rates};
     }
     return std::get<RobotSense>(perception_).perceive(truth(), torques_, dt_);
 }
 
 const control::Reference& Rollout::target(const Perceived& seen, bool moving, double time) {
     if (safe_stop_.why() != control::Stop::none) return stand_;
+    moving = moving && grip_test_.over() && !waits_;
+    if (moving && seen.map_error && !map_error_ && std::abs(seen.map_error->s - ignored_) > kSamePlace) map_error_ = seen.map_error, waits_ = true;
+    moving = moving && !waits_ && plan_change_.over();
     const bool searching = moving && seen.ahead.any();
     const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt_, seen.ahead.hanging);
     if (!seen.places) return drawn;
-    adapted_ = face_search_.step(leg_fit_.fit(drawn, seen.ground, dt_), searching ? seen.ahead : control::Ahead{}, *seen.places, dt_);
+    if (!grip_test_.over()) {
+        adapted_ = grip_test_.step(drawn, seen.state, seen.used_grip, seen.ahead.on_tread[0] && seen.ahead.on_tread[1], dt_);
+        waits_ = grip_test_.over() && grip_test_.slipped();
+        return adapted_;
+    }
+    adapted_ = plan_change_.step(drawn, dt_);
+    adapted_ = face_search_.step(leg_fit_.fit(adapted_, seen.ground, dt_), searching ? seen.ahead : control::Ahead{}, *seen.places, dt_);
     const control::Reference& next = adapted_;
     const auto [w, x, y, z] = seen.state.quaternion;
     const double pitch = std::atan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y));
@@ -67,6 +78,32 @@ const control::Reference& Rollout::target(const Perceived& seen, bool moving, do
     stand_ = controller_.standing(seen.state, *seen.places);
     stand_.progress = next.progress;
     return stand_;
+}
+
+void Rollout::adopt(control::PlanFollower follower, double friction) {
+    follower_ = std::move(follower);
+    controller_.believe(friction);
+    plan_change_.begin(adapted_, follower_.first());
+    safe_stop_ = {};
+    waits_ = false;
+}
+
+void Rollout::correct_map(const WheelPath& path) {
+    auto* sense = std::get_if<RobotSense>(&perception_);
+    if (sense == nullptr || !map_error_) throw std::invalid_argument("there is no error of the map to correct");
+    sense->estimator().correct_map(path, *map_error_);
+    // Of the robot's place on the map, each pair's offset counts half.
+    const Vec2 shift = map_error_->face ? Vec2{-0.5 * map_error_->off.x, 0.0} : Vec2{0.0, -0.5 * map_error_->off.z};
+    adapted_.value.com += shift, adapted_.value.trunk += shift;
+    controller_.believe(path);
+    leg_fit_.reset();
+    map_error_.reset();
+}
+
+void Rollout::go_on() {
+    if (map_error_) ignored_ = map_error_->s;
+    map_error_.reset();
+    waits_ = false;
 }
 
 void Rollout::control(const Perceived& seen, bool moving, double time) {

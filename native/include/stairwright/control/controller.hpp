@@ -94,6 +94,10 @@ class Controller {
     // To stand as the robot does at `state`, its wheels at `places`: still, with the forces that hold it there.
     Reference standing(const RobotState& state, const std::array<double, 4>& places) const;
 
+    // A friction or a wheel-centre curve other than the one it was made with.
+    void believe(double friction) { friction_ = friction; }
+    void believe(WheelPath path) { path_ = std::move(path); }
+
     const Robot& robot() const { return robot_; }
     const Forces& forces() const { return forces_; }
     // Arc length of each wheel on the wheel-centre curve, NaN before the first step [m].

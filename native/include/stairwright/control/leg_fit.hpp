@@ -15,6 +15,8 @@ class LegFit {
     // for follows a change of the ground within some tenths of a second.
     Reference fit(const Reference& planned, const std::array<Vec2, 2>& ground, double dt);
 
+    void reset() { off_ = {}; }
+
   private:
     Robot robot_;
     std::array<Vec2, 2> off_{};

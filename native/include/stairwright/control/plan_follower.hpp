@@ -22,6 +22,7 @@ class PlanFollower {
     // corner the plan is ahead by much less.
     const Reference& advance(const std::array<double, 4>& places, bool moving, double dt, bool hanging = false);
 
+    const Reference& first() const { return rows_.front(); }
     double way() const { return way_; }    // m
     bool arrived() const { return way_ >= start_ + step_ * static_cast<double>(rows_.size() - 1) - 1e-9; }
     double rate() const { return rate_; }  // m/s

@@ -17,6 +17,8 @@
 // mapping using the joint compatibility test", 2001.
 #pragma once
 
+#include <optional>
+
 #include "stairwright/control/controller.hpp"
 #include "stairwright/estimation/curve_match.hpp"
 #include "stairwright/estimation/error_state.hpp"
@@ -52,6 +54,13 @@ struct Start {
     double pitch = 0.0;
 };
 
+// A face or a tread that the front wheels have found elsewhere than on the map.
+struct MapError {
+    bool face = false;  // else a tread
+    double s = 0.0;     // where on the wheel-centre curve [m]
+    Vec2 off;           // the map less what was found [m]; of a face x counts, of a tread z
+};
+
 // What the filter says of itself.
 struct Estimate {
     control::RobotState state;       // for the controller: on the map as it was drawn
@@ -60,7 +69,9 @@ struct Estimate {
     // How much farther ahead and higher each pair's ground lies than drawn, against their mean [m].
     std::array<Vec2, 2> ground{};
     std::array<bool, 2> on_tread{};   // of each pair: it can roll on for a while
+    std::array<double, 4> used_grip{};  // tangential force over normal force of each wheel, as the legs feel them
     bool hanging = false;             // a wheel is in the air where the map has it pass a corner
+    std::optional<MapError> map_error;
     std::array<bool, 2> searching{};  // the map has a face where the pair is, and it feels none
 };
 
@@ -70,6 +81,9 @@ class Estimator {
 
     // One step of time `dt` on; returns the estimate after it.
     const Estimate& step(const Readings& readings, double dt);
+
+    // Another map from now on, on which the face or tread of `found` is where it was found.
+    void correct_map(WheelPath path, const MapError& found);
 
     const Estimate& estimate() const { return estimate_; }
     const Covariance& covariance() const { return covariance_; }
@@ -96,6 +110,8 @@ class Estimator {
         double rolled = 0.0;      // by the last step [m]
         double rate_now = 0.0;    // absolute, of its turning [rad/s]
         double cruise = 0.0;      // speed that it rolls at, smoothed [m/s]
+        bool on_face = false;     // a steep one, or in a corner before one
+        double known = 0.0;       // for how long it has been there, or on a tread [s]
         double at_corner = 0.0;   // for how long it has felt both faces of a corner [s]
     };
     using Vec3 = std::array<double, 3>;
@@ -106,6 +122,8 @@ class Estimator {
     void see_legs(const Readings& readings, double dt);
     void measure(int wheel, const Readings& readings, double dt);
     void put_back(int wheel, Vec2 along, double excess, Error& error);
+    void compare_with_map(int wheel, const CurveMatch& on, double dt);
+    void find_map_error();
     void enter_face(int wheel, const CurveMatch& on);
     void measure_place(int wheel, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error);
     void measure_rolling(int wheel, const CurveMatch& on, const Readings& readings, const Error& along_x, const Error& along_z, double dt, Error& error);

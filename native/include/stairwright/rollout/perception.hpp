@@ -17,6 +17,8 @@ struct Perceived {
     std::optional<std::array<double, 4>> places;  // of the wheels on the map, where they are known by themselves
     std::array<Vec2, 2> ground{};                 // how the pairs' ground differs, see estimation::Estimate
     control::Ahead ahead{};
+    std::array<double, 4> used_grip{};            // of the wheels, see estimation::Estimate
+    std::optional<estimation::MapError> map_error;
     std::array<double, 12> joints{}, joint_rates{};  // what the drives read now
 };
 
@@ -31,6 +33,7 @@ class RobotSense {
     Perceived perceive(const RobotState& truth, const control::Torques& torques, double dt);
 
     const estimation::Estimator& estimator() const { return estimator_; }
+    estimation::Estimator& estimator() { return estimator_; }
     // The estimator against the truth of the moment that its readings are of.
     estimation::Estimator::Judgement judge() const { return estimator_.judge(truths_[oldest()]); }
 

@@ -1,0 +1,70 @@
+"""Another plan on the way, where what the robot finds is not what its plan believes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from stairwright.control.setpoint import SHARE
+from stairwright.errors import InputError
+from stairwright.planning.plan import Plan
+from stairwright.planning.planner import plan as make_plan
+from stairwright.terrain.profile import Terrain
+
+from .governor import Track
+
+MOTION = 1.25  # of the friction at rest, that is needed in motion
+TESTED = 0.9  # of the friction that the plan needs: more than that is not asked for in the test
+ENOUGH = 0.75  # of it; with less there is no going on where no other plan is found
+LEAST = 0.2  # friction on which no robot is sent: what is known of it is too rough
+USABLE = 0.95  # of the friction that was found
+
+
+def needed_friction(line: Track, plan: Plan) -> float:
+    """The friction that the plan needs: that of its static forces, and some for the motion."""
+    return min(1.0, MOTION * float(line.rows[:, SHARE].max())) * plan.friction
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What to do: follow `plan`, or where there is none and `why` is empty, go on.
+
+    Attributes:
+        plan: Another plan.
+        why: Why to stop instead.
+    """
+
+    plan: Plan | None = None
+    why: str = ""
+
+
+def plan_anew(old: Plan, terrain: Terrain, friction: float) -> Plan | None:
+    """A plan of the same kind over `terrain` with `friction`; None where there is none."""
+    try:
+        new = make_plan(
+            terrain,
+            old.robot_description,
+            friction,
+            old.method,
+            old.weights or None,
+            timing=old.timing.rule if old.timing.rule == "fast" else "steady",
+            diagnose=False,
+        )
+    except InputError:
+        return None
+    return new if new.feasible else None
+
+
+def after_slip(plan: Plan, need: float, found: float, *, front: bool) -> Decision:
+    """What to do after a test of the grip in which wheels slipped at the friction `found`."""
+    if found >= TESTED * need:
+        return Decision()
+    new = plan_anew(plan, plan.terrain, USABLE * found) if found >= LEAST else None
+    if new is not None:
+        return Decision(new)
+    if found >= ENOUGH * need:
+        return Decision()
+    pair = "front" if front else "rear"
+    return Decision(
+        why=f"the {pair} wheels slipped at a friction of {found:.2f} before the start, the plan "
+        f"needs {need:.2f} and there is none for less"
+    )

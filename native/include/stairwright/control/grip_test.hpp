@@ -1,0 +1,44 @@
+// Whether the ground grips as the plan believes, found out before it is needed: on the level ground where the robot
+// starts, rear wheels push forward and front wheels hold against them, ever harder, until the plan's need is reached
+// or wheels slip. Friction is known only where it is used up (R. Rajamani et al., "Algorithms for real-time estimation
+// of individual wheel tire-road friction coefficients", IEEE/ASME Trans. Mechatronics 17(6), 2012).
+#pragma once
+
+#include "stairwright/control/controller.hpp"
+
+namespace stairwright::control {
+
+struct Grip {
+    double found = 0.0;       // friction at which wheels slipped [1]
+    bool front = false;       // which pair did
+};
+
+class GripTest {
+  public:
+    // `need` is the friction to be tested for, 0 for no test.
+    GripTest(Robot robot, double need) : robot_(std::move(robot)), need_(need), over_(!(need > 0.0)) {}
+
+    // One control step of a robot that stands: `planned` with the wheels pushing against each other. `used` is the
+    // tangential force over the normal force that each wheel feels. Ends at once where the robot does not stand on
+    // level ground on all wheels.
+    Reference step(const Reference& planned, const RobotState& state, const std::array<double, 4>& used, bool level, double dt);
+
+    bool over() const { return over_; }
+    // What was found, if wheels slipped.
+    const std::optional<Grip>& slipped() const { return slipped_; }
+
+  private:
+    // How far each wheel has rolled less how far it has moved against the trunk [m].
+    std::array<double, 4> rolled(const RobotState& state) const;
+
+    Robot robot_;
+    double need_;
+    bool over_, releasing_ = false, begun_ = false;
+    double time_ = 0.0, push_ = 0.0;  // s; friction asked for now
+    std::array<std::array<double, 4>, 60> before_{};  // a ring of what the wheels have rolled [m]
+    std::array<double, 4> used_{};  // smoothed
+    std::size_t steps_ = 0;
+    std::optional<Grip> slipped_;
+};
+
+}  // namespace stairwright::control
