@@ -2,7 +2,7 @@
 
 import type { Trial, Trials } from "../api/types";
 import { degrees, fixed, setting } from "../geometry/format";
-import { OUTCOMES } from "../results/results";
+import { OUTCOMES } from "../results/figures";
 import { canRun } from "../state/rollouts";
 import { disturbanceSchema } from "../state/setup";
 import { deviations, replay, trialsStale, worstTrials } from "../state/trials";
