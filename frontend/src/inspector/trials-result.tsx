@@ -55,7 +55,7 @@ function Worst({ trial }: { trial: Trial }) {
   return (
     <li title={words.join(", ")}>
       <span class={trial.outcome === "success" ? "" : "bad"}>{OUTCOMES[trial.outcome]}</span>
-      <span>{fixed(degrees(trial.pitch_error_max), 1)}° pitch error</span>
+      <span title="Largest pitch error">{fixed(degrees(trial.pitch_error_max), 1)}°</span>
       <small>seed {trial.seed}</small>
       <button
         type="button"

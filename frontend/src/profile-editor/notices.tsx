@@ -3,9 +3,10 @@
 import { connected, retryIn, retryNow } from "../state/connection";
 import { drawing, isEmpty, selection } from "../state/drawing";
 import { ghost } from "../state/effect";
-import { plan, planB, planKept, preview, refusal, slow } from "../state/planning";
+import { plan, planB, planKept, preview, refusal } from "../state/planning";
 import { activity, run } from "../state/rollouts";
 import { dismissHint, hintSeen, layers } from "../state/view";
+import { slow } from "../state/waiting";
 import { Icon } from "../ui/icon";
 import type { Rect } from "./place";
 import { canvasBox, size } from "./viewport";

@@ -20,7 +20,7 @@ export const LAYERS = {
 export type Layer = keyof typeof LAYERS;
 
 /** Layers that only the scene has, in the service's words. */
-export const SCENE_ONLY = ["forces", "support", "com"] as const;
+export const SCENE_ONLY = ["forces", "support", "com", "compare"] as const;
 export type SceneLayer = (typeof SCENE_ONLY)[number];
 export const sceneLayers = signal<ReadonlySet<SceneLayer>>(new Set(SCENE_ONLY));
 export const legendOpen = kept("legend", false, readFlag);
