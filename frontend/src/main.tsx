@@ -10,11 +10,12 @@ import { startAnnouncing } from "./state/announce";
 import { report, watchConnection } from "./state/connection";
 import { drawing, open, startHistory } from "./state/drawing";
 import { startEffect } from "./state/effect";
-import { plan, startPlanning } from "./state/planning";
+import { startPlanning } from "./state/planner";
+import { plan } from "./state/planning";
 import { duration, seek, startClock } from "./state/playback";
 import { restoreRollout } from "./state/rollouts";
 import { robotName, robots, settings, terrains } from "./state/setup";
-import { restoreFromAddress, startSharing } from "./state/share";
+import { type Restored, restoreFromAddress, startSharing } from "./state/share";
 import "uplot/dist/uPlot.min.css";
 import "./styles/index.css";
 
@@ -44,6 +45,10 @@ function showMiddle(): void {
   });
 }
 
+async function restoreResults(restored: Restored | null): Promise<void> {
+  if (restored?.rollout) await restoreRollout(restored.rollout, restored.rolloutB).catch(report);
+}
+
 let started = false;
 
 async function begin(): Promise<void> {
@@ -58,8 +63,11 @@ async function begin(): Promise<void> {
   }
   fit(drawing.peek().points);
   startHistory();
-  startSharing();
-  if (restored?.rollout) await restoreRollout(restored.rollout, restored.rolloutB).catch(report);
+  startSharing((pasted) => {
+    fit(drawing.peek().points);
+    void restoreResults(pasted);
+  });
+  await restoreResults(restored);
 }
 
 render(<App />, document.getElementById("app")!);

@@ -126,3 +126,37 @@ def test_bars_of_margins_reach_as_far_as_the_timeline_at_any_width(product: Prod
             assert tracks["width"] == pytest.approx(ticks["width"], abs=1)
     finally:
         page.set_viewport_size(DESK)
+
+
+def test_a_tablet_standing_up_shows_everything_at_once(product: Product) -> None:
+    page = product.page
+    page.set_viewport_size({"width": 820, "height": 1180})
+    try:
+        assert not page.get_by_role("navigation", name="Areas").is_visible()
+        for name, least in (("Profile editor", 300), ("3-D scene", 200), ("Inspector", 200)):
+            box = _box(page.get_by_role("region", name=name, exact=True))
+            assert box["height"] > least, name
+        assert _editor(product)["width"] == pytest.approx(820, abs=1)
+        page.wait_for_function("document.querySelectorAll('.plot').length === 3")
+        pose = page.get_by_role("region", name="Pose at the cursor")
+        assert pose.evaluate("e => e.scrollWidth <= e.clientWidth")
+    finally:
+        page.set_viewport_size(DESK)
+
+
+def test_results_fit_their_dock(product: Product) -> None:
+    """Every figure can be seen without scrolling, from the smallest desk up."""
+    page = product.fresh("ramp-30deg-025").page
+    product.run()
+    card = page.get_by_role("region", name="Results", exact=True)
+    try:
+        for width, height in ((1440, 900), (1280, 720), (1024, 768)):
+            page.set_viewport_size({"width": width, "height": height})
+            page.wait_for_function(
+                "e => e.scrollHeight <= e.clientHeight && e.scrollWidth <= e.clientWidth",
+                arg=card.element_handle(),
+            )
+            for title in ("Mean speed", "On the stairs", "Cost of transport", "Link contacts"):
+                assert card.get_by_role("rowheader", name=title).is_visible(), (width, title)
+    finally:
+        page.set_viewport_size(DESK)

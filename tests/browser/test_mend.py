@@ -146,6 +146,63 @@ def test_the_pose_is_told_and_copied(product: Product) -> None:
         assert words in text
 
 
+def test_a_number_over_a_key_pose_takes_the_clock_there(product: Product) -> None:
+    page = product.page
+    clock = page.get_by_role("slider", name="Time")
+    clock.press("Home")
+    page.get_by_role("button", name="Next key pose").click()  # the first is where it starts
+    second = clock.get_attribute("aria-valuenow")
+    clock.press("End")
+    page.locator(".kb").get_by_text("2", exact=True).click()
+    assert clock.get_attribute("aria-valuenow") == second
+
+
+def test_a_fast_plan_tells_what_limits_its_speed(product: Product) -> None:
+    """Poses have names of limits; band, legend and label show the same as the service's plan."""
+    page = product.page
+    with page.expect_response(
+        lambda answer: (
+            answer.request.method == "POST"
+            and answer.url.endswith("/plans")
+            and '"timing":"fast"' in (answer.request.post_data or "")
+        )
+    ) as asked:
+        page.get_by_role("radio", name="Fast").click()
+    plan = asked.value.json()
+    product.planned()
+    titles = {
+        "balance": "balance",
+        "torque": "leg torque",
+        "acceleration": "acceleration",
+        "joint_speed": "joint speed",
+        "pitch_speed": "pitch rate",
+        "wheel_speed": "wheel speed",
+    }
+    limits = plan["timing"]["limits"]
+    legend = page.get_by_role("list", name="What limits the speed")
+    assert sorted(legend.get_by_role("listitem").all_inner_texts()) == sorted(
+        titles[name] for name in set(limits)
+    )
+    runs = [name for name, _ in itertools.groupby(limits)]
+    band = page.locator(".speed-band .limit")
+    assert len(set(limits)) > 1
+    assert band.count() <= len(runs)
+    drawn = band.evaluate_all("all => all.map(i => i.classList[1])")
+    assert set(drawn) == set(limits)
+    label = page.locator(".speed .ml")
+    page.get_by_role("slider", name="Time").press("Home")
+    assert titles[limits[0]] in label.inner_text()
+    poses = plan["poses"]
+    speeds = [
+        (b["progress"] - a["progress"]) / (b["time"] - a["time"])
+        for a, b in zip(poses, poses[2:], strict=False)
+    ]
+    assert f"most {max(speeds):.2f} m/s" in label.inner_text()
+    page.get_by_role("radio", name="Steady").click()
+    product.planned()
+    page.locator(".speed-band").wait_for(state="detached")
+
+
 def test_margins_run_along_time_or_place(product: Product) -> None:
     page = product.page
     ticks = page.locator(".ticks")

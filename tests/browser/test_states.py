@@ -153,7 +153,7 @@ def test_a_and_b_are_one_rollout_to_wait_for_and_to_cancel(shared: Product) -> N
     # A new rollout starts before the old B has answered, which then changes nothing.
     page.get_by_role("button", name="Run rollout").click()
     started[1].continue_()
-    page.locator(".res thead").get_by_text("B", exact=True).wait_for(timeout=PATIENCE)
+    page.locator(".res thead").get_by_text("B", exact=True).first.wait_for(timeout=PATIENCE)
     page.locator(".app[data-run=success]").wait_for()
     page.unroute("**/rollouts")
     page.get_by_role("switch", name="Compare A with B").click()
@@ -298,7 +298,7 @@ def test_a_killed_server_loses_nothing(browser: Browser, tmp_path: Path) -> None
             product = Product(context.new_page()).open(f"http://127.0.0.1:{port}/")
             scene = product.page.locator("iframe").get_attribute("src")
             _kill(process)
-            lost = product.page.get_by_text("Planner lost.", exact=True)
+            lost = product.page.get_by_text("No connection to the planner.", exact=True)
             lost.wait_for(timeout=PATIENCE)
             before = product.corner(6)
             product.drag(6, 0, -20)

@@ -178,7 +178,7 @@ def test_compare_puts_b_beside_a(shared: Product) -> None:
     switch.click()
     product.page.locator(".rb.cmp").wait_for()
     product.run()
-    product.page.locator(".res thead").get_by_text("B", exact=True).wait_for(timeout=PATIENCE)
+    product.page.locator(".res thead").get_by_text("B", exact=True).first.wait_for(timeout=PATIENCE)
     assert product.page.locator(".res td.b").count() == product.page.locator(".res td.a").count()
     # B's pitch is a line of its own, and every plot is there as a table too.
     product.page.get_by_role("button", name="Pitch, nose-up as a table").click()

@@ -226,6 +226,34 @@ def test_terrain_with_two_thousand_points_is_drawn(session):
     wait_for(lambda: "/robot/trunk" in nodes(session))
 
 
+def test_a_robot_that_failed_is_red_at_its_end_and_only_there(session):
+    rollout = example_rollout().model_dump(mode="json") | {"outcome": "fell"}
+    session.show(rollout=rollout)
+    wait_for(lambda: "/robot/trunk" in nodes(session))
+    trunk = session._server.scene._handle_from_node_name["/robot/trunk"]
+    whole, red = (np.array(colour) for colour in (DARK.trunk, DARK.error))
+    session.playback(time=rollout["series"]["time"][-1])
+    wait_for(lambda: np.array_equal(np.asarray(trunk.batched_colors)[0], red))
+    session.playback(time=0.0)
+    wait_for(lambda: np.array_equal(np.asarray(trunk.batched_colors)[0], whole))
+    session.show(rollout=rollout | {"outcome": "success"})
+    session.playback(time=rollout["series"]["time"][-1])
+    time.sleep(0.2)
+    assert np.array_equal(np.asarray(trunk.batched_colors)[0], whole)
+
+
+def test_legs_of_the_second_robot_keep_the_colours_of_data(session, plan):
+    session.show(plan=plan)
+    session.compare(example_plan(count=12).model_dump(mode="json"))
+    wait_for(lambda: "/compare/robot/trunk" in nodes(session))
+    handles = session._server.scene._handle_from_node_name
+    first, second = (np.asarray(handles[f"{root}/thighs"].batched_colors)
+                     for root in ("/robot", "/compare/robot"))  # fmt: skip
+    assert np.array_equal(first, second)
+    trunk = np.asarray(handles["/compare/robot/trunk"].batched_colors)[0]
+    assert tuple(trunk) == DARK.com
+
+
 def test_a_second_plan_is_shown_beside_the_first(session, plan):
     other = example_plan(count=12).model_dump(mode="json")
     session.show(plan=plan)

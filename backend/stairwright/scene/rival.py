@@ -1,4 +1,4 @@
-"""A second plan to compare with: its robot, translucent and of one colour, at the same place."""
+"""A second plan to compare with: its robot at the same place, translucent, its path dashed."""
 
 from __future__ import annotations
 
@@ -30,16 +30,15 @@ class Rival:
         """The path of its CoM; once, and again when the palette changes."""
         m = self._motion
         com = place(self._robot, m.position, m.quaternion, m.q).com
-        pieces = np.stack([com[:-1], com[1:]], 1)
-        self._nodes.lines(LAYER, "/compare/com_path", pieces, colours.accent, 2.0)
+        dashes = np.stack([com[:-1], com[1:]], 1)[::2]
+        self._nodes.lines(LAYER, "/compare/com_path", dashes, colours.com, 2.0)
 
     def draw_at(self, progress: float, colours: Palette, shown: bool) -> None:
         """The robot where it would be at `progress` [m] along the course."""
         moment = self._motion.at(self._motion.time_at(progress))
         bodies = place(self._robot, moment.position, moment.quaternion, moment.q)
-        one = colours.accent
         self._figure.visible = shown
-        self._figure.update(bodies, replace(colours, trunk=one, trim=one, front=one, rear=one))
+        self._figure.update(bodies, replace(colours, trunk=colours.com))
 
     def show(self, shown: bool) -> None:
         """Show or hide."""

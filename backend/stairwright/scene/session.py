@@ -30,6 +30,8 @@ from .stage import Stage, check_layers
 log = logging.getLogger(__name__)
 Replan = Callable[[dict[str, float]], None]
 
+_END = 0.05  # s before its last sample, from when on a rollout that failed is marked
+
 
 class SceneSession:
     """A 3-D scene of one user. Thread-safe; every method returns at once.
@@ -271,7 +273,8 @@ class SceneSession:
             motion = self._motion
             moment = None if motion is None else motion.at(time)
             with self._server.atomic():
-                self._stage.draw_moment(0.0 if motion is None else motion.progress_at(time), moment)
+                progress = 0.0 if motion is None else motion.progress_at(time)
+                self._stage.draw_moment(progress, moment, self._failed_by(time))
             if moment is not None:
                 moved = float(np.abs(moment.position - self._subject).max()) > 1e-6
                 self._subject = moment.position.copy()
@@ -279,6 +282,12 @@ class SceneSession:
                     viewers = self._server.get_clients().values()
                     self._move_cameras(cameras.keep_in_view, viewers, self._subject)
             self._panel.tick(time)
+
+    def _failed_by(self, time: float) -> bool:
+        """Whether the rollout that is shown has ended by `time` [s] without success."""
+        if self._rollout is None or self._motion is None:
+            return False
+        return self._rollout["outcome"] != "success" and time >= self._motion.duration - _END
 
     def _aim(self, view: cameras.View) -> None:
         start = self._server.initial_camera

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -214,8 +215,8 @@ class Stage:
 
     # --- every frame ---------------------------------------------------------------------------
 
-    def draw_moment(self, progress: float, moment: Moment | None) -> None:
-        """The robot at one moment, `progress` [m] along the course."""
+    def draw_moment(self, progress: float, moment: Moment | None, failed: bool = False) -> None:
+        """The robot at one moment, `progress` [m] along the course; red where it `failed`."""
         if self._rival is not None:
             self._rival.draw_at(progress, self.colours, self.layers["compare"])
         if self._view is None:
@@ -225,7 +226,8 @@ class Stage:
             return
         margin = None if self._margins is None else float(np.interp(progress, *self._margins))
         failing = self._problem if progress >= self._problem_from else None
-        self._view.draw(moment, self._terrain, self.colours, margin, failing)
+        colours = replace(self.colours, trunk=self.colours.error) if failed else self.colours
+        self._view.draw(moment, self._terrain, colours, margin, failing)
 
     def show_layers(self, layers: Mapping[str, bool]) -> None:
         """Show or hide layers by name."""

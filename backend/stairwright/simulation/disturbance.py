@@ -60,7 +60,9 @@ class Disturbance(Model):
         -5.0, 5.0, "1", "Friction, rear", "added to that, at the rear wheels"
     )
     friction_wheels: tuple[Friction, Friction, Friction, Friction] | None = Field(
-        None, description="the true friction of the wheels FL, FR, RL, RR instead"
+        None,
+        title="Friction, wheels",
+        description="the true friction of the wheels FL, FR, RL, RR instead",
     )
     mass: float = _field(-0.5, 1.0, "1", "Mass", "share of the robot's mass, on the trunk")
     payload: Annotated[float, Field(ge=0.0, le=100.0)] | AddedPayload = Field(
@@ -109,7 +111,11 @@ class Disturbance(Model):
         0.0, 20.0, "Nm", "Stiction", "dry friction of each leg joint and wheel [Nm]"
     )
     rotor_inertia: float | None = Field(
-        None, ge=0.0, le=1.0, description="of every motor, as its joint feels it [kg m^2]"
+        None,
+        ge=0.0,
+        le=1.0,
+        title="Rotor inertia",
+        description="of every motor, as its joint feels it [kg m^2]",
     )
     imu: ImuErrors = Field(ImuErrors(), description="what the robot's own inertial sensor errs by")
 

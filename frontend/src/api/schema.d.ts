@@ -1271,7 +1271,7 @@ export interface components {
              */
             friction_rear: number;
             /**
-             * Friction Wheels
+             * Friction, wheels
              * @description the true friction of the wheels FL, FR, RL, RR instead
              */
             friction_wheels?: number[] | null;
@@ -1378,7 +1378,7 @@ export interface components {
              */
             stiction: number;
             /**
-             * Rotor Inertia
+             * Rotor inertia
              * @description of every motor, as its joint feels it [kg m^2]
              */
             rotor_inertia?: number | null;

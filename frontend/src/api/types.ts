@@ -64,6 +64,8 @@ export interface Metrics {
   energy: number;
   link_contacts: number;
   speed_mean: number;
+  speed_stairs?: number | null;
+  cost_of_transport?: number | null;
   real_time_factor: number;
 }
 

@@ -2,7 +2,7 @@
 
 import type { Trial, Trials } from "../api/types";
 import { degrees, fixed, setting } from "../geometry/format";
-import { OUTCOMES } from "../results/results";
+import { OUTCOMES } from "../results/figures";
 import { canRun } from "../state/rollouts";
 import { disturbanceSchema } from "../state/setup";
 import { deviations, replay, trialsStale, worstTrials } from "../state/trials";
@@ -55,7 +55,7 @@ function Worst({ trial }: { trial: Trial }) {
   return (
     <li title={words.join(", ")}>
       <span class={trial.outcome === "success" ? "" : "bad"}>{OUTCOMES[trial.outcome]}</span>
-      <span>{fixed(degrees(trial.pitch_error_max), 1)}° pitch error</span>
+      <span title="Largest pitch error">{fixed(degrees(trial.pitch_error_max), 1)}°</span>
       <small>seed {trial.seed}</small>
       <button
         type="button"

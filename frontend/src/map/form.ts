@@ -2,7 +2,7 @@
 
 import { signal } from "@preact/signals";
 import { drawing } from "../state/drawing";
-import { request } from "../state/planning";
+import { request } from "../state/question";
 import { axisKind } from "./quantities";
 import type { StudyDocument } from "./studies";
 

@@ -5,7 +5,7 @@ import { useLayoutEffect, useRef } from "preact/hooks";
 import { hasFailed } from "../api/types";
 import { live, livePlan } from "../state/live";
 import { plan } from "../state/planning";
-import { shownRun } from "../state/playback";
+import { plannedEnd, shownRun } from "../state/playback";
 import { progress, run, runB, running, runPlan } from "../state/rollouts";
 import { compare, robot } from "../state/setup";
 import type { Tint } from "./chart";
@@ -58,7 +58,8 @@ const tint = computed<Tint | null>(() => {
   }
   const result = source.value.run;
   const end = result?.series.time[result.series.time.length - 1] ?? 0;
-  if (hasFailed(result)) return { from: end, to: Math.max(end, total), kind: "failed" };
+  if (hasFailed(result))
+    return { from: end, to: Math.max(end, total, plannedEnd.value), kind: "failed" };
   if (shown?.problem) {
     const stop = shown.poses[shown.poses.length - 1]?.time ?? 0;
     return { from: stop, to: total, kind: "unplanned" };

@@ -1,6 +1,7 @@
 /** How many plots have room beside each other. */
 
 import { signal } from "@preact/signals";
+import { oneArea } from "../state/view";
 import type { PanelId } from "./lines";
 
 /** The plot that has the row to itself. */
@@ -8,15 +9,14 @@ export const alonePlot = signal<PanelId | null>(null);
 
 /** Narrower, and the numbers of a heading do not fit [px]. */
 const LEAST = 220;
-/** Below this the plots stand in rows that scroll [px]. */
-const ROWS = 900;
+/** With one area at a time, the plots stand in rows that scroll. */
 const IN_ROWS = 4;
 
 /** Width of the row of plots [px]; 0 before it was measured. */
 export const rowWidth = signal(0);
 
 export const roomFor = (width: number) =>
-  width > 0 && innerWidth >= ROWS ? Math.max(1, Math.floor(width / LEAST)) : IN_ROWS;
+  width > 0 && !oneArea.value ? Math.max(1, Math.floor(width / LEAST)) : IN_ROWS;
 
 /** Whether there was one plot alone. */
 export function restorePlot(): boolean {

@@ -19,6 +19,7 @@ import {
   type Target,
 } from "./gestures";
 import { Grid, Rulers } from "./grid";
+import { KeyNumbers, pressKey } from "./key-numbers";
 import { Banner, FirstHint, Legend, Refusal, Veil } from "./notices";
 import { Obstruction } from "./obstruction";
 import { Current, Ghosts } from "./poses";
@@ -45,6 +46,7 @@ function Canvas() {
   };
   const onPointerDown = (event: PointerEvent) => {
     if ((event.target as Element).closest("[data-dimension]")) return;
+    if (pressKey(event)) return;
     const target = targetOf(event);
     svg.current!.setPointerCapture(event.pointerId);
     if (target.kind === "vertex") {
@@ -134,6 +136,7 @@ function Canvas() {
         <Ghosts />
         <Stretches />
         <Current />
+        <KeyNumbers />
         <Dimensions />
         <Guides />
         <Vertices />

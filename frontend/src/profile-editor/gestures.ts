@@ -4,7 +4,7 @@ import { signal } from "@preact/signals";
 import type { Vec2 } from "../api/types";
 import { heightAt, type Points } from "../geometry/profile";
 import { commit, draft, drawing, revert, selection } from "../state/drawing";
-import { stir } from "../state/planning";
+import { stir } from "../state/planner";
 import { dismissHint, tool } from "../state/view";
 import { addFlat, addFree, addRamp, addStairs, addVertex, moveVertices } from "./edits";
 import { penCorner } from "./pen";

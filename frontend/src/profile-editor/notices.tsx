@@ -3,11 +3,13 @@
 import { connected, retryIn, retryNow } from "../state/connection";
 import { drawing, isEmpty, selection } from "../state/drawing";
 import { ghost } from "../state/effect";
-import { plan, planB, planKept, preview, refusal, slow } from "../state/planning";
+import { plan, planB, planKept, preview, refusal } from "../state/planning";
 import { activity, run } from "../state/rollouts";
 import { dismissHint, hintSeen, layers } from "../state/view";
+import { slow } from "../state/waiting";
 import { Icon } from "../ui/icon";
-import { size } from "./viewport";
+import type { Rect } from "./place";
+import { canvasBox, size } from "./viewport";
 
 export function Legend() {
   if (isEmpty.value || size.value.width < 440) return null;
@@ -49,12 +51,21 @@ export function Legend() {
   );
 }
 
+/** Where the banner lies at most: two lines along the top of a narrow canvas [px]. */
+const BANNER = 92;
+
+export function bannerRect(): Rect | null {
+  if (connected.value) return null;
+  const { left, right, top } = canvasBox.value;
+  return { left, top, width: right - left, height: BANNER };
+}
+
 export function Banner() {
   if (connected.value) return null;
   return (
     <div class="ban">
       <Icon name="offline" />
-      <b>Planner lost.</b> Edits stay here and are planned when it returns.
+      <b>No connection to the planner.</b> Your edits are kept and planned when it is back.
       <span class="wide"> Trying again in {retryIn.value} s</span>
       <button type="button" onClick={retryNow}>
         Retry now

@@ -40,13 +40,13 @@ const ghostIndices = computed<number[]>(() => {
 });
 
 /** Whose key poses are drawn: those for what is on screen now, before a path through them. */
-const keyed = computed(() =>
+export const keyed = computed(() =>
   // While another workspace hides the canvas, nothing on it has to follow the hand.
   workspace.value === "plan" ? (preview.value ?? plan.value) : null,
 );
 
 /** Key poses that stand apart; of a cluster the first is drawn. */
-const keyIndices = computed<number[]>(() => {
+export const keyIndices = computed<number[]>(() => {
   const shown = keyed.value;
   if (!shown) return [];
   const out: number[] = [];
@@ -116,33 +116,6 @@ function Keys() {
   return (
     <g>
       <Figures shown={shown} shape={shape} indices={keyIndices.value} kind="key" />
-      <KeyNumbers shown={shown} to={projection.value} />
-    </g>
-  );
-}
-
-/** Numbers over the key poses; where two would touch, the later one is left out. */
-function KeyNumbers({ shown, to }: { shown: Plan; to: Projection }) {
-  const half = (robot.value?.trunk.height ?? 0.1) / 2;
-  let last: Vec2 | null = null;
-  return (
-    <g class="kb">
-      {keyIndices.value.map((index) => {
-        const pose = shown.poses[index];
-        const k = shown.critical.indexOf(index);
-        if (!pose || k < 0) return null;
-        const at: Vec2 = [to.px(pose.x_c), to.py(pose.z_c + half) - 14 - Math.abs(pose.pitch) * 20];
-        if (last && Math.hypot(at[0] - last[0], at[1] - last[1]) < 20) return null;
-        last = at;
-        return (
-          <g key={index} transform={`translate(${at[0].toFixed(1)} ${at[1].toFixed(1)})`}>
-            <circle r={8} />
-            <text y={3.5} text-anchor="middle">
-              {k + 1}
-            </text>
-          </g>
-        );
-      })}
     </g>
   );
 }

@@ -9,6 +9,7 @@ import { IconButton } from "../ui/icon-button";
 import { NumberField } from "../ui/number-field";
 import { deleteSelected, insertVertex } from "./commands";
 import { moveVertices } from "./edits";
+import { bannerRect } from "./notices";
 import { card } from "./obstruction";
 import { placeNear } from "./place";
 import { names } from "./vertices";
@@ -50,7 +51,7 @@ export function Readout() {
   // A typed number may take the corner out of view; its fields stay at the rim.
   const x = Math.min(box.right, Math.max(box.left, px(p[0])));
   const y = Math.min(box.bottom, Math.max(box.top, py(p[1])));
-  const taken = card.value ? [card.value] : [];
+  const taken = [card.value, bannerRect()].filter((rect) => rect !== null);
   const { left, top, width, free } = placeNear([x, y], SIZE, GAP, taken);
   const points = drawing.value.points;
   const set = (axis: 0 | 1) => (value: number) => {

@@ -3,7 +3,7 @@
 import { batch, computed, signal } from "@preact/signals";
 import type { ImportedRobot, RobotDocument } from "../api/types";
 import { commitChoices } from "../state/drawing";
-import { stir } from "../state/planning";
+import { stir } from "../state/planner";
 import { robotDocument, robotEdits, robotName, robots } from "../state/setup";
 import { clamped, QUANTITIES, quantityOf } from "./quantities";
 

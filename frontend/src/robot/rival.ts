@@ -3,7 +3,7 @@
 import { batch, computed, signal } from "@preact/signals";
 import type { Plan } from "../api/types";
 import { commitChoices } from "../state/drawing";
-import { requestWith } from "../state/planning";
+import { requestWith } from "../state/question";
 import { allRobots, robotEdits, robotName, robots, sourceOf } from "../state/setup";
 import { choose } from "./edit";
 

@@ -4,7 +4,7 @@ import { useRef } from "preact/hooks";
 import type { Entry } from "../api/stored";
 import { fixed } from "../geometry/format";
 import { CLASS_NAMES, MARGINS, marginClass } from "../profile-editor/margins";
-import { OUTCOMES } from "../results/results";
+import { OUTCOMES } from "../results/figures";
 import { Icon } from "../ui/icon";
 import { Menu } from "../ui/menu";
 import { chips } from "./chips";

@@ -1,5 +1,6 @@
 /** What the scene's marks mean; each row shows or hides its own. L hides the legend. */
 
+import { compare } from "../state/setup";
 import {
   type Layer,
   layers,
@@ -16,6 +17,9 @@ const OWN: [SceneLayer, string, string][] = [
   ["com", "ball", "Centre of mass"],
 ];
 
+/** While A is compared with it. */
+const B: (typeof OWN)[number] = ["compare", "rival", "B: nominal pose, translucent"];
+
 /** Layers that the profile has too. */
 const SHARED: [Layer, string, string][] = [
   ["collision", "dots", "Collision points"],
@@ -28,7 +32,7 @@ export function SceneLegend() {
   if (!legendOpen.value) return null;
   return (
     <fieldset class="scene-legend" aria-label="Shown in the scene">
-      {OWN.map(([layer, mark, title]) => (
+      {[...OWN, ...(compare.value ? [B] : [])].map(([layer, mark, title]) => (
         <Row
           key={layer}
           mark={mark}

@@ -5,7 +5,8 @@ import { postPlan } from "../api/client";
 import type { Plan, PlanRequest } from "../api/types";
 import { report } from "./connection";
 import { kept, readFlag } from "./kept";
-import { plan, request, stale } from "./planning";
+import { plan, stale } from "./planning";
+import { request } from "./question";
 import { changedWeights } from "./setup";
 
 /** A slider at rest [ms]. */

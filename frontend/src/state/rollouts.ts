@@ -16,7 +16,8 @@ import {
 import type { Job, Plan, PlanRequest, Rollout } from "../api/types";
 import { report } from "./connection";
 import { type Chunk, endLive, grow, haltLive, livePlan, startLive } from "./live";
-import { plan, request, settled, stale, unoptimised } from "./planning";
+import { plan, settled, stale } from "./planning";
+import { request, unoptimised } from "./question";
 import { compare, controller, disturbance, seed } from "./setup";
 
 export type Activity = "idle" | "running" | "cancelled" | "failed";

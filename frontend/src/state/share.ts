@@ -96,16 +96,21 @@ export interface Restored {
   rolloutB: string | null;
 }
 
-/** Take the state out of the address. Null where there is none, or none that can be read. */
-export function restoreFromAddress(): Restored | null {
-  const text = new URLSearchParams(location.hash.slice(1)).get("s");
+const stateInAddress = () => new URLSearchParams(location.hash.slice(1)).get("s");
+
+/**
+ * Take the state out of the address. Null where there is none, or none that can be read.
+ * @param instead what is shown where it cannot be read
+ */
+export function restoreFromAddress(instead = "the sample is shown instead"): Restored | null {
+  const text = stateInAddress();
   if (!text) return null;
   let state: Shared;
   try {
     state = decode(text) as Shared;
     if (!Array.isArray(state.t.points)) throw new TypeError("no points");
   } catch {
-    toast.value = { text: "This link could not be read; the sample is shown instead." };
+    toast.value = { text: `This link could not be read; ${instead}.` };
     return null;
   }
   const points = state.t.points.filter(
@@ -131,10 +136,22 @@ export function restoreFromAddress(): Restored | null {
 /** Browsers refuse an address that changes at every move of a slider [ms]. */
 const REST = 250;
 
-/** Keep the address up to date: after each finished edit, never during a drag. */
-export function startSharing(): void {
+/**
+ * Keep the address up to date: after each finished edit, never during a drag. An address that is
+ * pasted into the open page is followed.
+ * @param take is given the results that such an address names
+ */
+export function startSharing(take: (restored: Restored | null) => void): void {
   let timer: ReturnType<typeof setTimeout> | undefined;
+  const typed = signal(0);
+  addEventListener("hashchange", () => {
+    const text = stateInAddress();
+    if (text && text !== encode(currentState())) take(restoreFromAddress("what was open stays"));
+    typed.value++;
+  });
   effect(() => {
+    // An address that was typed in part is completed.
+    typed.value;
     const empty = isEmpty.value && origin.value === null;
     const parts = empty ? [] : [`s=${encode(currentState())}`];
     for (const [letter, text] of Object.entries(kept.value)) parts.unshift(`${letter}=${text}`);

@@ -20,7 +20,7 @@ export const LAYERS = {
 export type Layer = keyof typeof LAYERS;
 
 /** Layers that only the scene has, in the service's words. */
-export const SCENE_ONLY = ["forces", "support", "com"] as const;
+export const SCENE_ONLY = ["forces", "support", "com", "compare"] as const;
 export type SceneLayer = (typeof SCENE_ONLY)[number];
 export const sceneLayers = signal<ReadonlySet<SceneLayer>>(new Set(SCENE_ONLY));
 export const legendOpen = kept("legend", false, readFlag);
@@ -61,8 +61,16 @@ effect(() => {
   document.documentElement.dataset.theme = theme.value;
 });
 
-const narrow = matchMedia("(max-width: 899px)");
-export const isNarrow = signal(narrow.matches);
-narrow.addEventListener("change", () => {
-  isNarrow.value = narrow.matches;
-});
+function matches(media: string) {
+  const query = matchMedia(media);
+  const now = signal(query.matches);
+  query.addEventListener("change", () => {
+    now.value = query.matches;
+  });
+  return now;
+}
+
+/** The top bar wraps, and figures are lines of text. */
+export const isNarrow = matches("(max-width: 899px)");
+/** Tabs choose what is shown; as in styles/tabs.css. */
+export const oneArea = matches("(max-width: 599px), (max-width: 899px) and (max-height: 999px)");

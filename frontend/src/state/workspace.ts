@@ -12,3 +12,8 @@ function fromAddress(): Workspace {
 }
 
 export const workspace = signal<Workspace>(fromAddress());
+
+// An address that was typed, pasted or gone back to; the page's own changes do not tell of it.
+addEventListener("hashchange", () => {
+  workspace.value = fromAddress();
+});

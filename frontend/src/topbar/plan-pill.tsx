@@ -4,7 +4,8 @@ import { fixed, took } from "../geometry/format";
 import { nearestCorner } from "../geometry/profile";
 import { connected } from "../state/connection";
 import { drawing, isEmpty } from "../state/drawing";
-import { answered, plan, preview, refusal, slow, waited } from "../state/planning";
+import { answered, plan, preview, refusal } from "../state/planning";
+import { slow, waited } from "../state/waiting";
 import { Icon } from "../ui/icon";
 
 export function PlanPill() {

@@ -12,6 +12,7 @@ import {
 import { plan, planKept, preview } from "../state/planning";
 import { duration, hoverTime, playing, poseIndex, seek } from "../state/playback";
 import { axisKind, cursor, marks, shareOf, timeAt } from "./axis";
+import { SpeedRow } from "./speed-row";
 
 /** Bars are drawn in parts of the axis. */
 const PARTS = 1000;
@@ -81,6 +82,7 @@ export function MarginRows() {
           </div>
         </div>
       ))}
+      <SpeedRow />
       <Scrub />
     </div>
   );

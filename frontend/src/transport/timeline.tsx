@@ -79,7 +79,7 @@ export function Timeline() {
   );
 }
 
-/** A number further to the right would not have room. */
+/** A number further to the right stands left of its mark. */
 const LAST = 0.9;
 
 /** Numbers under the timeline: seconds or metres. */
@@ -91,8 +91,12 @@ export function Ticks() {
   return (
     <div class="ticks" aria-hidden="true">
       {ticks.value.map((value) => (
-        <span key={value} style={{ left: `${shareOf(value) * 100}%` }}>
-          {shareOf(value) < LAST && `${fixed(value, step < 0.1 ? 2 : step < 1 ? 1 : 0)} ${unit}`}
+        <span
+          key={value}
+          class={shareOf(value) < LAST ? "" : "before"}
+          style={{ left: `${shareOf(value) * 100}%` }}
+        >
+          {`${fixed(value, step < 0.1 ? 2 : step < 1 ? 1 : 0)} ${unit}`}
         </span>
       ))}
     </div>

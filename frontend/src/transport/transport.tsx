@@ -16,6 +16,7 @@ import { IconButton } from "../ui/icon-button";
 import { Menu, MenuItem } from "../ui/menu";
 import { type AxisKind, axisKind } from "./axis";
 import { MarginRows } from "./margin-rows";
+import { SpeedLegend } from "./speed-row";
 import { Ticks, Timeline } from "./timeline";
 
 export function Transport() {
@@ -45,6 +46,7 @@ export function Transport() {
       <AxisSwitch />
       <Ticks />
       <MarginRows />
+      <SpeedLegend />
     </div>
   );
 }

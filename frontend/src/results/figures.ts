@@ -1,0 +1,81 @@
+/** The figures of a rollout: name, unit, value, and whether it is a bad one. */
+
+import { hasFailed, type Metrics, type Outcome, type Rollout } from "../api/types";
+import { degrees, fixed } from "../geometry/format";
+
+export const OUTCOMES: Record<Outcome, string> = {
+  success: "Success",
+  fell: "Fell",
+  stuck: "Stuck",
+  collided: "Collided",
+  diverged: "Diverged",
+  timeout: "Ran out of time",
+  stopped: "Stopped safely",
+};
+
+export interface Figure {
+  title: string;
+  /** Which of several. */
+  note?: string;
+  /** The most it can be; told where there is room. */
+  limit?: string;
+  hint?: string;
+  of: (m: Metrics, r: Rollout) => string;
+  bad?: (m: Metrics, r: Rollout) => boolean;
+}
+
+/** More than this, and the robot was not tracking any more [rad]. */
+const LOST = (10 * Math.PI) / 180;
+
+const maybe = (value: number | null | undefined, digits: number, unit = "") =>
+  value === null || value === undefined ? "–" : fixed(value, digits) + unit;
+
+/** Of one rollout, or of several to compare: only then their outcomes are among the figures. */
+export function figures(count: number, legLimit: number | undefined): Figure[] {
+  const outcome: Figure = {
+    title: "Outcome",
+    of: (_m, r) => OUTCOMES[r.outcome],
+    bad: (_m, r) => hasFailed(r),
+  };
+  return [
+    ...(count > 1 ? [outcome] : []),
+    {
+      title: "Duration",
+      of: (m) => `${fixed(m.duration, 1)} s`,
+      bad: (_m, r) => hasFailed(r),
+    },
+    { title: "Mean speed", hint: "Along the course", of: (m) => `${fixed(m.speed_mean, 2)} m/s` },
+    {
+      title: "On the stairs",
+      hint: "Mean speed along x, from the first contact with the first face to all wheels on the landing",
+      of: (m) => maybe(m.speed_stairs, 2, " m/s"),
+    },
+    {
+      title: "Pitch error",
+      note: "max",
+      of: (m) => `${fixed(degrees(m.pitch_error_max), 1)}°`,
+      bad: (m) => m.pitch_error_max > LOST,
+    },
+    { title: "Pitch error", note: "rms", of: (m) => `${fixed(degrees(m.pitch_error_rms), 1)}°` },
+    {
+      title: "Joint error",
+      note: "rms",
+      hint: "Thighs and calves",
+      of: (m) => `${fixed(degrees(m.joint_error_rms), 1)}°`,
+    },
+    {
+      title: "Peak torque",
+      ...(legLimit ? { limit: `of ${fixed(legLimit, 1)}` } : {}),
+      hint: "Largest of thighs and calves, of what their motors can give",
+      of: (m) => `${fixed(m.torque_peak, 1)} Nm`,
+      bad: (m) => legLimit !== undefined && m.torque_peak >= legLimit - 0.05,
+    },
+    { title: "Energy", of: (m) => `${fixed(m.energy, 0)} J` },
+    {
+      title: "Cost of transport",
+      hint: "Energy per weight and distance, without unit",
+      of: (m) => maybe(m.cost_of_transport, 2),
+    },
+    { title: "Link contacts", of: (m) => String(m.link_contacts), bad: (m) => m.link_contacts > 0 },
+  ];
+}
