@@ -34,9 +34,9 @@ from stairwright.control.settings import parse_settings
 from stairwright.errors import InputError
 from stairwright.library import terrains
 from stairwright.simulation.disturbance import Disturbance
+from stairwright.simulation.intervals import wilson
 from stairwright.simulation.ranges import BUNDLES, draw
 from stairwright.simulation.run import Run
-from stairwright.simulation.trials import wilson
 
 ROBOTS = ("a1_wheeled", "a1_wheeled_x", "go2w", "b2w")
 FRICTION = 0.6

@@ -31,7 +31,7 @@ from report import Row, publish
 import stairwright as sw
 from stairwright.planning.plan import Plan, plan_id
 from stairwright.planning.weights import parse_weights
-from stairwright.simulation.trials import wilson
+from stairwright.simulation.intervals import wilson
 
 ROBOTS = ("a1_wheeled", "a1_wheeled_x")
 FRICTION = 0.6

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from .simulation.result import Rollout
     from .simulation.robust_margins import RobustMargins, robust_margins
     from .simulation.rollout import rollout
-    from .simulation.trials import Trials, trials
+    from .simulation.trials import trials
+    from .simulation.trials_result import Trials
     from .studies.design import design
     from .studies.design_result import DesignResult
     from .studies.study import StudyResult, study
@@ -64,7 +65,7 @@ _HOMES = {
     "ServiceError": "client",
     "StudyResult": "studies.study",
     "Terrain": "terrain.profile",
-    "Trials": "simulation.trials",
+    "Trials": "simulation.trials_result",
     "certify": "planning.certificate.certify",
     "import_robot": "importing",
     "design": "studies.design",

@@ -28,7 +28,7 @@ from stairwright.terrain.profile import Terrain
 
 if TYPE_CHECKING:
     from stairwright.simulation.result import Rollout
-    from stairwright.simulation.trials import Trials
+    from stairwright.simulation.trials_result import Trials
 
 M = TypeVar("M", bound=Model)
 Progress = Callable[[float], object]
@@ -213,7 +213,7 @@ class Client:
             ServiceError: If the job fails or is cancelled.
             TimeoutError: If it takes longer than `timeout` [s]; the job is cancelled then.
         """
-        from stairwright.simulation.trials import Trials
+        from stairwright.simulation.trials_result import Trials
 
         body = {"plan_id": plan_id, "count": count, "bundle": bundle, **question}
         job = self.wait(self._start("/trials", body).id, progress=progress, timeout=timeout)

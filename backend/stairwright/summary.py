@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from .benchmark import Figures
     from .planning.plan import Certificate, Plan
     from .simulation.result import Rollout
-    from .simulation.trials import Trials
+    from .simulation.trials_result import Trials
 
 
 def columns(rows: Iterable[tuple[str, str]]) -> str:

@@ -76,6 +76,17 @@ def asked(api: str, body: dict[str, Any], answers: list[httpx.Response]) -> thre
     return thread
 
 
+def test_the_web_process_computes_nothing() -> None:
+    heavy = ("mujoco", "casadi", "scipy", "trimesh", "viser", "xarray", "distributed")
+    ours = ("stairwright.planning.planner", "stairwright.simulation.rollout")
+    code = (
+        "import sys, stairwright.api.app; "
+        f"print([name for name in {(*heavy, *ours)} if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
 @pytest.mark.slow
 def test_nothing_fails_because_it_is_cold(cold: str, tmp_path: Path) -> None:
     early: list[httpx.Response] = []

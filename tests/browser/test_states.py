@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import re
 import signal
@@ -109,7 +110,10 @@ def test_running_can_be_cancelled(shared: Product, server: Any) -> None:
     expect(product.page.get_by_role("button", name="Run rollout")).to_be_focused()
     # The job that was started nevertheless is stopped as soon as its name is known.
     with product.page.expect_response(lambda answer: answer.request.method == "DELETE") as stopped:
-        held[0].continue_()
+        question = held[0].request.post_data_json
+        slow = {**question.get("controller", {}), "solver": "clarabel", "sensing": "ideal"}
+        # in Python it takes seconds, so that it is not done before it can be stopped
+        held[0].continue_(post_data=json.dumps({**question, "controller": slow}))
     product.page.unroute("**/rollouts")
     job = stopped.value.url.removeprefix(server.url)
     assert httpx.get(f"{server.url}{job}").json()["state"] == "cancelled"

@@ -12,7 +12,8 @@ from stairwright.planning.plan import Plan
 from stairwright.simulation.disturbance import Disturbance, parse_disturbance
 from stairwright.simulation.ranges import BUNDLES, chosen_ranges, draw
 from stairwright.simulation.rollout import rollout
-from stairwright.simulation.trials import Trial, suspects
+from stairwright.simulation.trials import suspects
+from stairwright.simulation.trials_result import Trial
 from stairwright.simulation.world import build_world, course_frame, real_terrain
 
 STEP = {"name": "step", "points": [[-0.9, 0.0], [0.0, 0.0], [0.0, 0.06], [0.9, 0.06]]}

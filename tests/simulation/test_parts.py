@@ -20,10 +20,11 @@ from stairwright.robot.mujoco_model import build_spec
 from stairwright.simulation.disturbance import Disturbance
 from stairwright.simulation.drive import drive
 from stairwright.simulation.governor import follower, track
+from stairwright.simulation.intervals import clopper_pearson, wilson
 from stairwright.simulation.outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
 from stairwright.simulation.ranges import Ranges, chosen_ranges, draw
 from stairwright.simulation.sensors import Sensors
-from stairwright.simulation.trials import clopper_pearson, trials, wilson
+from stairwright.simulation.trials import trials
 from stairwright.simulation.world import disturb_trunk, real_terrain
 from stairwright.terrain.wheel_path import wheel_path
 

@@ -13,7 +13,7 @@ from stairwright.planning.plan import Method, Plan, PlanTiming
 from stairwright.robot.description import Robot
 from stairwright.simulation.disturbance import Disturbance
 from stairwright.simulation.ranges import Ranges
-from stairwright.simulation.trials import MOST_TRIALS
+from stairwright.simulation.trials_result import MOST_TRIALS
 from stairwright.terrain.generation import Friction, Name
 from stairwright.terrain.profile import Terrain
 

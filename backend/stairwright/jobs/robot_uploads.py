@@ -1,4 +1,8 @@
-"""Robot files from outside, read in a worker that can open nothing and may use little memory."""
+"""Robot files from outside, read in a worker that can open nothing and may use little memory.
+
+What reads them is imported by the worker only: the web process names these functions, and does
+without MuJoCo.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +11,6 @@ from typing import Any
 
 from stairwright.documents import parse
 from stairwright.robot.description import Robot
-from stairwright.robot.importing import rehearsal
-from stairwright.robot.importing.read import read
-from stairwright.robot.importing.upload import unpack
 
 
 def import_robot(
@@ -26,10 +27,15 @@ def import_robot(
     Raises:
         InputError: If it is no robot of four legs with wheels; names the link or joint.
     """
+    from stairwright.robot.importing.read import read
+    from stairwright.robot.importing.upload import unpack
+
     robots = [parse(Robot, dict(document)) for document in known]
     return read(unpack(data, file_name), options, robots).model_dump(mode="json")
 
 
 def rehearse() -> None:
     """Read small ones, so that every module that this takes is loaded."""
+    from stairwright.robot.importing import rehearsal
+
     rehearsal.rehearse()

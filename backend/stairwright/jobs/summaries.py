@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from stairwright.planning.plan import Plan, Pose
     from stairwright.simulation.result import Rollout
-    from stairwright.simulation.trials import Trials
+    from stairwright.simulation.trials_result import Trials
 
 OUTLINE = 32  # points of a terrain that a thumbnail shows
 _MARGINS = ("clearance", "com", "friction", "torque")

@@ -2,72 +2,32 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from multiprocessing import get_context
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
-from pydantic import Field
 
 from stairwright.arguments import MOST_SEED, as_friction, as_model, as_whole
 from stairwright.control.settings import ControllerSettings, parse_settings
-from stairwright.documents import Model, content_hash, parse
+from stairwright.documents import content_hash, parse
 from stairwright.planning.plan import Plan
 from stairwright.resources import all_cores
 
 from .disturbance import Disturbance
+from .intervals import clopper_pearson, wilson
 from .ranges import Ranges, chosen_ranges, draw
-from .result import Outcome
 from .rollout import rollout
 from .run import runs_natively
+from .trials_result import MOST_TRIALS, Trial, Trials
 
 Job = tuple[int, Disturbance]  # seed and deviations
 
-MOST_TRIALS = 100_000
 MOST_WORKERS = 1024
 SUSPECT = 0.6  # of pairs of a failed and a good trial
-CONFIDENCE_Z = 1.959964  # two-sided 95 %
-
-
-class Trial(Model):
-    """One rollout of the set."""
-
-    seed: int
-    disturbance: Disturbance
-    outcome: Outcome
-    reason: str
-    pitch_error_max: float
-    link_contacts: int
-
-
-class Trials(Model):
-    """A set of randomised rollouts (``stairwright/trials/1``)."""
-
-    schema_: Literal["stairwright/trials/1"] = Field("stairwright/trials/1", alias="schema")
-    id: str = Field(description="hash of the question")
-    plan_id: str
-    terrain_hash: str
-    robot_hash: str
-    friction: float = Field(description="nominal true friction; each trial adds its own")
-    seed: int
-    controller: ControllerSettings
-    ranges: Ranges
-    count: int
-    successes: int
-    rate: float = Field(description="share of successes")
-    wilson: tuple[float, float] = Field(description="95 % confidence interval of the rate")
-    clopper_pearson: tuple[float, float] = Field(description="95 % interval, exact")
-    outcomes: dict[str, int]
-    suspects: dict[str, float] = Field(
-        {},
-        description="deviations that are larger where trials failed: how often a failed one had "
-        "more of it than one that succeeded",
-    )
-    trials: list[Trial]
 
 
 def trials(
@@ -153,24 +113,6 @@ def suspects(results: Sequence[Trial]) -> dict[str, float]:
         if more > SUSPECT:
             found[name] = round(float(more), 3)
     return dict(sorted(found.items(), key=lambda item: -item[1]))
-
-
-def wilson(successes: int, n: int) -> tuple[float, float]:
-    """Wilson's 95 % score interval of a rate."""
-    z2 = CONFIDENCE_Z**2
-    p = successes / n
-    middle = (p + z2 / (2 * n)) / (1 + z2 / n)
-    half = CONFIDENCE_Z / (1 + z2 / n) * math.sqrt(p * (1 - p) / n + z2 / (4 * n * n))
-    return max(0.0, middle - half), min(1.0, middle + half)
-
-
-def clopper_pearson(successes: int, n: int) -> tuple[float, float]:
-    """Clopper and Pearson's exact 95 % interval of a rate."""
-    from scipy.stats import beta
-
-    low = float(beta.ppf(0.025, successes, n - successes + 1)) if successes else 0.0
-    high = float(beta.ppf(0.975, successes + 1, n - successes)) if successes < n else 1.0
-    return low, high
 
 
 def _share(

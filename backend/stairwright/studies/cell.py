@@ -9,7 +9,7 @@ from stairwright.planning.binding import margins_along
 from stairwright.planning.plan import Plan
 from stairwright.planning.planner import plan as make_plan
 from stairwright.planning.threads import one_by_one
-from stairwright.simulation.trials import clopper_pearson
+from stairwright.simulation.intervals import clopper_pearson
 
 from .axes import Value
 from .document import Study

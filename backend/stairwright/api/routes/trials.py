@@ -13,7 +13,7 @@ from stairwright.api.problems import describe
 from stairwright.api.services import Services
 from stairwright.jobs.questions import TrialsQuestion
 from stairwright.simulation.ranges import chosen_ranges
-from stairwright.simulation.trials import Trials
+from stairwright.simulation.trials_result import Trials
 
 from . import stored
 from .simulations import accepted, settings_of, source_of
