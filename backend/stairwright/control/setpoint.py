@@ -7,18 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.planning.poses.pose_reference import COM as COM
+from stairwright.planning.poses.pose_reference import JOINTS as JOINTS
+from stairwright.planning.poses.pose_reference import PITCH as PITCH
+from stairwright.planning.poses.pose_reference import TRUNK as TRUNK
+from stairwright.planning.poses.pose_reference import WHEELS as WHEELS
+
 from .contact import BOTH
 
 Floats = NDArray[np.float64]
 
-# Columns of a set point's row: values, their rates of change, their accelerations, static
-# forces.
-# Compiled code and reference tables use the same order.
-WHEELS = slice(0, 2)
-JOINTS = slice(2, 6)
-PITCH = 6
-COM = slice(7, 9)
-TRUNK = slice(9, 11)
+# Columns of a set point's row: what the plan asks for, its rates of change, its accelerations,
+# static forces. Compiled code and reference tables use the same order.
 RATES = 11  # the rate of column k is column RATES + k
 ACCELERATIONS = 22  # likewise
 FORCES = slice(33, 37)

@@ -9,6 +9,13 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
+# Columns of `Reference.planned`, and of everything that is made from it.
+WHEELS = slice(0, 2)
+JOINTS = slice(2, 6)
+PITCH = 6
+COM = slice(7, 9)
+TRUNK = slice(9, 11)
+
 
 @dataclass(frozen=True)
 class Reference:
@@ -41,7 +48,7 @@ class Reference:
 
     @property
     def planned(self) -> Floats:
-        """(n, 11) in the order of a set point's row: wheels, joints, pitch, CoM, trunk point."""
+        """(n, 11): the wheels' arc lengths, joints, pitch, CoM, trunk point."""
         pitch, trunk = self.trunk[:, 2:], self.trunk[:, :2]
         return np.hstack([self.wheel_progress, self.q, pitch, self.com, trunk])
 

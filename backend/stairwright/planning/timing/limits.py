@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright import _core
-from stairwright.control.setpoint import COM, JOINTS, PITCH, WHEELS
+from stairwright.planning.poses.pose_reference import COM, JOINTS, PITCH, WHEELS
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 

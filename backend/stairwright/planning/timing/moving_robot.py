@@ -23,7 +23,7 @@ class MovingRobot:
     Attributes:
         way: (n,) [m].
         progress: (n,) the plan's [m].
-        values: (n, 11) wheels, joints, pitch, CoM, trunk: `stairwright.control.setpoint`.
+        values: (n, 11) wheels, joints, pitch, CoM, trunk: `Reference.planned`.
         first: (n, 11) their derivatives by the way.
         second: (n, 11) second derivatives.
     """
