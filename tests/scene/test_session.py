@@ -245,7 +245,7 @@ def test_a_robot_that_failed_is_red_at_its_end_and_only_there(session):
 def test_legs_of_the_second_robot_keep_the_colours_of_data(session, plan):
     session.show(plan=plan)
     session.compare(example_plan(count=12).model_dump(mode="json"))
-    wait_for(lambda: "/compare/robot/trunk" in nodes(session))
+    wait_for(lambda: {"/robot/thighs", "/compare/robot/thighs"} <= set(nodes(session)))
     handles = session._server.scene._handle_from_node_name
     first, second = (np.asarray(handles[f"{root}/thighs"].batched_colors)
                      for root in ("/robot", "/compare/robot"))  # fmt: skip
