@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 import stairwright as sw
-from stairwright.simulation.crossing import faces_span, speed_over_faces
+from stairwright.simulation.crossing import _Curve, speed_over_faces
 
 
 def test_where_faces_begin_and_end() -> None:
     up = sw.Terrain(name="up", points=[(-1, 0), (0, 0), (0, 0.2), (0.3, 0.2), (0.3, 0.4), (2, 0.4)])
-    assert faces_span(up, 0.05) == pytest.approx((-0.05, 0.3), abs=0.002)
+    assert _Curve.of(up, 0.05).faces_span() == pytest.approx((-0.05, 0.3), abs=0.002)
     down = sw.Terrain(name="down", points=[(-1, 0), (0, 0), (0, -0.2), (2, -0.2)])
-    assert faces_span(down, 0.05) == pytest.approx((0.0, 0.05), abs=0.002)
-    assert faces_span(sw.Terrain(name="flat", points=[(-1, 0), (2, 0)]), 0.05) is None
+    assert _Curve.of(down, 0.05).faces_span() == pytest.approx((0.0, 0.05), abs=0.002)
+    assert _Curve.of(sw.Terrain(name="flat", points=[(-1, 0), (2, 0)]), 0.05).faces_span() is None
 
 
 def test_speed_is_that_of_the_crossing() -> None:
@@ -27,8 +27,8 @@ def test_speed_is_that_of_the_crossing() -> None:
     on_face = (x < -8.0) & (np.abs(x) > 0.3 * z)
     begun = np.flatnonzero(on_face[:, :2].any(axis=1))[0]
     ended = np.flatnonzero(on_face[:, 2:].any(axis=1))[-1]
-    way, time = (column[ended] - column[begun] for column in (series.base_position, series.time))
-    assert speed == pytest.approx(way[0] / time, rel=0.15)
+    way, time = (column[ended] - column[begun] for column in (series.progress, series.time))
+    assert speed == pytest.approx(way / time, rel=0.15)
     doubled = series.model_copy(update={"time": series.time * 2.0})
     assert speed_over_faces(doubled, run.terrain, run.robot_description) == pytest.approx(speed / 2)
     stopped = series.model_copy(update={"base_position": series.base_position - [3.0, 0.0, 0.0]})

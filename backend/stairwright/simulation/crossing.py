@@ -4,6 +4,9 @@ the landing.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Self
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,12 +26,15 @@ _SIDES = ([0, 1, 6, 7], [3, 4, 9, 10])  # thighs and calves among the joints, le
 
 
 def speed_over_faces(series: Series, terrain: Terrain, robot: Robot) -> float | None:
-    """Mean speed of the trunk along x [m/s] while it crosses the faces of `terrain`.
+    """Mean speed of the wheels along their way [m/s] while they cross the faces of `terrain`.
 
-    From the moment in which the first wheel reaches the first face to that in which the last one
-    is past the last of them. None where the ground is level or the robot does not get past.
+    The way is the arc length of the wheel-centre curve, up and down faces too, as in `speed_mean`
+    and in the cost of transport; along x a wall would be crossed at no speed at all. It lasts from
+    the moment in which the first wheel reaches the first face to that in which the last one is
+    past the last of them. None where the ground is level or the robot does not get past.
     """
-    span = faces_span(terrain, robot.wheel.radius)
+    curve = _Curve.of(terrain, robot.wheel.radius)
+    span = curve.faces_span()
     if span is None or len(series) < 2:
         return None
     x, z = series.base_position[:, 0], series.base_position[:, 2]
@@ -38,20 +44,34 @@ def speed_over_faces(series: Series, terrain: Terrain, robot: Robot) -> float | 
     ended = _first(wheels.min(axis=1) >= span[1] - TOUCH)
     if begun is None or ended is None or ended <= begun:
         return None
-    return float((x[ended] - x[begun]) / (series.time[ended] - series.time[begun]))
+    # Before the first face and past the last one, x tells the place on the curve.
+    way = np.interp(wheels[ended], curve.x, curve.s) - np.interp(wheels[begun], curve.x, curve.s)
+    return float(way.mean() / (series.time[ended] - series.time[begun]))
 
 
-def faces_span(terrain: Terrain, radius: float) -> tuple[float, float] | None:
-    """Where a wheel's centre [m] leaves the level of the start, and where it has reached that of
-    the landing; None on level ground.
-    """
-    path = wheel_path(terrain, radius)
-    x, z = path.centres(np.arange(0.0, path.length + _STEP, _STEP)).T
-    off = np.flatnonzero(np.abs(z - z[0]) > LEVEL)
-    if not len(off):
-        return None
-    below = np.flatnonzero(np.abs(z - z[-1]) > LEVEL)
-    return float(x[off[0]]), float(x[below[-1]])
+@dataclass(frozen=True)
+class _Curve:
+    """Samples of the wheel-centre curve: arc length, x and z (n,) [m]."""
+
+    s: Floats
+    x: Floats
+    z: Floats
+
+    @classmethod
+    def of(cls, terrain: Terrain, radius: float) -> Self:
+        path = wheel_path(terrain, radius)
+        s = np.arange(0.0, path.length + _STEP, _STEP)
+        return cls(s, *path.centres(s).T)
+
+    def faces_span(self) -> tuple[float, float] | None:
+        """Where a wheel's centre leaves the level of the start, and where it has reached that of
+        the landing, along x [m]; None on level ground.
+        """
+        off = np.flatnonzero(np.abs(self.z - self.z[0]) > LEVEL)
+        if not len(off):
+            return None
+        below = np.flatnonzero(np.abs(self.z - self.z[-1]) > LEVEL)
+        return float(self.x[off[0]]), float(self.x[below[-1]])
 
 
 def _first(true: NDArray[np.bool_]) -> int | None:

@@ -121,8 +121,8 @@ class Metrics(Model):
     speed_mean: float = Field(description="along the course [m/s]")
     speed_stairs: float | None = Field(
         None,
-        description="along x, from the first contact with the first face to all wheels on the "
-        "landing [m/s]; null where the ground is level or the robot does not get there",
+        description="along the course, from the first contact with the first face to all wheels on "
+        "the landing [m/s]; null where the ground is level or the robot does not get there",
     )
     cost_of_transport: float | None = Field(
         None, description="energy per weight and way; null where it does not get on"

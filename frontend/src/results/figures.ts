@@ -47,7 +47,7 @@ export function figures(count: number, legLimit: number | undefined): Figure[] {
     { title: "Mean speed", hint: "Along the course", of: (m) => `${fixed(m.speed_mean, 2)} m/s` },
     {
       title: "On the stairs",
-      hint: "Mean speed along x, from the first contact with the first face to all wheels on the landing",
+      hint: "Mean speed along the wheels’ way, from the first contact with the first face to all wheels on the landing",
       of: (m) => maybe(m.speed_stairs, 2, " m/s"),
     },
     {
