@@ -59,7 +59,11 @@ def compare(
         if run.outcome != "success":
             failures.append(f"{terrain.name}: {run.outcome}: {run.reason}")
             continue
-        steady = outcome(sw.plan(*asked, diagnose=False), options, seed)
+        slow = sw.plan(*asked, diagnose=False)
+        if not slow.feasible:
+            failures.append(f"{terrain.name}: no steady plan beside the fast one")
+            continue
+        steady = outcome(slow, options, seed)
         if steady.outcome == "success" and run.metrics.speed_stairs and steady.metrics.speed_stairs:
             speeds.append(run.metrics.speed_stairs)
             ratios.append(run.metrics.speed_stairs / steady.metrics.speed_stairs)
