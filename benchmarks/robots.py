@@ -5,21 +5,21 @@
 A case counts where the plan is certified, its rollout succeeds, and 29 of 29 randomised trials
 do. Were a case to fail one time in ten or more often, 29 successes in a row would come with a
 probability of at most 0.9^29 = 0.047, so they support a reliability of 90 % with 95 % confidence.
-That is how ASTM's practice counts: F3580-24 (stairs; of exoskeletons) gives 29 repetitions without
-a failure as its example for 90 %; E2804-11(2020) (stairs and landings; of response robots) asks for
-repetitions that tell in a statistically significant way how reliable a robot is. Of the
-standards only what their publisher shows of them was read. A case with fewer successes says how the
-others ended, and supports less.
+ASTM counts like that: F3580-24 (stairs, of exoskeletons) has 29 repetitions without a failure as
+its example for 90 %, E2804-11(2020) (stairs and landings, of response robots) asks for repetitions
+that tell in a statistically significant way how reliable a robot is. Of both only what their
+publisher shows was read, and trials in a simulator are no test by either. A case with fewer
+successes says how the others ended, and supports less.
 
 Each trial draws, evenly from its range, what `sw.trials` draws by default: friction +-0.1 (of 0.6),
-mass +-10 %, centre of mass +-2 cm along and up, terrain higher or lower by up to 1 cm in all, sensor
-noise, 4 ms of delay; the robot knows none of it. Walls are the highest on a grid of 1 cm that is
-planned with all below it on a grid of 10 cm, ramps likewise in degrees, so they stand at the edge of
-what is possible, where trials fail more often than the plan. All of it is statics and simulation: no
-hardware has run it, and stairs of a test method are no stairs of a building.
+mass +-10 %, centre of mass +-2 cm along and up, the rise of all steps together +-1 cm, sensor
+noise, 4 ms of delay; the robot knows none of it. Walls are the highest on a grid of 1 cm for which
+all lower ones on a grid of 10 cm are planned too, ramps likewise in degrees up to 45: they stand at
+the edge of what is possible, where trials fail sooner than elsewhere. All of it is statics and
+simulation: no hardware has run it.
 
-Rows are kept in a folder by the hash of the code and the question, so that a run that was ended goes
-on, and several may share the work.
+Rows are kept in a folder by the hash of the code and the question, so that a run that was ended
+goes on, and several may share the work.
 """
 
 from __future__ import annotations

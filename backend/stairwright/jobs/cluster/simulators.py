@@ -26,6 +26,7 @@ from .connection import CONNECT_LIMIT, configured_security, dask_plugin, knock
 logger = logging.getLogger(__name__)
 
 PATIENCE = 60.0  # s that a job waits for a scheduler with workers
+_PREPARE_LIMIT = 300.0  # s for workers to load the core
 _RETRY = 2.0  # s between attempts to connect
 _LOOK = 1.0  # s between looks at the cluster
 _PRIORITY = 10  # of Dask's: somebody waits for a job, and cells of studies come by the thousand
@@ -68,6 +69,7 @@ class DaskSimulators:
         self._topic = f"stairwright-{secrets.token_hex(8)}"
         self._trouble = "it was not asked yet"
         self._client: Any = None
+        self._preparing = False  # workers load the core
         self._connected = asyncio.Event()
         self._heard: dict[str, Shares] = {}  # by run
         self._working: set[asyncio.Task[Any]] = set()
@@ -89,11 +91,14 @@ class DaskSimulators:
         Raises:
             Unreachable: If there is no scheduler with workers for too long.
         """
-        try:
-            async with asyncio.timeout(PATIENCE):
-                await self._connected.wait()
-        except TimeoutError:
-            raise Unreachable(f"{self._address}: {self._trouble}", retry_after=PATIENCE) from None
+        while not self._connected.is_set():
+            try:
+                async with asyncio.timeout(PATIENCE):
+                    await self._connected.wait()
+            except TimeoutError:
+                if not self._preparing:
+                    why = f"{self._address}: {self._trouble}"
+                    raise Unreachable(why, retry_after=PATIENCE) from None
 
     async def carry_out(self, run: Run) -> work.Product:
         """See `Simulators`."""
@@ -185,7 +190,14 @@ class DaskSimulators:
             asynchronous=True,
             set_as_default=False,
         )
-        await client.register_plugin(dask_plugin())
+        self._preparing = True
+        try:
+            await asyncio.wait_for(client.register_plugin(dask_plugin()), _PREPARE_LIMIT)
+        except BaseException:
+            await client.close(timeout=2)
+            raise
+        finally:
+            self._preparing = False
         client.subscribe_topic(self._topic, self._hear)
         return client
 
