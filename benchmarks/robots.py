@@ -30,6 +30,7 @@ import math
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import stairwright as sw
@@ -59,10 +60,17 @@ class Kept:
         folder.mkdir(parents=True, exist_ok=True)
         self._folder = folder
 
+    def has(self, question: list[object]) -> bool:
+        """Whether the answer is kept."""
+        return self._path(question).exists()
+
+    def _path(self, question: list[object]) -> Path:
+        name = content_hash([rollout_engine(), *question]).removeprefix("sha256:")
+        return self._folder / f"{name}.json"
+
     def answer(self, question: list[object], find: Callable[[], object]) -> object:
         """What is kept, else what `find` gives, as JSON."""
-        name = content_hash([rollout_engine(), *question]).removeprefix("sha256:")
-        path = self._folder / f"{name}.json"
+        path = self._path(question)
         if not path.exists():
             partial = path.with_suffix(".partial")
             partial.write_text(json.dumps(find()))
@@ -108,6 +116,11 @@ def tried(terrain: sw.Terrain, robot: sw.Robot, trials: int) -> Tried:
     failures = ", ".join(f"{n} {how}" for how, n in ends)
     told = f"{found.successes} of {found.count}"
     return Tried(plan, outcome, f"{told} ({failures})" if failures else told)
+
+
+def row_of(case: str, terrain: sw.Terrain, robot: sw.Robot, trials: int) -> list[str]:
+    """The row of one case."""
+    return tried(terrain, robot, trials).row(robot.name, case)
 
 
 def with_payload(robot: sw.Robot) -> sw.Robot:
@@ -170,6 +183,7 @@ def main() -> None:
     parser.add_argument("--trials", type=int, default=TRIALS, help="0 for none")
     parser.add_argument("--robots", default=",".join(ROBOTS))
     parser.add_argument("--keep", type=Path, help="folder of answers that are kept")
+    parser.add_argument("--finish", action="store_true", help="no trials of rows not kept yet")
     parser.add_argument("--write", type=Path)
     options = parser.parse_args()
     kept = Kept(options.keep or Path(tempfile.mkdtemp(prefix="robots-")))
@@ -179,13 +193,12 @@ def main() -> None:
         for case, terrain, loaded in (*cases(robot), *searched(robot, kept)):
             question: list[object] = [case, terrain.model_dump(mode="json")]
             question += [loaded.model_dump(mode="json"), options.trials]
-
-            def ask(
-                case: str = case, terrain: sw.Terrain = terrain, loaded: sw.Robot = loaded
-            ) -> list[str]:
-                return tried(terrain, loaded, options.trials).row(loaded.name, case)
-
-            row = [str(each) for each in kept.answer(question, ask)]  # type: ignore[attr-defined]
+            ask = partial(row_of, case, terrain, loaded)
+            if options.finish and not kept.has(question):
+                row = ask(0)
+                row[3] = "not run" if row[2] == "yes, success" else row[3]
+            else:
+                row = [*kept.answer(question, partial(ask, options.trials))]  # type: ignore[misc]
             rows.append([name, *row[1:]])
             print(rows[-1], flush=True)
     text = "\n".join([

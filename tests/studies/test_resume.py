@@ -91,7 +91,8 @@ def test_what_is_out_of_date_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyP
             _heights(0.05, terrain={"kind": "stair", "rise": 0.1, "platform": 3.0}),
             "the terrain is out of date",
         ),
-        (_heights(0.05, method="nominal"), "it is another study"),
+        (_heights(0.05, method="nominal"), "other values of method"),
+        (study({"name": "ramp.slope", "values": [0.1, 0.2]}), "it is another study"),
     ):
         with pytest.raises(InputError, match=why):
             sw.study(document, workers=1, store=path)

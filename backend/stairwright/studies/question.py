@@ -195,9 +195,7 @@ def _replace(robot: Robot, data: dict[str, Any], path: Sequence[str], value: Val
             known = _left_out(robot, path[: depth + 1])
             there = sorted(name for name, part in here.items() if part is not None)
             if depth and there and not known:
-                raise InputError(
-                    f"the robot has no such part; it has: {', '.join(there)}", (shown,)
-                )
+                raise InputError(f"no such part; the robot has: {', '.join(there)}", (shown,))
             here[key] = known  # validation says whether there may be such a thing
             data["schema"] = _SCHEMA_2
         here = _entered(here, key, shown)

@@ -10,7 +10,7 @@ import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from stairwright.errors import StairwrightError
+from stairwright.jobs.failures import Failure
 
 if TYPE_CHECKING:
     from distributed import Worker
@@ -19,8 +19,11 @@ NICENESS = 10  # whoever drags a corner comes first
 _LOOK = 1.0  # s between looks at what the worker is at
 
 
-class OtherVersion(StairwrightError):
+class OtherVersion(Failure):
     """The worker runs other code: its answers would not be those that were asked for."""
+
+    status = 503
+    kind = "other-version"
 
 
 def check_version(mine: str, asked: str) -> None:
