@@ -1,10 +1,10 @@
 """The atlas: how high, on what and how loaded every preset robot climbs, as boundary studies.
 
-    python benchmarks/atlas.py [--workers 2] [--robots go2w b2w] [--draw]
+    python benchmarks/atlas.py [--workers 2] [--robots go2w b2w] [--draw] [--check 20]
 
 Studies are kept in the data folder, so a run that was interrupted goes on. Writes docs/atlas.csv,
 docs/images/atlas-*.svg and the tables between the marks in docs/atlas.md; `--draw` only draws what
-docs/atlas.csv holds.
+docs/atlas.csv holds, and `--check` asks the planner of today about some borders of it.
 """
 
 from __future__ import annotations
@@ -12,6 +12,8 @@ from __future__ import annotations
 import argparse
 import csv
 import math
+import random
+import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -123,13 +125,47 @@ def load() -> list[Row]:
         ]
 
 
+def check(count: int) -> None:
+    """Ask about both sides of `count` borders of the table, drawn at random but each time alike."""
+    rows = [
+        row for row in load() if not math.isnan(row["border"]) and not math.isnan(row["beyond"])
+    ]
+    moved = 0
+    for row in random.Random(0).sample(rows, min(count, len(rows))):
+        asked = dict(studies_of(row["robot"]))[row["map"]]
+        axes = []
+        for axis in asked["axes"]:
+            at = [row["friction"]] if axis["name"] == "friction" else [row["x"]]
+            axes.append({"name": axis["name"], "values": at})
+            if "boundary" in axis:
+                axes[-1]["values"] = [row["border"], row["beyond"]]
+        document = {
+            "schema": "stairwright/study/1", "robot": row["robot"], **asked, "axes": axes,
+            "diagnose": "none",
+        }  # fmt: skip
+        with tempfile.TemporaryDirectory() as folder:
+            found = sw.study(document, workers=1, store=Path(folder) / "c.zarr")
+            passes = [bool(each) for each in found.dataset.feasible.values.ravel()]
+        place = f"{row['map']} {row['robot']} at {row['x']:g}, friction {row['friction']:g}"
+        if passes != [True, False]:
+            moved += 1
+            now = ["it passes" if each else "it fails" for each in passes]
+            print(f"{place}: at {row['border']:g} {now[0]}, at {row['beyond']:g} {now[1]}",
+                  flush=True)  # fmt: skip
+    print(f"{moved} of {min(count, len(rows))} borders have moved")
+
+
 def main() -> None:
     """Compute, draw, write."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--workers", type=int)
     parser.add_argument("--robots", nargs="+", default=robots())
     parser.add_argument("--draw", action="store_true", help="draw what is there")
+    parser.add_argument("--check", type=int, metavar="N", help="try N borders of the table")
     given = parser.parse_args()
+    if given.check:
+        check(given.check)
+        return
     if not given.draw:
         plan("flat")
         save(compute(given.robots, given.workers), given.robots)

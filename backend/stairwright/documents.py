@@ -81,14 +81,16 @@ def parse(model: type[M], data: Any) -> M:
 
 def _first_error(error: ValidationError, model: type[BaseModel]) -> InputError:
     first = error.errors(include_url=False, include_input=False, include_context=True)[0]
+    # A part that begins with ~ names an alternative of the model, nothing that the data has.
+    where = tuple(part for part in first["loc"] if not str(part).startswith("~"))
     cause = first.get("ctx", {}).get("error")
     if isinstance(cause, InputError):
-        return cause.within(*first["loc"])
+        return cause.within(*where)
     message = wording(first)
     if first["type"] == "extra_forbidden" and len(first["loc"]) == 1:
         names = ", ".join(field.alias or name for name, field in model.model_fields.items())
         message += f"; {model.__name__} has: {names}"
-    return InputError(message, tuple(first["loc"]))
+    return InputError(message, where)
 
 
 def wording(error: Mapping[str, Any]) -> str:

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 
-from stairwright.jobs import live
-from stairwright.jobs.live import NAMES, STRIDE, Broadcast, LiveSeries
+from stairwright.jobs.live import NAMES, STRIDE, Broadcast, LiveSeries, append
 from stairwright.planning.planner import plan
 from stairwright.simulation.rollout import rollout
 
 
-def test_pieces_make_up_the_series(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(live, "EVERY", 0.001)  # many pieces in a short run
+def test_pieces_make_up_the_series() -> None:
     course = plan({"points": [[-0.5, 0.0], [1.0, 0.0]]}, method="nominal")
     shown = LiveSeries()
-    run = rollout(course, observe=Broadcast(shown.path))
+    run = rollout(course, observe=Broadcast(partial(append, shown.path), 0.001))  # many pieces
     chunks: list[dict[str, Any]] = []
     offset = 0
     for _ in range(2):  # the second look finds nothing new

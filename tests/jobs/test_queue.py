@@ -110,3 +110,21 @@ def test_cancelled_in_the_moment_of_its_turn() -> None:
         assert queue.running == 0
 
     asyncio.run(story())
+
+
+def test_more_slots_let_those_in_who_wait() -> None:
+    async def story() -> None:
+        queue, log, done = FairQueue(1, 10, "tasks"), [], asyncio.Event()
+        tasks = [asyncio.create_task(hold(queue, "a", log, done)) for _ in range(4)]
+        await asyncio.sleep(0)
+        assert queue.running == 1
+        queue.resize(3)
+        await asyncio.sleep(0)
+        assert len(log) == queue.running == 3
+        queue.resize(1)  # what runs goes on
+        assert queue.running == 3
+        done.set()
+        await asyncio.gather(*tasks)
+        assert queue.running == 0
+
+    asyncio.run(story())

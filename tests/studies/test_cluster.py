@@ -16,6 +16,7 @@ import pytest
 
 import stairwright as sw
 from stairwright.errors import InputError
+from stairwright.jobs.cluster.worker import OtherVersion
 from stairwright.studies import worker
 from stairwright.studies.batches import FIRST, LONGEST, MOST, TARGET, BatchSizes
 from stairwright.studies.cluster import ClusterEngine
@@ -26,7 +27,7 @@ from stairwright.studies.serial import SerialEngine
 from stairwright.studies.store import ResultStore
 from stairwright.studies.study import prepared
 from stairwright.studies.version import engine_of
-from stairwright.studies.worker import OtherVersion, evaluate_batch
+from stairwright.studies.worker import evaluate_batch
 
 from .small import STEP, identical, study
 

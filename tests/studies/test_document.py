@@ -33,7 +33,7 @@ def _refused(document: object) -> InputError:
         (study(HEIGHT, HEIGHT), "axes.1.name"),
         (study({"name": "step.height"}), "axes.0.values"),
         (study({"name": "step.height", "values": [0.1, 0.1]}), "axes.0.values"),
-        (study({"name": "step.height", "values": [math.nan]}), "axes.0.values.0.~number"),
+        (study({"name": "step.height", "values": [math.nan]}), "axes.0.values.0"),
         (study({"name": "step.height", "from": 0.1, "to": math.inf, "count": 3}), "axes.0.to"),
         (study({"name": "step.height", "from": 0.1, "to": 0.2}), "axes.0.count"),
         (study({"name": "step.height", "from": 0.1, "to": 0.2, "count": 10**9}), "axes.0.count"),
@@ -51,6 +51,8 @@ def _refused(document: object) -> InputError:
         (study(HEIGHT, {"name": "ramp.slope", "values": [0.3]}), "axes"),
         (study(HEIGHT, terrain="single-stair-036"), "axes.0.name"),
         (study(HEIGHT, robot="a dog"), "robot"),
+        (study(HEIGHT, robot="/etc/passwd"), "robot"),
+        ([HEIGHT], "study"),
         (study(HEIGHT, {"name": "robot", "values": ["a1_wheeled", "cat"]}), "axes.1.values.1"),
         (study({"name": "step.height", "values": [-1.0, 0.0]}), "axes.0"),
         (study(HEIGHT, colour="red"), "colour"),
@@ -59,8 +61,19 @@ def _refused(document: object) -> InputError:
         (study({"name": "seed", "values": [1]}, HEIGHT), "axes.0.name"),
     ],
 )
-def test_what_is_wrong_is_named(document: dict[str, object], field: str) -> None:
-    assert _refused(document).path.startswith(field.removesuffix(".~number"))
+def test_what_is_wrong_is_named(document: object, field: str) -> None:
+    path = _refused(document).path
+    assert path.startswith(field)
+    assert "~" not in path
+
+
+def test_a_part_that_a_robot_does_not_have() -> None:
+    """M20 has motors of their own in thighs and calves: what there is is named."""
+    document = study({"name": "robot.actuators.leg.torque", "values": [50]}, HEIGHT, robot="m20")
+    refused = _refused(document)
+    assert refused.path == "axes.0"
+    assert "robot.actuators.leg.torque: no such part" in refused.message
+    assert "calf, thigh, wheel" in refused.message
 
 
 def test_too_much_is_refused_before_anything_is_made() -> None:

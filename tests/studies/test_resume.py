@@ -84,12 +84,15 @@ def test_what_is_out_of_date_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyP
     heavier = load_robot("a1_wheeled").model_dump(mode="json")
     heavier["trunk"]["mass"] += 1.0
     for document, why in (
+        (_heights(0.05, robot="go2w"), "it is about a1_wheeled, not go2w"),
+        (_heights(0.05, friction=0.4, seed=1), "other values of friction, seed were asked for"),
         (_heights(0.05, robot=heavier), "the robot a1_wheeled is out of date"),
         (
             _heights(0.05, terrain={"kind": "stair", "rise": 0.1, "platform": 3.0}),
             "the terrain is out of date",
         ),
-        (_heights(0.05, method="nominal"), "it is another study"),
+        (_heights(0.05, method="nominal"), "other values of method"),
+        (study({"name": "ramp.slope", "values": [0.1, 0.2]}), "it is another study"),
     ):
         with pytest.raises(InputError, match=why):
             sw.study(document, workers=1, store=path)

@@ -15,6 +15,7 @@ from stairwright.jobs.memory import give_memory_back
 from stairwright.jobs.planning import Planning
 from stairwright.jobs.pool import WorkerPool
 from stairwright.jobs.rollouts import Rollouts
+from stairwright.jobs.simulators import PoolSimulators, Simulators
 from stairwright.jobs.worker import Limits
 from stairwright.library import load_robot, load_terrain, robots, terrains
 from stairwright.storage.lock import FolderLock
@@ -62,16 +63,15 @@ class Services:
         self.store = Store(settings.data)
         memory = settings.worker_memory
         self.plan_pool = WorkerPool("plans", settings.plan_workers, Limits(memory=memory), spares=1)
-        idle = Limits(memory=memory, nice=ROLLOUT_NICENESS)
-        self.rollout_pool = WorkerPool("rollouts", settings.rollout_workers, idle, spares=1)
         self.readiness = Readiness(self.plan_pool)
         self.upload_pool = WorkerPool("uploads", 1, Limits(memory=UPLOAD_MEMORY, sealed=True))
         self.planning = Planning(
             self.store, self.plan_pool, settings.plan_queue_limit, settings.plan_deadline
         )
-        self.rollouts = Rollouts(
-            self.store, self.rollout_pool, settings.queue_limit, settings.rollout_deadline
-        )
+        self.pools = [self.plan_pool, self.upload_pool]
+        self.simulators = self._make_simulators()
+        self.rollouts = Rollouts(self.store, self.simulators, settings.queue_limit)
+        self.simulators.resized = self.rollouts.queue.resize
         self.studies = Studies(
             self.store, settings.study_workers, settings.scheduler, settings.study_queue_limit
         )
@@ -82,10 +82,17 @@ class Services:
         self._tasks: list[asyncio.Task[None]] = []
         self._show_gauges()
 
-    @property
-    def pools(self) -> tuple[WorkerPool, ...]:
-        """All worker pools."""
-        return (self.plan_pool, self.rollout_pool, self.upload_pool)
+    def _make_simulators(self) -> Simulators:
+        """The cluster's, or processes of this machine."""
+        settings, artefacts = self.settings, self.store.artefacts
+        if settings.scheduler:
+            from stairwright.jobs.cluster.simulators import DaskSimulators
+
+            return DaskSimulators(settings.scheduler, artefacts, settings.rollout_deadline)
+        limits = Limits(memory=settings.worker_memory, nice=ROLLOUT_NICENESS)
+        pool = WorkerPool("rollouts", settings.rollout_workers, limits, spares=1)
+        self.pools.append(pool)
+        return PoolSimulators(pool, artefacts, settings.rollout_deadline)
 
     async def start(self) -> None:
         """Take over from an earlier process, then start workers and housekeeping."""
@@ -120,9 +127,8 @@ class Services:
         self._tasks.append(asyncio.create_task(self.readiness.rehearse()))
         await self.readiness.tried.wait()  # what plans cannot, others may
         await asyncio.sleep(FIRST_SECOND)
-        await (
-            self.rollout_pool.start()
-        )  # that for uploads, which is large, waits until it is needed
+        # The pool for uploads, which is large, waits until it is needed.
+        await self.simulators.start()
         load_scenes()
         gc.freeze()  # a collector that looks at all that was imported holds every request up
 
@@ -134,6 +140,7 @@ class Services:
                 await task
         await self.rollouts.stop()
         await self.studies.stop()
+        await self.simulators.stop()
         await self.sessions.close_all()
         await asyncio.gather(*(pool.stop() for pool in self.pools))
         self.store.close()
@@ -181,4 +188,5 @@ class Services:
             queue.observe = partial(self.metrics.waited, queue.name)
             show(f"{queue.name}_waiting", "Waiting tasks", partial(getattr, queue, "length"))
             show(f"{queue.name}_running", "Running tasks", partial(getattr, queue, "running"))
+        show("simulators", "Rollouts at once", lambda: self.simulators.workers)
         show("sessions", "Open 3D scenes", self.sessions.__len__)

@@ -78,7 +78,10 @@ class Settings:
     queue_limit: int = field(default=64, metadata=_about("rollouts that may wait", 0))
     plan_queue_limit: int = field(default=64, metadata=_about("plans that may wait", 0))
     scheduler: str = field(
-        default="", metadata=_about("a Dask scheduler for studies; empty for processes of ours")
+        default="",
+        metadata=_about(
+            "a Dask scheduler for studies, rollouts and trials; empty for processes of ours"
+        ),
     )
     study_workers: int = field(
         default_factory=all_cores, metadata=_about("processes for studies, where there are any", 1)

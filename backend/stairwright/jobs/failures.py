@@ -42,6 +42,17 @@ class WorkerDied(Failure):
     kind = "worker-died"
 
 
+class GivenUp(WorkerDied):
+    """Workers have died at it again and again: not once more."""
+
+
+class Unreachable(Failure):
+    """The cluster that was to do the work cannot be reached, or has no workers."""
+
+    status = 503
+    kind = "unreachable"
+
+
 class OutOfMemory(Failure, MemoryError):
     """The work wants more memory than a worker may have: asking again does not help."""
 
@@ -63,7 +74,9 @@ class Interrupted(Failure):
     kind = "interrupted"
 
 
-LOST = frozenset({WorkerDied.kind, Interrupted.kind})  # no fault of the question's: ask again
+LOST = frozenset(
+    {WorkerDied.kind, Interrupted.kind, Unreachable.kind}
+)  # no fault of the question's: ask again
 
 
 def is_lost(error: Mapping[str, Any] | None) -> bool:

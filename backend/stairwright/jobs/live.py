@@ -10,6 +10,7 @@ import os
 import tempfile
 import time
 import weakref
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -45,19 +46,21 @@ class LiveSeries:
 
 
 class Broadcast:
-    """Called by a worker again and again with the record so far; writes what is new."""
+    """Called again and again by who rolls out with the record so far; sends what is new."""
 
-    def __init__(self, path: str) -> None:
-        self._path = path
-        self._next = 0  # the first sample, of those recorded, that was not written yet
-        self._written = -EVERY
+    def __init__(self, send: Callable[[bytes], None], every: float = EVERY) -> None:
+        """`send` takes a chunk, a line of JSON; at most one in `every` [s]."""
+        self._send = send
+        self._every = every
+        self._next = 0  # the first sample, of those recorded, that was not sent yet
+        self._sent = -every
 
     def __call__(self, recorder: Recorder) -> None:
-        """Write a chunk if it is time for one."""
+        """Send a chunk if it is time for one."""
         now = time.monotonic()
-        if now - self._written < EVERY or len(recorder) <= self._next:
+        if now - self._sent < self._every or len(recorder) <= self._next:
             return
-        self._written = now
+        self._sent = now
         series = recorder.series(self._next, STRIDE)
         if not len(series.time):  # what follows is not finite
             return
@@ -65,9 +68,13 @@ class Broadcast:
         for name in NAMES:
             chunk[name] = np.round(getattr(series, name), DIGITS)
         self._next += STRIDE * len(chunk["time"])
-        line = orjson.dumps(chunk, option=orjson.OPT_SERIALIZE_NUMPY) + b"\n"
-        handle = os.open(self._path, os.O_WRONLY | os.O_APPEND)
-        try:
-            os.write(handle, line)
-        finally:
-            os.close(handle)
+        self._send(orjson.dumps(chunk, option=orjson.OPT_SERIALIZE_NUMPY) + b"\n")
+
+
+def append(path: str, line: bytes) -> None:
+    """Write a chunk to the file of a `LiveSeries`, at once and whole."""
+    handle = os.open(path, os.O_WRONLY | os.O_APPEND)
+    try:
+        os.write(handle, line)
+    finally:
+        os.close(handle)

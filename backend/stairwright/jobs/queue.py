@@ -121,6 +121,15 @@ class FairQueue:
         self._running[owner] -= 1
         if not self._running[owner]:
             del self._running[owner]
+        self._let_in()
+
+    def resize(self, capacity: int) -> None:
+        """There are more slots now, or fewer; what runs goes on."""
+        self.capacity = capacity
+        self._let_in()
+
+    def _let_in(self) -> None:
+        """Whoever may start now."""
         while following := self._next():
             line = self._waiting.pop(following)
             turn = line.popleft()

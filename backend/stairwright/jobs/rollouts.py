@@ -19,14 +19,14 @@ from stairwright.storage.store import Store
 
 from . import work
 from .engine import rollout_engine
-from .failures import Interrupted, WorkerDied, is_lost, problem_of
+from .failures import GivenUp, Interrupted, WorkerDied, is_lost, problem_of
 from .job import Job
 from .journal import Journal
 from .planning import shelve_plan
-from .pool import WorkerPool
 from .questions import PlanQuestion, RolloutQuestion
 from .queue import FairQueue
 from .run import Run, forecast
+from .simulators import Simulators
 
 logger = logging.getLogger(__name__)
 
@@ -40,12 +40,13 @@ RESULT = {"rollout": "/api/v1/rollouts/{}", "trials": "/api/v1/trials/{}"}  # by
 class Rollouts:
     """All such jobs of one service. Belongs to one event loop."""
 
-    def __init__(self, store: Store, pool: WorkerPool, queue_limit: int, deadline: float) -> None:
-        self.queue = FairQueue(pool.workers, queue_limit, "rollouts", reserve=pool.spares)
+    def __init__(self, store: Store, simulators: Simulators, queue_limit: int) -> None:
+        self.queue = FairQueue(
+            simulators.workers, queue_limit, "rollouts", reserve=simulators.spares
+        )
         self.journal = Journal(store.jobs)
         self._store = store
-        self._pool = pool
-        self._deadline = deadline
+        self._simulators = simulators
         self._jobs: OrderedDict[str, Job] = OrderedDict()
         self._runs: dict[str, Run] = {}
         self._stopping: set[asyncio.Task[None]] = set()
@@ -187,27 +188,22 @@ class Rollouts:
                 return await self._simulate(run)
             except WorkerDied as error:
                 run.begin_anew()
+                if isinstance(error, GivenUp):
+                    raise
                 if run.deaths >= MOST_DEATHS:
                     message = f"given up: {run.deaths} workers have died at it (out of memory?)"
-                    raise WorkerDied(message) from error
+                    raise GivenUp(message) from error
                 logger.warning("a rollout begins anew: its worker died")
                 await self._note(run)
 
     async def _simulate(self, run: Run) -> Entry:
         async with self.queue.slot(run.owner, accepted=True):
-            await self._pool.prepared.wait()  # nothing runs before there is somebody to do it
+            await self._simulators.ready()  # nothing runs before there is somebody to do it
             run.begin()
             await self._note(run)
             watcher = asyncio.create_task(run.watch())
             try:
-                product = await self._pool.run(
-                    work.try_out if run.question.kind == "trials" else work.simulate,
-                    run.question.data,
-                    str(self._store.artefacts.folder),
-                    run.gauge.path,
-                    run.live.path,
-                    deadline=self._deadline * run.question.runs,
-                )
+                product = await self._simulators.carry_out(run)
             finally:
                 watcher.cancel()
         return await asyncio.to_thread(self._shelve, run.question, product)

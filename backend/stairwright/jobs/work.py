@@ -5,9 +5,9 @@ from __future__ import annotations
 import contextlib
 import gzip
 import logging
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,11 +21,14 @@ from stairwright.storage.artefacts import Artefacts, name_of
 
 from . import summaries
 from .gauge import Gauge
-from .live import Broadcast
+from .live import Broadcast, append
 
 if TYPE_CHECKING:
     from stairwright.export.table import Kind
     from stairwright.planning.plan import Plan
+    from stairwright.simulation.record import Recorder
+    from stairwright.simulation.result import Rollout
+    from stairwright.simulation.trials_result import Trials
 
 Question = Mapping[str, Any]
 GENTLE = {"name": "warm-up", "points": [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.04], [1.0, 0.04]]}
@@ -40,7 +43,7 @@ class Product:
     digest: str
     size: int
     summary: Mapping[str, Any]
-    content: bytes = b""  # a plan's JSON, for who waits for it
+    content: bytes = b""  # its JSON until it is kept; of a plan for who waits for it, too
     plan: Product | None = None  # that a rollout made for itself
 
 
@@ -52,7 +55,10 @@ def solve(question: Question, artefacts: str | None) -> Product:
     Raises:
         InputError: If a value is bad.
     """
-    return _keep_plan(_plan(question), artefacts)
+    made = product_of_plan(_plan(question))
+    if artefacts:
+        _artefacts(artefacts).put(made.content)
+    return made
 
 
 def preview(question: Question) -> bytes:
@@ -81,12 +87,6 @@ def _artefacts(folder: str) -> Artefacts:
     return Artefacts(Path(folder))
 
 
-def _keep_plan(plan: Plan, artefacts: str | None) -> Product:
-    content = plan.model_dump_json().encode()
-    digest = _artefacts(artefacts).put(content) if artefacts else name_of(content)
-    return Product(plan.id, digest, len(content), summaries.of_plan(plan), content)
-
-
 def simulate(question: Question, artefacts: str, gauge_path: str, live_path: str) -> Product:
     """Roll a plan out.
 
@@ -98,15 +98,26 @@ def simulate(question: Question, artefacts: str, gauge_path: str, live_path: str
         InputError: If a value is bad or the plan has nothing that could be carried out.
         Cancelled: If the gauge says so.
     """
-    from stairwright.simulation.rollout import rollout
-
     gauge = Gauge(gauge_path)
     base = PLANNING_SHARE if question.get("ask") else 0.0
-    plan = _plan_of(question, artefacts)
+    plan = plan_of(question, _artefacts(artefacts))
     gauge.report(base)
 
     def progress(share: float) -> None:
         gauge.report(base + (1.0 - base) * share)
+
+    found = rolled_out(plan, question, progress, Broadcast(partial(append, live_path)))
+    return keep(found, _artefacts(artefacts))
+
+
+def rolled_out(
+    plan: Plan,
+    question: Question,
+    progress: Callable[[float], None],
+    observe: Callable[[Recorder], None],
+) -> Product:
+    """The rollout that `simulate` is asked for, not kept yet."""
+    from stairwright.simulation.rollout import rollout
 
     run = rollout(
         plan,
@@ -115,13 +126,10 @@ def simulate(question: Question, artefacts: str, gauge_path: str, live_path: str
         seed=question["seed"],
         disturbance=question.get("disturbance"),
         progress=progress,
-        observe=Broadcast(live_path),
+        observe=observe,
     )
-    content = run.model_dump_json().encode()
-    digest = _artefacts(artefacts).put(content)
-    summary = summaries.of_rollout(run, plan)
-    made = replace(_keep_plan(plan, artefacts), content=b"") if question.get("ask") else None
-    return Product(run.id, digest, len(content), summary, plan=made)
+    made = product_of_plan(plan) if question.get("ask") else None
+    return _product(run, summaries.of_rollout(run, plan), made)
 
 
 def try_out(question: Question, artefacts: str, gauge_path: str, _: str) -> Product:
@@ -136,7 +144,7 @@ def try_out(question: Question, artefacts: str, gauge_path: str, _: str) -> Prod
     from stairwright.simulation.trials import trials
 
     gauge = Gauge(gauge_path)
-    plan = _plan_of(question, artefacts)
+    plan = plan_of(question, _artefacts(artefacts))
     found = trials(
         plan,
         question["count"],
@@ -146,14 +154,39 @@ def try_out(question: Question, artefacts: str, gauge_path: str, _: str) -> Prod
         controller=question["controller"] or None,
         progress=gauge.report,
     )
+    return keep(tried(found, plan, question), _artefacts(artefacts))
+
+
+def tried(found: Trials, plan: Plan, question: Question) -> Product:
+    """The trials that `try_out` is asked for, not kept yet."""
+    made = product_of_plan(plan) if question.get("ask") else None
+    return _product(found, summaries.of_trials(found, plan), made)
+
+
+def _product(found: Rollout | Trials, summary: Mapping[str, Any], plan: Product | None) -> Product:
     content = found.model_dump_json().encode()
-    digest = _artefacts(artefacts).put(content)
-    summary = summaries.of_trials(found, plan)
-    made = replace(_keep_plan(plan, artefacts), content=b"") if question.get("ask") else None
-    return Product(found.id, digest, len(content), summary, plan=made)
+    return Product(found.id, name_of(content), len(content), summary, content, plan)
 
 
-def _plan_of(question: Question, artefacts: str) -> Plan:
+def product_of_plan(plan: Plan) -> Product:
+    """A plan, not kept yet."""
+    content = plan.model_dump_json().encode()
+    return Product(plan.id, name_of(content), len(content), summaries.of_plan(plan), content)
+
+
+def keep(product: Product, artefacts: Artefacts) -> Product:
+    """Put it among the artefacts, with its plan, and hold its content no longer."""
+    artefacts.put(product.content)
+    made = None if product.plan is None else keep(product.plan, artefacts)
+    return replace(product, content=b"", plan=made)
+
+
+def plan_of(question: Question, artefacts: Artefacts | None = None) -> Plan:
+    """The plan that a rollout's question asks for, holds, or names among the artefacts.
+
+    Raises:
+        InputError: If it is none, or not stored any more.
+    """
     from stairwright.planning.plan import Plan
 
     if question.get("ask"):
@@ -161,12 +194,21 @@ def _plan_of(question: Question, artefacts: str) -> Plan:
     elif question.get("plan"):
         plan = Plan.model_validate(question["plan"])
     else:
-        try:
-            content = _artefacts(artefacts).content(question["plan_digest"])
-        except FileNotFoundError:
-            raise InputError("the plan is not stored any more", ("plan_id",)) from None
-        plan = Plan.model_validate_json(content)
+        assert artefacts is not None
+        plan = Plan.model_validate_json(stored_plan(question, artefacts))
     return plan
+
+
+def stored_plan(question: Question, artefacts: Artefacts) -> bytes:
+    """The JSON of the plan that a rollout's question names.
+
+    Raises:
+        InputError: If it is not stored any more.
+    """
+    try:
+        return artefacts.content(question["plan_digest"])
+    except FileNotFoundError:
+        raise InputError("the plan is not stored any more", ("plan_id",)) from None
 
 
 def export(packed: bytes, kind: Kind, format_name: str, rate: float | None) -> bytes:

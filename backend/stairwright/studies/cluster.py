@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import queue
-import socket
 import time
 from collections import deque
 from collections.abc import Iterator, Sequence
@@ -13,6 +12,13 @@ from typing import Any
 
 from stairwright.documents import content_hash
 from stairwright.errors import InputError, StairwrightError
+from stairwright.jobs.cluster.connection import (
+    CONNECT_LIMIT,
+    configured_security,
+    dask_plugin,
+    knock,
+)
+from stairwright.jobs.cluster.worker import OtherVersion
 
 from .batches import IN_FLIGHT, BatchSizes
 from .cell import evaluate
@@ -23,10 +29,8 @@ from .question import Questions
 from .serial import Finished, Stopped
 from .variables import FAILED, Record, complete
 from .version import engine_of
-from .worker import Batch, CorePlugin, OtherVersion, evaluate_batch
+from .worker import Batch, evaluate_batch
 
-CONNECT_LIMIT = 20.0  # s
-KNOCK_LIMIT = 5.0  # s
 MOST_RESTARTS = 3  # of this machine's cluster in one study
 _LOOK = 0.25  # s between looks whether it was stopped
 _COUNT_EVERY = 2.0  # s between counts of workers
@@ -106,7 +110,7 @@ class ClusterEngine:
                 self._local = LocalCluster(self._workers)
                 where, how = self._local.address, self._local.security
             else:
-                _knock(self._address)
+                knock(self._address)
                 where, how = self._address, configured_security()
             self._client = Client(where, security=how, timeout=CONNECT_LIMIT)
             self._client.register_plugin(dask_plugin())
@@ -115,19 +119,6 @@ class ClusterEngine:
             if self._address is not None:
                 raise InputError(f"cannot reach {self._address}: {why}", ("scheduler",)) from error
             raise ClusterLost(f"this machine's workers did not start: {why}") from error
-
-
-def _knock(address: str) -> None:
-    """Ask whether anybody listens: Dask itself would wait for somebody.
-
-    Raises:
-        OSError: If nobody does.
-        ValueError: If that is no address.
-    """
-    from distributed.comm import get_address_host_port
-
-    host, port = get_address_host_port(address)
-    socket.create_connection((host, port), timeout=KNOCK_LIMIT).close()
 
 
 def _meanwhile(
@@ -146,22 +137,6 @@ def _meanwhile(
             done, since = {}, time.monotonic()
     if done:
         yield done
-
-
-def configured_security() -> Any:
-    """TLS as Dask's own configuration says (DASK_DISTRIBUTED__COMM__TLS__...); None without."""
-    from distributed import Security
-
-    made = Security()
-    return made if made.require_encryption or made.tls_ca_file else None
-
-
-def dask_plugin() -> Any:
-    """The plugin that loads the core on every worker, as Dask wants it."""
-    from distributed import WorkerPlugin
-
-    kind: Any = type("StairwrightCore", (CorePlugin, WorkerPlugin), {})
-    return kind()
 
 
 class _Run:

@@ -17,6 +17,9 @@ from .document import Study
 from .store import SUFFIX, ResultStore
 
 FOLDER = "studies"
+_GIVEN = (
+    "friction", "method", "weights", "compute", "diagnose", "controller", "seed", "trials",
+)  # fmt: skip
 
 
 def studies_folder() -> Path:
@@ -83,12 +86,16 @@ def outdated(store: ResultStore, study: Study, engine: str) -> list[str]:
     old, out = store.study, []
     if [axis.name for axis in old.axes] != [axis.name for axis in study.axes]:
         return []
-    if _robots(old) != _robots(study):
-        changed = [name for name, mark in _robots(study).items() if _robots(old).get(name) != mark]
+    before, now = _robots(old), _robots(study)
+    if before != now:
+        changed = [name for name, mark in now.items() if before.get(name, mark) != mark]
         out.append(f"the robot {', '.join(changed)} is out of date" if changed else
-                   "the robots are others")  # fmt: skip
+                   f"it is about {', '.join(before)}, not {', '.join(now)}")  # fmt: skip
     if _ground(old) != _ground(study):
         out.append("the terrain is out of date")
+    given = [name for name in _GIVEN if getattr(old, name) != getattr(study, name)]
+    if given:
+        out.append(f"other values of {', '.join(given)} were asked for")
     if store.engine != engine:
         out.append("it was made by another version of the planner")
     return out

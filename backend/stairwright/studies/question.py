@@ -192,8 +192,11 @@ def _replace(robot: Robot, data: dict[str, Any], path: Sequence[str], value: Val
     here: Any = data
     for depth, key in enumerate(path[:-1]):
         if isinstance(here, dict) and here.get(key) is None:
-            # Validation says whether there may be such a thing.
-            here[key] = _left_out(robot, path[: depth + 1])
+            known = _left_out(robot, path[: depth + 1])
+            there = sorted(name for name, part in here.items() if part is not None)
+            if depth and there and not known:
+                raise InputError(f"no such part; the robot has: {', '.join(there)}", (shown,))
+            here[key] = known  # validation says whether there may be such a thing
             data["schema"] = _SCHEMA_2
         here = _entered(here, key, shown)
     last = path[-1]

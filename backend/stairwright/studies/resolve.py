@@ -29,6 +29,8 @@ def load_study(source: str | Path | Mapping[str, Any] | Study) -> Study:
         study = source
     elif isinstance(source, Mapping):
         study = parse(Study, dict(source))
+    elif not isinstance(source, (str, Path)):
+        raise InputError("must be a study's document, or the name of its file", ("study",))
     else:
         study = parse(Study, load_mapping(Path(source)))
     return resolve(study, library.load_terrain, library.load_robot)
