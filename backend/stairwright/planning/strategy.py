@@ -67,6 +67,17 @@ def quick(planner: PathPlanner) -> Solved | Blocked:
     return most if isinstance(most, Solved) or most.opened else forgiving
 
 
+def roomy(planner: PathPlanner) -> Solved | Blocked:
+    """What the two soonest attempts lead to, for a path that is known to exist but for its room."""
+    for attempt in (AT_ONCE, FORGIVING):
+        found = planner.attempt(attempt)
+        if isinstance(found, Solved):
+            return found
+        if found.weak and not planner.torques:
+            return roomy(planner.within_torques)
+    return found
+
+
 def _search(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
     """The three steps."""
     tried: Tried = {}
