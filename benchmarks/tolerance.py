@@ -32,7 +32,7 @@ TERRAINS: dict[str, list[tuple[float, float]]] = {  # rise, tread of each step [
     "one step of 0.20": [(0.20, 1.0)],
     "five steps of 0.15 on 0.30": [(0.15, 0.30)] * 5,
     "five steps of 0.18 on 0.28": [(0.18, 0.28)] * 5,
-    "three up, three down": [(0.125, 0.30)] * 3 + [(-0.125, 0.30)] * 3,
+    "three up and three down": [(0.125, 0.30)] * 3 + [(-0.125, 0.30)] * 3,
 }
 
 

@@ -65,8 +65,8 @@ def _plan(question: Question, certified: bool = True) -> Plan:
 
     asked = {key: question[key] for key in ("terrain", "friction", "method", "weights")}
     machine = _robot(orjson.dumps(question["robot"]))
-    timing = question.get("timing", "steady")
-    return plan(robot=machine, certified=certified, timing=timing, **asked)
+    asked["timing"] = question.get("timing", "steady")
+    return plan(robot=machine, certified=certified, tolerance=question.get("tolerance"), **asked)
 
 
 @lru_cache(maxsize=16)
@@ -149,6 +149,30 @@ def try_out(question: Question, artefacts: str, gauge_path: str, _: str) -> Prod
     content = found.model_dump_json().encode()
     digest = _artefacts(artefacts).put(content)
     summary = summaries.of_trials(found, plan)
+    made = replace(_keep_plan(plan, artefacts), content=b"") if question.get("ask") else None
+    return Product(found.id, digest, len(content), summary, plan=made)
+
+
+def find_margins(question: Question, artefacts: str, gauge_path: str, _: str) -> Product:
+    """Find delay and friction margin of a plan; `question` is that of `simulate`.
+
+    Raises:
+        InputError: If a value is bad or the plan has nothing that could be carried out.
+        Cancelled: If the gauge says so.
+    """
+    from stairwright.simulation.robust_margins import robust_margins
+
+    gauge = Gauge(gauge_path)
+    plan = _plan_of(question, artefacts)
+    found = robust_margins(
+        plan,
+        controller=question["controller"] or None,
+        seed=question["seed"],
+        progress=gauge.report,
+    )
+    content = found.model_dump_json(by_alias=True).encode()
+    digest = _artefacts(artefacts).put(content)
+    summary = summaries.of_margins(found, plan)
     made = replace(_keep_plan(plan, artefacts), content=b"") if question.get("ask") else None
     return Product(found.id, digest, len(content), summary, plan=made)
 

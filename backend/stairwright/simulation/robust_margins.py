@@ -7,13 +7,14 @@ grid and not a bisection, because what succeeds is not always one interval.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from functools import partial
+from typing import Any, Literal
 
 from pydantic import Field
 
 from stairwright.arguments import as_model, as_whole
 from stairwright.control.settings import ControllerSettings, parse_settings
-from stairwright.documents import Model
+from stairwright.documents import Model, content_hash
 from stairwright.planning.plan import Plan
 
 from .disturbance import Disturbance
@@ -25,9 +26,15 @@ RECORD_HZ = 5.0
 
 
 class RobustMargins(Model):
-    """What a plan stands in simulation."""
+    """What a plan stands in simulation (``stairwright/margins/1``)."""
 
+    schema_: Literal["stairwright/margins/1"] = Field("stairwright/margins/1", alias="schema")
+    id: str = Field(description="hash of the question")
     plan_id: str
+    terrain_hash: str
+    robot_hash: str
+    controller: ControllerSettings
+    seed: int
     delay: float | None = Field(
         description="of the loop, up to which it succeeds; none if not even without [s]"
     )
@@ -70,22 +77,24 @@ def robust_margins(
             progress(min(1.0, done / steps))
         return "" if run.success else run.reason
 
+    asked = [plan.id, settings.model_dump(), seed]
+    found = partial(
+        RobustMargins,
+        id="m-" + content_hash(asked).removeprefix("sha256:"),
+        plan_id=plan.id,
+        terrain_hash=plan.terrain_hash,
+        robot_hash=plan.robot_hash,
+        controller=settings,
+        seed=seed,
+    )
     ends = reason(Disturbance())
     if ends:
-        return RobustMargins(
-            plan_id=plan.id, delay=None, friction=None, delay_ends=ends, friction_ends=ends
-        )
+        return found(delay=None, friction=None, delay_ends=ends, friction_ends=ends)
     delay, delay_ends = _reach(DELAYS, lambda value: reason(Disturbance(delay=value)))
     friction, friction_ends = _reach(least, lambda value: reason(Disturbance(friction=-value)))
     if progress is not None:
         progress(1.0)
-    return RobustMargins(
-        plan_id=plan.id,
-        delay=delay,
-        friction=friction,
-        delay_ends=delay_ends,
-        friction_ends=friction_ends,
-    )
+    return found(delay=delay, friction=friction, delay_ends=delay_ends, friction_ends=friction_ends)
 
 
 def _reach(
