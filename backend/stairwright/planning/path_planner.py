@@ -24,7 +24,7 @@ from stairwright.planning.lattice.search import Place
 from stairwright.planning.lattice.windows import Searches, find_path
 from stairwright.planning.path_problem import PathProblem
 from stairwright.planning.plan import Certificate, Pose
-from stairwright.planning.room import Room
+from stairwright.planning.room import IN_SEARCH, Room
 from stairwright.planning.smoothing.node_margins import BEYOND_REPAIR, Motor
 from stairwright.planning.smoothing.path_document import make_poses
 from stairwright.planning.smoothing.path_timing import path_parameter
@@ -173,9 +173,11 @@ class PathPlanner(PathProblem):
         """The same problem, searched so that every pose of the search is held by the motors."""
         return replace(self, torques=True)
 
-    def with_room(self, room: Room) -> PathPlanner:
-        """The same problem, of which paths keep more than their bounds."""
-        return replace(self, room=room, searches={})
+    def with_room(self, room: Room, in_search: float = IN_SEARCH) -> PathPlanner:
+        """The same problem, of which paths keep more than their bounds, poses of the search a share
+        of that.
+        """
+        return replace(self, room=room, in_search=in_search, searches={})
 
     @cached_property
     def unweighted(self) -> PathPlanner | None:

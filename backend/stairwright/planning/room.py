@@ -7,7 +7,7 @@ from typing import NamedTuple
 from stairwright import _core
 from stairwright.planning.lattice.body_lattice import Bounds
 
-_IN_SEARCH = 0.6  # share that lattice poses keep; the smoothing finds the rest
+IN_SEARCH = 0.6  # share that lattice poses keep; the smoothing finds the rest
 
 
 class Room(NamedTuple):
@@ -24,11 +24,11 @@ class Room(NamedTuple):
         """The same for the smoothing."""
         return _core.Room(*self)
 
-    def within(self, bounds: Bounds) -> Bounds:
-        """Bounds of lattice poses that leave some of it."""
+    def within(self, bounds: Bounds, share: float) -> Bounds:
+        """Bounds of lattice poses that leave a share of it."""
         if self == NO_ROOM:
             return bounds
-        trunk, links, legs, reach, joints = (_IN_SEARCH * value for value in self)
+        trunk, links, legs, reach, joints = (share * value for value in self)
         return bounds._replace(
             trunk=bounds.trunk + trunk,
             links=bounds.links + links,

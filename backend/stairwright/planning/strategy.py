@@ -68,13 +68,20 @@ def quick(planner: PathPlanner) -> Solved | Blocked:
 
 
 def roomy(planner: PathPlanner) -> Solved | Blocked:
-    """What the two soonest attempts lead to, for a path that is known to exist but for its room."""
+    """What the soonest attempts lead to, for a path that is known to exist but for its room.
+
+    Where the search finds none that keeps some of the room, the smoothing alone looks for it.
+    """
     for attempt in (AT_ONCE, FORGIVING):
         found = planner.attempt(attempt)
         if isinstance(found, Solved):
             return found
         if found.weak and not planner.torques:
-            return roomy(planner.within_torques)
+            held = roomy(planner.within_torques)
+            if isinstance(held, Solved):
+                return held
+    if planner.in_search > 0.0 and not found.weak:
+        return roomy(planner.with_room(planner.room, in_search=0.0))
     return found
 
 

@@ -20,7 +20,8 @@ from stairwright.planning.room import NO_ROOM, Room
 from stairwright.planning.strategy import roomy
 from stairwright.planning.tolerance import Tolerance
 
-_ROUNDS = 5  # of planning
+_ROUNDS = 8  # of planning; most that succeed do within four
+_IDLE = 1  # of them that may come no nearer
 _MORE = {  # room per unit that a check lacks, and at least so much more [m]
     "trunk": (1.5, 0.004),
     "links": (0.6, 0.003),
@@ -56,15 +57,18 @@ def within_tolerance(planner: PathPlanner, first: Solved, tolerance: Tolerance) 
         first: A path of it.
         tolerance: What it shall stand.
     """
-    found, room, nearest = first, NO_ROOM, None
+    found, room, nearest, idle = first, NO_ROOM, None, 0
     off = float(np.hypot(tolerance.height, tolerance.place))
     usual = Room(trunk=off, links=0.5 * off, legs=off, reach=off)
     for _ in range(_ROUNDS):
         checks = _checks(planner, found, tolerance)
         if all(check.passed for check in checks):
             return replace(found, certificate=found.certificate.with_checks(checks))
-        if nearest is None or _lacking(checks) < _lacking(nearest.checks):
-            nearest = Fallen(planner, found, checks)
+        better = nearest is None or _lacking(checks) < _lacking(nearest.checks)
+        nearest = Fallen(planner, found, checks) if better or nearest is None else nearest
+        idle = 0 if better else idle + 1
+        if idle > _IDLE:
+            break
         wider = usual if room == NO_ROOM else _widened(room, checks)
         answer = roomy(planner.with_room(wider))
         if not isinstance(answer, Solved):

@@ -36,7 +36,7 @@ class Search:
     ) -> None:
         path, robot, model = q.path, q.robot, q.robot_model
         self.path, self.robot, self.lattice = path, robot, lattice
-        self.bounds = q.room.within(bounds)
+        self.bounds = q.room.within(bounds, q.in_search)
         self.begin, self.end, self.weights, self.model = begin, end, q.weights, model
         self.s = sample_wheel_places(path, begin, end, lattice.step, scale(robot))
         self.centres = path.centres(self.s)
