@@ -72,15 +72,17 @@ def roomy(planner: PathPlanner) -> Solved | Blocked:
 
     Where the search finds none that keeps some of the room, the smoothing alone looks for it.
     """
+    weak = False
     for attempt in (AT_ONCE, FORGIVING):
         found = planner.attempt(attempt)
         if isinstance(found, Solved):
             return found
-        if found.weak and not planner.torques:
+        weak = found.weak is not None
+        if weak and not planner.torques:
             held = roomy(planner.within_torques)
             if isinstance(held, Solved):
                 return held
-    if planner.in_search > 0.0 and not found.weak:
+    if planner.in_search > 0.0 and not weak:
         return roomy(planner.with_room(planner.room, in_search=0.0))
     return found
 
