@@ -14,13 +14,14 @@ import numpy as np
 
 from stairwright.planning.certificate.certify import tolerated
 from stairwright.planning.certificate.tolerance.checks import NAMES
-from stairwright.planning.path_planner import PathPlanner, Solved
+from stairwright.planning.path_planner import Blocked, PathPlanner, Solved
 from stairwright.planning.plan import Check, Limit, Problem, ProblemKind
 from stairwright.planning.room import NO_ROOM, Room
 from stairwright.planning.strategy import roomy
 from stairwright.planning.tolerance import Tolerance
 
 _ROUNDS = 8  # of planning; most that succeed do within four
+_STEPS = (1.0, 0.5, 0.2)
 _IDLE = 1  # of them that may come no nearer
 _MORE = {  # room per unit that a check lacks, and at least so much more [m]
     "trunk": (1.5, 0.004),
@@ -70,14 +71,15 @@ def within_tolerance(planner: PathPlanner, first: Solved, tolerance: Tolerance) 
         if idle > _IDLE:
             break
         wider = usual if room == NO_ROOM else _widened(room, checks)
-        answer = roomy(planner.with_room(wider))
-        if not isinstance(answer, Solved):
-            # Too much of it: half of the way there, and if that is none either, no more.
-            wider = Room(*(0.5 * (a + b) for a, b in zip(room, wider, strict=True)))
-            answer = roomy(planner.with_room(wider))
-        if not isinstance(answer, Solved) or wider == room:
+        answer: Solved | Blocked = Blocked(None, False)
+        for share in _STEPS:  # too much of it leaves no way: then less of the step
+            wide = Room(*(a + share * (b - a) for a, b in zip(room, wider, strict=True)))
+            answer = roomy(planner.with_room(wide))
+            if isinstance(answer, Solved):
+                break
+        if not isinstance(answer, Solved) or wide == room:
             break
-        found, room = answer, wider
+        found, room = answer, wide
     assert nearest is not None
     return nearest
 
