@@ -15,8 +15,9 @@ if TYPE_CHECKING:
     from .planning.plan import Plan
     from .planning.planner import plan
     from .robot.description import Robot
+    from .simulation.margins_result import RobustMargins
     from .simulation.result import Rollout
-    from .simulation.robust_margins import RobustMargins, robust_margins
+    from .simulation.robust_margins import robust_margins
     from .simulation.rollout import rollout
     from .simulation.trials import trials
     from .simulation.trials_result import Trials
@@ -60,7 +61,7 @@ _HOMES = {
     "DesignResult": "studies.design_result",
     "Plan": "planning.plan",
     "Robot": "robot.description",
-    "RobustMargins": "simulation.robust_margins",
+    "RobustMargins": "simulation.margins_result",
     "Rollout": "simulation.result",
     "ServiceError": "client",
     "StudyResult": "studies.study",

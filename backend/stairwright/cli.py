@@ -73,6 +73,17 @@ def parser() -> argparse.ArgumentParser:
     )
     rollout.add_argument("-o", "--output", metavar="FILE", help=names("rollout"))
 
+    margins = commands.add_parser(
+        "margins", help="how much delay and how much less friction a plan stands"
+    )
+    margins.add_argument("source", metavar="PLAN-or-TERRAIN", help="a plan's file, or a terrain")
+    _add_planning(margins)
+    margins.add_argument("--seed", type=int, default=0, help="of the sensor noise (%(default)s)")
+    margins.add_argument(
+        "--controller", action="append", default=[], metavar="NAME=VALUE", help="a setting"
+    )
+    margins.add_argument("-o", "--output", metavar="FILE", help=".json")
+
     export = commands.add_parser("export", help="write a plan, rollout or robot in another format")
     export.add_argument(
         "file", metavar="FILE", help="a plan or rollout (json, npz), or a robot (yaml, its name)"
@@ -141,6 +152,13 @@ def _add_planning(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument(
         "--weight", action="append", default=[], metavar="NAME=VALUE", help="of the planner"
+    )
+    command.add_argument(
+        "--tolerance",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="that the certificate holds for: height, place (m), friction",
     )
 
 

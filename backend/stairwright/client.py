@@ -27,6 +27,7 @@ from stairwright.robot.importing.report import Imported
 from stairwright.terrain.profile import Terrain
 
 if TYPE_CHECKING:
+    from stairwright.simulation.margins_result import RobustMargins
     from stairwright.simulation.result import Rollout
     from stairwright.simulation.trials_result import Trials
 
@@ -141,9 +142,12 @@ class Client:
         method: Method = "path",
         weights: Mapping[str, float] | None = None,
         timing: PlanTiming = "steady",
+        tolerance: Mapping[str, float] | None = None,
     ) -> Plan:
         """Plan; an infeasible terrain gives a plan with a problem, no error."""
         body = {**_question(terrain, robot, friction, method, weights), "timing": timing}
+        if tolerance:
+            body["tolerance"] = dict(tolerance)
         return parse(Plan, self._json("POST", "/plans", json=body))
 
     def get_plan(self, plan_id: str) -> Plan:
@@ -218,6 +222,28 @@ class Client:
         body = {"plan_id": plan_id, "count": count, "bundle": bundle, **question}
         job = self.wait(self._start("/trials", body).id, progress=progress, timeout=timeout)
         return parse(Trials, self._json("GET", f"/trials/{_result_of(job)}"))
+
+    def margins(
+        self,
+        plan_id: str,
+        *,
+        progress: Progress | None = None,
+        timeout: float = 900.0,
+        **question: Any,
+    ) -> RobustMargins:
+        """Find how much delay, and how much less friction, a stored plan stands, and wait.
+
+        `question` may hold controller and seed.
+
+        Raises:
+            ServiceError: If the job fails or is cancelled.
+            TimeoutError: If it takes longer than `timeout` [s]; the job is cancelled then.
+        """
+        from stairwright.simulation.margins_result import RobustMargins
+
+        body = {"plan_id": plan_id, **question}
+        job = self.wait(self._start("/margins", body).id, progress=progress, timeout=timeout)
+        return parse(RobustMargins, self._json("GET", f"/margins/{_result_of(job)}"))
 
     def _start(self, path: str, body: Mapping[str, Any]) -> JobState:
         headers = {"idempotency-key": secrets.token_hex(16)}

@@ -94,10 +94,7 @@ def _trials(given: Arguments) -> str | None:
         controller=_settings(given.controller, "controller"),
     )
     if given.output:
-        try:
-            Path(given.output).write_text(made.model_dump_json(indent=1))
-        except OSError as error:
-            raise InputError(f"cannot write {given.output}: {error.strerror}") from None
+        _write(given.output, made.model_dump_json(indent=1))
     else:
         print(summary.of_trials(made))
     failed = [trial for trial in made.trials if trial.outcome != "success"]
@@ -105,6 +102,23 @@ def _trials(given: Arguments) -> str | None:
         return None
     first = f"{failed[0].outcome}: {failed[0].reason}"
     return f"{len(failed)} of {made.count} trials failed; the first with {first}"
+
+
+def margins_command(given: Arguments) -> str | None:
+    """`stairwright margins`."""
+    if given.output and Path(given.output).suffix.lower() != ".json":
+        raise InputError("margins can be written as .json only", ("output",))
+    plan = _plan_or_file(given)
+    if not plan.executable:
+        return _obstacle(plan) or "the plan has no poses to carry out"
+    from .simulation.robust_margins import robust_margins
+
+    found = robust_margins(plan, _settings(given.controller, "controller"), given.seed)
+    if given.output:
+        _write(given.output, found.model_dump_json(by_alias=True, indent=1))
+    else:
+        print(summary.of_margins(found))
+    return None if found.delay is not None else found.delay_ends
 
 
 def export_command(given: Arguments) -> str | None:
@@ -177,6 +191,7 @@ def robots_command(_: Arguments) -> str | None:
 COMMANDS: Mapping[str, Command] = {
     "plan": plan_command,
     "rollout": rollout_command,
+    "margins": margins_command,
     "export": export_command,
     "certify": certify_command,
     "bench": bench_command,
@@ -200,6 +215,7 @@ def _plan(source: str, given: Arguments) -> Plan:
         weights=_settings(given.weight, "weights"),
         solver=given.solver,
         timing=given.timing or "steady",
+        tolerance=_settings(given.tolerance, "tolerance"),
     )
 
 
@@ -213,7 +229,7 @@ def _plan_or_file(given: Arguments) -> Plan:
         if path.suffix.lower() == ".npz" or _schema(path) != "terrain":
             document = load(path)
             if isinstance(document, Plan):
-                for name in ("robot", "method", "solver", "weight", "timing"):
+                for name in ("robot", "method", "solver", "weight", "timing", "tolerance"):
                     if getattr(given, name):
                         raise InputError("the plan says it already", (name,))
                 return document
@@ -263,6 +279,13 @@ def _settings(pairs: Sequence[str], field: str) -> dict[str, Any]:
         except ValueError:
             settings[name] = text
     return settings
+
+
+def _write(path: str, text: str) -> None:
+    try:
+        Path(path).write_text(text)
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}") from None
 
 
 def _obstacle(plan: Plan) -> str | None:

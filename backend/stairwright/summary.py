@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from .benchmark import Figures
     from .planning.plan import Certificate, Plan
+    from .simulation.margins_result import RobustMargins
     from .simulation.result import Rollout
     from .simulation.trials_result import Trials
 
@@ -49,6 +50,9 @@ def of_plan(plan: Plan) -> str:
         rows.append(("certificate", f"{passed} ({plan.certificate.scope})"))
         if plan.certificate.motion is not None:
             rows.append(("", plan.certificate.motion.message))
+    if plan.tolerance is not None:
+        asked = ", ".join(f"{name} {value:g}" for name, value in plan.tolerance.asked.items())
+        rows.append(("tolerance", asked))
     rows.append(("id", plan.id))
     return columns(rows)
 
@@ -76,6 +80,21 @@ def of_trials(made: Trials) -> str:
             ("outcomes", outcomes),
             *([("suspects", suspects)] if suspects else []),
             ("worst pitch", _degrees(max(trial.pitch_error_max for trial in made.trials))),
+        ]
+    )
+
+
+def of_margins(found: RobustMargins) -> str:
+    """Up to where every rollout succeeds, and what happens beyond."""
+    if found.delay is None or found.friction is None:
+        return columns([("margins", f"none: even undisturbed it fails: {found.delay_ends}")])
+    beyond = found.delay_ends or "nothing was tried beyond"
+    slippery = found.friction_ends or "nothing was tried beyond"
+    return columns(
+        [
+            ("delay", f"stands {found.delay * 1e3:.0f} ms; {beyond}"),
+            ("friction", f"stands {found.friction:.2f} less; {slippery}"),
+            ("id", found.id),
         ]
     )
 

@@ -10,6 +10,7 @@ from stairwright.arguments import MOST_SEED
 from stairwright.documents import Model
 from stairwright.export.table import Kind as Exported
 from stairwright.planning.plan import Method, Plan, PlanTiming
+from stairwright.planning.tolerance import Tolerance
 from stairwright.robot.description import Robot
 from stairwright.simulation.disturbance import Disturbance
 from stairwright.simulation.ranges import Ranges
@@ -72,6 +73,11 @@ Id = Annotated[str, Field(min_length=1, max_length=64)]
 
 TIMING = "fast: a path as fast as friction, torques and speeds allow, see `aggressiveness`"
 
+TOLERANCE = (
+    "how far the world may be from what is drawn, with the certificate holding for all of it; of "
+    "the method `path`"
+)
+
 
 class PlanRequest(Model):
     """A question to the planner."""
@@ -96,6 +102,7 @@ class PlanRequest(Model):
     method: Method = "path"
     weights: Weights = Field(None, description="cost weights by name, see GET /settings")
     timing: PlanTiming = Field("steady", description=TIMING)
+    tolerance: Tolerance | None = Field(None, description=TOLERANCE)
 
 
 class Simulation(Model):
@@ -108,6 +115,7 @@ class Simulation(Model):
     method: Method = Field("path", description="with `terrain`")
     weights: Weights = Field(None, description="with `terrain`")
     timing: PlanTiming = Field("steady", description="with `terrain`")
+    tolerance: Tolerance | None = Field(None, description="with `terrain`")
     friction: Friction | None = Field(
         None, description="friction in the simulation (and of the plan, with `terrain`)"
     )
@@ -173,6 +181,7 @@ class SettingsDocument(Model):
     """JSON Schemas of everything that can be tuned; each property has bounds, unit and scale."""
 
     weights: dict[Method, dict[str, Any]]
+    tolerance: dict[str, Any]
     controller: dict[str, Any]
     disturbance: dict[str, Any]
     bundles: dict[str, Ranges] = Field(description="deviations that trials draw from, by name")
@@ -207,7 +216,7 @@ class JobDocument(Model):
     """A job's state."""
 
     id: str
-    kind: Literal["rollout", "trials"]
+    kind: Literal["rollout", "trials", "margins"]
     state: Literal["queued", "running", "done", "failed", "cancelled"]
     progress: float = Field(ge=0.0, le=1.0)
     created: float = Field(description="seconds since 1970")

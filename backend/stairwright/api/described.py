@@ -17,6 +17,7 @@ _OPERATIONS = {
     "get_study_document": "get_question",
     "healthz": "get_health",
     "job_events": "follow_job",
+    "post_margins": "create_margins",
     "post_plan": "create_plan",
     "post_rollout": "create_rollout",
     "post_session": "create_session",
@@ -38,6 +39,7 @@ TAGS = {
     "plans": "How a robot gets over a terrain.",
     "rollouts": "Plans carried out in simulation.",
     "trials": "A plan carried out many times under random deviations.",
+    "margins": "How much delay a plan stands, and how much less friction.",
     "studies": "One question over whole ranges of terrains, frictions and robots.",
     "jobs": "Work that takes longer than a request.",
     "sessions": "3D scenes of the page.",
@@ -78,6 +80,7 @@ _HEADERS: dict[str, dict[str, Any]] = {
     "WWW-Authenticate": {"description": "Bearer", "schema": _TEXT},
 }
 _MADE = {  # by operation and status
+    ("create_margins", "202"): ("Location", "Retry-After"),
     ("create_plan", "200"): ("ETag", "Content-Location"),
     ("create_rollout", "202"): ("Location", "Retry-After"),
     ("create_session", "201"): (),

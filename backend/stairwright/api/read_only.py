@@ -9,9 +9,9 @@ from .problems import Problem
 
 _STORED = tuple(
     f"{PREFIX}/{kind}/"
-    for kind in ("terrains", "robots", "plans", "rollouts", "trials", "jobs", "studies")
+    for kind in ("terrains", "robots", "plans", "rollouts", "trials", "margins", "jobs", "studies")
 )
-_WORK = (f"{PREFIX}/rollouts", f"{PREFIX}/trials", f"{PREFIX}/studies")
+_WORK = (f"{PREFIX}/rollouts", f"{PREFIX}/trials", f"{PREFIX}/margins", f"{PREFIX}/studies")
 
 
 class ReadOnly:

@@ -77,7 +77,8 @@ def _question(plan: Mapping[str, Any], weights: Weights) -> PlanQuestion:
     robot = parse(Robot, plan["robot_description"])
     timing: PlanTiming = "fast" if plan["timing"]["rule"] == "fast" else "steady"
     chosen = {**plan["weights"], **weights}
-    return PlanQuestion.of(terrain, robot, plan["friction"], plan["method"], chosen, timing)
+    asked = (plan["friction"], plan["method"], chosen, timing, plan.get("tolerance"))
+    return PlanQuestion.of(terrain, robot, *asked)
 
 
 def _document(answer: Answer) -> Mapping[str, Any]:

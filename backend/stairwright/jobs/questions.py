@@ -10,9 +10,12 @@ from typing import Any, ClassVar, Literal
 from stairwright.documents import content_hash, parse
 from stairwright.errors import InputError
 from stairwright.planning.plan import Method, Plan, PlanTiming
+from stairwright.planning.tolerance import Tolerance, parse_tolerance
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
+
+SimulationKind = Literal["rollout", "trials", "margins"]
 
 
 @dataclass(frozen=True)
@@ -25,6 +28,7 @@ class PlanQuestion:
     method: Method
     weights: Mapping[str, float]
     timing: PlanTiming = "steady"
+    tolerance: Tolerance | None = None
 
     @classmethod
     def of(
@@ -35,17 +39,20 @@ class PlanQuestion:
         method: Method,
         weights: Mapping[str, float] | None,
         timing: PlanTiming = "steady",
+        tolerance: Mapping[str, float] | Tolerance | None = None,
     ) -> PlanQuestion:
         """Fill in defaults.
 
         Raises:
-            InputError: If a weight is unknown or out of bounds, or the timing is not the method's.
+            InputError: If a weight or tolerance is unknown or out of bounds, or timing or tolerance
+                are not the method's.
         """
         if timing == "fast" and method != "path":
             raise InputError("fast belongs to the method path", ("timing",))
         complete = parse_weights(method, weights).model_dump(mode="json")
         mu = terrain.friction if friction is None else friction
-        return cls(terrain, robot, mu, method, complete, timing)
+        stood = parse_tolerance(tolerance, method, mu)
+        return cls(terrain, robot, mu, method, complete, timing, stood)
 
     @classmethod
     def restored(cls, data: Mapping[str, Any]) -> PlanQuestion:
@@ -56,12 +63,13 @@ class PlanQuestion:
         """
         terrain, robot = parse(Terrain, data["terrain"]), parse(Robot, data["robot"])
         timing = data.get("timing", "steady")
-        return cls.of(terrain, robot, data["friction"], data["method"], data["weights"], timing)
+        asked = (data["friction"], data["method"], data["weights"], timing)
+        return cls.of(terrain, robot, *asked, data.get("tolerance"))
 
     @cached_property
     def data(self) -> dict[str, Any]:
         """As plain data, for a worker."""
-        return {
+        data: dict[str, Any] = {
             "terrain": self.terrain.model_dump(mode="json"),
             "robot": self.robot.model_dump(mode="json"),
             "friction": self.friction,
@@ -69,6 +77,9 @@ class PlanQuestion:
             "weights": dict(self.weights),
             "timing": self.timing,
         }
+        if self.tolerance is not None:  # the key of what was asked before there was one stays
+            data["tolerance"] = self.tolerance.asked
+        return data
 
     @cached_property
     def key(self) -> str:
@@ -80,7 +91,7 @@ class PlanQuestion:
 class RolloutQuestion:
     """What to roll out and how: a stored plan (its digest), a whole plan, or one to be made."""
 
-    kind: ClassVar[Literal["rollout", "trials"]] = "rollout"
+    kind: ClassVar[SimulationKind] = "rollout"
     runs: ClassVar[int] = 1  # of the simulator
 
     source: PlanQuestion | Plan | str
@@ -91,7 +102,7 @@ class RolloutQuestion:
 
     @classmethod
     def restored(cls, data: Mapping[str, Any]) -> RolloutQuestion:
-        """The question that `data` was made from; one of trials where it asks for those.
+        """The question that `data` was made from; one of trials or margins where it asks for those.
 
         Raises:
             InputError: If it was made by other code and is none any more.
@@ -105,6 +116,8 @@ class RolloutQuestion:
             asked = (source, data["friction"], data["controller"], data["seed"])
             if "count" in data:
                 return TrialsQuestion(*asked, count=data["count"], ranges=data["ranges"])
+            if "margins" in data:
+                return MarginsQuestion(*asked)
             return cls(*asked, data.get("disturbance", {}))
         except KeyError as error:
             raise InputError("is missing", (str(error.args[0]),)) from None
@@ -140,7 +153,7 @@ class RolloutQuestion:
 class TrialsQuestion(RolloutQuestion):
     """The same many times over, each with deviations drawn from ranges."""
 
-    kind: ClassVar[Literal["rollout", "trials"]] = "trials"
+    kind: ClassVar[SimulationKind] = "trials"
     count: int = 1
     ranges: Mapping[str, Any] = field(default_factory=dict)
 
@@ -153,3 +166,16 @@ class TrialsQuestion(RolloutQuestion):
     def data(self) -> dict[str, Any]:
         """As plain data, for a worker."""
         return {**super().data, "count": self.count, "ranges": dict(self.ranges)}
+
+
+@dataclass(frozen=True)
+class MarginsQuestion(RolloutQuestion):
+    """How much delay the plan stands, and how much less friction."""
+
+    kind: ClassVar[SimulationKind] = "margins"
+    runs: ClassVar[int] = 25  # at most, see `simulation/robust_margins.py`
+
+    @cached_property
+    def data(self) -> dict[str, Any]:
+        """As plain data, for a worker."""
+        return {**super().data, "margins": True}

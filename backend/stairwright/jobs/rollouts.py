@@ -34,7 +34,11 @@ COURTESY = 0.1  # s that a worker has to stop by itself before it is killed
 REMEMBERED = 1000  # finished jobs in memory; older ones are read from the database
 MOST_DEATHS = 3  # of workers at one job: then it is the job that kills them
 MOST_LOSSES = 20  # of the service while a job ran: it may have nothing to do with it, or all
-RESULT = {"rollout": "/api/v1/rollouts/{}", "trials": "/api/v1/trials/{}"}  # by kind
+RESULT = {  # by kind
+    "rollout": "/api/v1/rollouts/{}",
+    "trials": "/api/v1/trials/{}",
+    "margins": "/api/v1/margins/{}",
+}
 
 
 class Rollouts:

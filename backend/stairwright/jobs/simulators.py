@@ -1,4 +1,4 @@
-"""Whoever carries out rollouts and trials: processes of this machine, or a cluster."""
+"""Whoever carries out rollouts, trials and margins: processes of this machine, or a cluster."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from stairwright.storage.artefacts import Artefacts
 from . import work
 from .pool import WorkerPool
 from .run import Run
+
+_WORK = {"rollout": work.simulate, "trials": work.try_out, "margins": work.find_margins}
 
 
 class Simulators(Protocol):
@@ -77,7 +79,7 @@ class PoolSimulators:
         """See `Simulators`."""
         question = run.question
         return await self._pool.run(
-            work.try_out if question.kind == "trials" else work.simulate,
+            _WORK[question.kind],
             question.data,
             self._folder,
             run.gauge.path,

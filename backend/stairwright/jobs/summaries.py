@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from stairwright.planning.plan import Plan, Pose
+    from stairwright.simulation.margins_result import RobustMargins
     from stairwright.simulation.result import Rollout
     from stairwright.simulation.trials_result import Trials
 
@@ -27,6 +28,7 @@ def of_plan(plan: Plan) -> dict[str, Any]:
         "friction": plan.friction,
         "weights": changed,
         "timing": "fast" if plan.timing.rule == "fast" else "steady",
+        "tolerance": plan.tolerance.asked if plan.tolerance else {},
         "margins": _least(plan.poses),
         "duration": plan.timing.total if plan.feasible else None,
         **_thumbnail(plan),
@@ -66,6 +68,18 @@ def of_trials(found: Trials, plan: Plan) -> dict[str, Any]:
         "successes": found.successes,
         "interval": found.clopper_pearson,
         "outcomes": found.outcomes,
+    }
+
+
+def of_margins(found: RobustMargins, plan: Plan) -> dict[str, Any]:
+    """The same of a plan's delay [s] and friction margin."""
+    return {
+        **of_plan(plan),
+        "plan_id": plan.id,
+        "controller": found.controller.model_dump(mode="json", exclude_defaults=True),
+        "seed": found.seed,
+        "delay_margin": found.delay,
+        "friction_margin": found.friction,
     }
 
 

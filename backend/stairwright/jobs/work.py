@@ -26,6 +26,7 @@ from .live import Broadcast, append
 if TYPE_CHECKING:
     from stairwright.export.table import Kind
     from stairwright.planning.plan import Plan
+    from stairwright.simulation.margins_result import RobustMargins
     from stairwright.simulation.record import Recorder
     from stairwright.simulation.result import Rollout
     from stairwright.simulation.trials_result import Trials
@@ -71,8 +72,8 @@ def _plan(question: Question, certified: bool = True) -> Plan:
 
     asked = {key: question[key] for key in ("terrain", "friction", "method", "weights")}
     machine = _robot(orjson.dumps(question["robot"]))
-    timing = question.get("timing", "steady")
-    return plan(robot=machine, certified=certified, timing=timing, **asked)
+    asked["timing"] = question.get("timing", "steady")
+    return plan(robot=machine, certified=certified, tolerance=question.get("tolerance"), **asked)
 
 
 @lru_cache(maxsize=16)
@@ -163,8 +164,36 @@ def tried(found: Trials, plan: Plan, question: Question) -> Product:
     return _product(found, summaries.of_trials(found, plan), made)
 
 
-def _product(found: Rollout | Trials, summary: Mapping[str, Any], plan: Product | None) -> Product:
-    content = found.model_dump_json().encode()
+def find_margins(question: Question, artefacts: str, gauge_path: str, _: str) -> Product:
+    """Find delay and friction margin of a plan; `question` is that of `simulate`.
+
+    Raises:
+        InputError: If a value is bad or the plan has nothing that could be carried out.
+        Cancelled: If the gauge says so.
+    """
+    plan = plan_of(question, _artefacts(artefacts))
+    found = margins_found(plan, question, Gauge(gauge_path).report)
+    return keep(found, _artefacts(artefacts))
+
+
+def margins_found(plan: Plan, question: Question, progress: Callable[[float], None]) -> Product:
+    """The margins that `find_margins` is asked for, not kept yet."""
+    from stairwright.simulation.robust_margins import robust_margins
+
+    found = robust_margins(
+        plan,
+        controller=question["controller"] or None,
+        seed=question["seed"],
+        progress=progress,
+    )
+    made = product_of_plan(plan) if question.get("ask") else None
+    return _product(found, summaries.of_margins(found, plan), made)
+
+
+def _product(
+    found: Rollout | Trials | RobustMargins, summary: Mapping[str, Any], plan: Product | None
+) -> Product:
+    content = found.model_dump_json(by_alias=True).encode()
     return Product(found.id, name_of(content), len(content), summary, content, plan)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from stairwright.planning.standing import NoStandingPose
 from stairwright.planning.strategy import THIN, solve
 from stairwright.planning.threads import search_threads
 from stairwright.planning.timing.fast import hastened
+from stairwright.planning.tolerance import Tolerance
+from stairwright.planning.tolerant import Fallen, tolerance_problem, within_tolerance
 from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -29,6 +32,7 @@ def plan_path(
     weights: PathWeights,
     *,
     timing: PlanTiming = "steady",
+    tolerance: Tolerance | None = None,
     diagnose: bool = True,
 ) -> Plan:
     """Plan a dense path of poses from the first flat stretch to the last.
@@ -44,6 +48,8 @@ def plan_path(
         friction: Coulomb friction between wheels and terrain.
         weights: What to trade off.
         timing: ``fast`` looks for a path that can be driven fast, and times it so.
+        tolerance: How far the world may be from what was drawn; the certificate holds for all of
+            it.
         diagnose: Find out what would open the way where there is none.
 
     Returns:
@@ -52,19 +58,28 @@ def plan_path(
     begun = clock.perf_counter()
     robot = robots[0]
     searched = weights.for_speed() if timing == "fast" else weights
+    least = friction - tolerance.friction if tolerance else friction
+    document = partial(
+        make_plan, terrain, friction=friction, weights=weights, begun=begun, tolerance=tolerance
+    )
     try:
-        planners = [path_planner(terrain, one, friction, searched) for one in robots]
+        planners = [path_planner(terrain, one, least, searched) for one in robots]
     except NoStandingPose as error:
-        problem = no_standing_pose(terrain, robot, error)
-        return make_plan(terrain, robot, friction, weights, begun, problem=problem)
+        return document(robot, problem=no_standing_pose(terrain, robot, error))
     except InputError as error:
         at = terrain.points[0]
         problem = Problem(kind="start", at=at, progress=0.0, message=str(error))
-        return make_plan(terrain, robot, friction, weights, begun, problem=problem)
+        return document(robot, problem=problem)
     planner, found = _best(planners)
     robot = planner.robot
+    if isinstance(found, Solved) and tolerance:
+        outcome = within_tolerance(planner, found, tolerance)
+        if isinstance(outcome, Fallen):
+            return document(robot, problem=tolerance_problem(outcome, tolerance))
+        found = outcome
     if isinstance(found, Solved):
-        plan = make_plan(terrain, robot, friction, weights, begun, *planner.document(found.nodes))
+        poses, critical, total = planner.document(found.nodes)
+        plan = document(robot, poses=poses, critical=critical, total=total)
         plan = plan.model_copy(update={"certificate": found.certificate})
         if timing == "steady":
             return plan
@@ -74,10 +89,9 @@ def plan_path(
     from stairwright.planning.infeasibility.obstruction import explain, undiagnosed
 
     if not diagnose:
-        problem = undiagnosed(planner, found)
-        return make_plan(terrain, robot, friction, weights, begun, problem=problem)
-    problem, way = explain(planner, found)
-    return make_plan(terrain, robot, friction, weights, begun, *way, problem)
+        return document(robot, problem=undiagnosed(planner, found))
+    problem, (poses, critical, total) = explain(planner, found)
+    return document(robot, poses=poses, critical=critical, total=total, problem=problem)
 
 
 def _best(planners: Sequence[PathPlanner]) -> tuple[PathPlanner, Solved | Blocked]:

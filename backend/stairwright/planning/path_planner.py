@@ -24,6 +24,7 @@ from stairwright.planning.lattice.search import Place
 from stairwright.planning.lattice.windows import Searches, find_path
 from stairwright.planning.path_problem import PathProblem
 from stairwright.planning.plan import Certificate, Pose
+from stairwright.planning.room import IN_SEARCH, Room
 from stairwright.planning.smoothing.node_margins import BEYOND_REPAIR, Motor
 from stairwright.planning.smoothing.path_document import make_poses
 from stairwright.planning.smoothing.path_timing import path_parameter
@@ -172,6 +173,12 @@ class PathPlanner(PathProblem):
         """The same problem, searched so that every pose of the search is held by the motors."""
         return replace(self, torques=True)
 
+    def with_room(self, room: Room, in_search: float = IN_SEARCH) -> PathPlanner:
+        """The same problem, of which paths keep more than their bounds, poses of the search a share
+        of that.
+        """
+        return replace(self, room=room, in_search=in_search, searches={})
+
     @cached_property
     def unweighted(self) -> PathPlanner | None:
         """The same problem with default weights, if these are others."""
@@ -219,11 +226,14 @@ class PathPlanner(PathProblem):
 
     def _certified(self, nodes: Refined) -> Solved:
         """The path with its certificate, passed or not."""
-        motion = Motion(
+        return Solved(nodes, judge(self.motion(nodes)))
+
+    def motion(self, nodes: Refined) -> Motion:
+        """What the certificate judges of a path."""
+        return Motion(
             self.terrain.vertices, self.robot, self.friction, nodes.body,
             nodes.margins.q, path_parameter(nodes.s, nodes.body),
         )  # fmt: skip
-        return Solved(nodes, judge(motion))
 
     def document(self, nodes: Refined) -> Path:
         """What the plan's document says of a path."""

@@ -7,6 +7,7 @@ from functools import cached_property
 
 from stairwright import _core
 from stairwright.planning.lattice.body_lattice import Bounds
+from stairwright.planning.room import IN_SEARCH, NO_ROOM, Room
 from stairwright.planning.standing import StandingPose, standing_height
 from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
@@ -29,6 +30,8 @@ class PathProblem:
     friction: float
     weights: PathWeights
     torques: bool = False  # whether the search asks that motors hold every pose
+    room: Room = NO_ROOM  # what paths keep beyond their bounds
+    in_search: float = IN_SEARCH  # share of it that lattice poses keep
 
     @property
     def reserve(self) -> float:
@@ -53,6 +56,7 @@ class PathProblem:
             standing_height(self.robot),
             _core.PathWeights(w.com_margin, w.clearance, w.torque, w.smoothness, w.pitch),
             self.torques,
+            self.room.native,
         )
 
     @cached_property

@@ -18,6 +18,7 @@ from pydantic import (
 from stairwright.arguments import MOST_FRICTION
 from stairwright.documents import Model, content_hash
 from stairwright.errors import InputError
+from stairwright.planning.tolerance import Tolerance
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
@@ -138,6 +139,11 @@ class Certificate(Model):
             return self.__dict__[name]
         return super().__getattr__(name)  # type: ignore[misc]  # pydantic hides it
 
+    def with_checks(self, checks: list[Check]) -> Certificate:
+        """The same one with more checks, which have to pass too."""
+        passed = self.passed and all(check.passed for check in checks)
+        return self.model_copy(update={"checks": [*self.checks, *checks], "passed": passed})
+
     def _whole(self) -> Certificate:
         """The same one, its motion judged."""
         _ = self.motion
@@ -203,6 +209,11 @@ class Plan(Model):
     certificate: Certificate | None = None
     knees: Knees | None = Field(None, description="where the robot's knees bend both ways")
     binding: Binding | None = Field(None, description="which margin is least")
+    tolerance: Tolerance | None = Field(
+        None,
+        description="how far the world may be from what was drawn, where that was asked for; "
+        "margins are then those at the lowest friction",
+    )
 
     @model_validator(mode="after")
     def _in_order(self) -> Plan:
@@ -248,6 +259,7 @@ def plan_id(
     method: Method,
     weights: dict[str, Any],
     rule: str = "limits",
+    tolerance: Tolerance | None = None,
 ) -> str:
     """Content hash that names a plan: the same question has the same id.
 
@@ -257,4 +269,6 @@ def plan_id(
     key = [terrain.hash, robot.hash, *texts, friction, method, weights]
     if rule == "fast":
         key.append(rule)
+    if tolerance is not None:
+        key.append({"tolerance": tolerance.asked})
     return "p-" + content_hash(key).removeprefix("sha256:")

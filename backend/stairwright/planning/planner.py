@@ -14,6 +14,7 @@ from stairwright.errors import InputError
 from stairwright.library import load_robot, load_terrain
 from stairwright.planning.knees import configurations, knees_of
 from stairwright.planning.plan import Method, Plan, PlanTiming, plan_id
+from stairwright.planning.tolerance import Tolerance, parse_tolerance
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -34,6 +35,7 @@ def plan(
     weights: Mapping[str, float] | Model | None = None,
     *,
     timing: PlanTiming = "steady",
+    tolerance: Mapping[str, float] | Tolerance | None = None,
     certified: bool = True,
     diagnose: bool = True,
     solver: PoseSolver | None = None,
@@ -51,6 +53,8 @@ def plan(
         weights: Cost weights by name, see `stairwright.planning.weights`.
         timing: ``steady``, or of a ``path`` ``fast``: time-optimal under friction, torque and speed
             limits with the dynamics in them, as hard as the weight ``aggressiveness`` says.
+        tolerance: Of a ``path``: how far the world may be from what is drawn, by name (`height`,
+            `place` [m], `friction`), see `Tolerance`. The certificate holds for all of it.
         certified: Check single poses and the motion between them; without, ``critical`` is sooner.
             A path is always certified.
         diagnose: Find out what would open the way where there is none, which takes most of the time
@@ -79,6 +83,7 @@ def plan(
         raise InputError(f"must be one of: {', '.join(get_args(PlanTiming))}", ("timing",))
     if timing == "fast" and method != "path":
         raise InputError("fast belongs to the method path", ("timing",))
+    stood = parse_tolerance(tolerance, method, mu)
     if solver not in (None, *get_args(PoseSolver)):
         there = ", ".join(get_args(PoseSolver))
         raise InputError(f"unknown solver {solver!r}; there are: {there}", ("solver",))
@@ -93,7 +98,9 @@ def plan(
     if method == "path":
         from stairwright.planning.path import plan_path
 
-        found = plan_path(ground, configured, mu, chosen, timing=timing, diagnose=diagnose)
+        found = plan_path(
+            ground, configured, mu, chosen, timing=timing, tolerance=stood, diagnose=diagnose
+        )
     elif method == "critical":
         from stairwright.planning.poses.critical_poses import plan_critical
 
@@ -106,7 +113,7 @@ def plan(
         found = _first_feasible(plan_nominal(ground, one, mu, chosen) for one in configured)
     if len(configured) == 1 and configured[0] is machine:
         return found
-    identity = plan_id(ground, machine, mu, method, found.weights, found.timing.rule)
+    identity = plan_id(ground, machine, mu, method, found.weights, found.timing.rule, stood)
     return found.model_copy(update={"id": identity, "knees": knees_of(found.robot_description)})
 
 

@@ -67,6 +67,26 @@ def quick(planner: PathPlanner) -> Solved | Blocked:
     return most if isinstance(most, Solved) or most.opened else forgiving
 
 
+def roomy(planner: PathPlanner) -> Solved | Blocked:
+    """What the soonest attempts lead to, for a path that is known to exist but for its room.
+
+    Where the search finds none that keeps some of the room, the smoothing alone looks for it.
+    """
+    weak = False
+    for attempt in (AT_ONCE, FORGIVING):
+        found = planner.attempt(attempt)
+        if isinstance(found, Solved):
+            return found
+        weak = found.weak is not None
+        if weak and not planner.torques:
+            held = roomy(planner.within_torques)
+            if isinstance(held, Solved):
+                return held
+    if planner.in_search > 0.0 and not weak:
+        return roomy(planner.with_room(planner.room, in_search=0.0))
+    return found
+
+
 def _search(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
     """The three steps."""
     tried: Tried = {}

@@ -7,33 +7,21 @@ grid and not a bisection, because what succeeds is not always one interval.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
-
-from pydantic import Field
 
 from stairwright.arguments import as_model, as_whole
 from stairwright.control.settings import ControllerSettings, parse_settings
-from stairwright.documents import Model
+from stairwright.documents import content_hash
 from stairwright.planning.plan import Plan
 
 from .disturbance import Disturbance
+from .margins_result import RobustMargins
 from .rollout import rollout
 
 DELAYS = tuple(0.002 * k for k in range(1, 16))  # s, as fine as control steps are
 FRICTIONS = tuple(0.05 * k for k in range(1, 10))  # lost
 RECORD_HZ = 5.0
-
-
-class RobustMargins(Model):
-    """What a plan stands in simulation."""
-
-    plan_id: str
-    delay: float | None = Field(
-        description="of the loop, up to which it succeeds; none if not even without [s]"
-    )
-    friction: float | None = Field(description="less than planned, up to which it succeeds")
-    delay_ends: str = Field(description="what happens beyond; empty if nothing was tried there")
-    friction_ends: str = Field(description="what happens beyond; empty if nothing was tried there")
 
 
 def robust_margins(
@@ -70,22 +58,24 @@ def robust_margins(
             progress(min(1.0, done / steps))
         return "" if run.success else run.reason
 
+    asked = [plan.id, settings.model_dump(), seed]
+    found = partial(
+        RobustMargins,
+        id="m-" + content_hash(asked).removeprefix("sha256:"),
+        plan_id=plan.id,
+        terrain_hash=plan.terrain_hash,
+        robot_hash=plan.robot_hash,
+        controller=settings,
+        seed=seed,
+    )
     ends = reason(Disturbance())
     if ends:
-        return RobustMargins(
-            plan_id=plan.id, delay=None, friction=None, delay_ends=ends, friction_ends=ends
-        )
+        return found(delay=None, friction=None, delay_ends=ends, friction_ends=ends)
     delay, delay_ends = _reach(DELAYS, lambda value: reason(Disturbance(delay=value)))
     friction, friction_ends = _reach(least, lambda value: reason(Disturbance(friction=-value)))
     if progress is not None:
         progress(1.0)
-    return RobustMargins(
-        plan_id=plan.id,
-        delay=delay,
-        friction=friction,
-        delay_ends=delay_ends,
-        friction_ends=friction_ends,
-    )
+    return found(delay=delay, friction=friction, delay_ends=delay_ends, friction_ends=friction_ends)
 
 
 def _reach(

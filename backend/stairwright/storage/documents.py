@@ -6,7 +6,7 @@ import json
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, cast
+from typing import Any, Literal, cast, get_args
 
 from sqlalchemy import Engine, Select, Table, bindparam, delete, func, or_, select, update
 from sqlalchemy.dialects.sqlite import insert
@@ -16,7 +16,7 @@ from .artefacts import Artefacts
 from .clock import UseClock
 from .tables import StoredDocument
 
-Kind = Literal["plan", "rollout", "trials"]
+Kind = Literal["plan", "rollout", "trials", "margins"]
 _SEARCHED = ("terrain", "robot", "method", "status", "outcome")  # of summaries
 _FRESH = 3600.0  # s; a use is written down again only after this time
 
@@ -179,7 +179,7 @@ class Documents:
         mine = (StoredDocument.kind, func.count(), func.sum(StoredDocument.size))
         with self._sessions() as session:
             rows = session.execute(select(*mine).group_by(StoredDocument.kind)).all()
-        counts = {"plan": 0, "rollout": 0, "trials": 0} | {kind: number for kind, number, _ in rows}
+        counts = dict.fromkeys(get_args(Kind), 0) | {kind: number for kind, number, _ in rows}
         return counts, sum(size for _, _, size in rows)
 
     def delete(self, kind: Kind, document_id: str) -> str | None:

@@ -50,6 +50,7 @@ def _answer(study: Study, question: CellQuestion, diagnose: bool) -> Record:
         question.friction,
         question.method,
         dict(question.weights),
+        tolerance=question.tolerance,
         diagnose=diagnose,
     )
     record: Record = {"state": DONE, **_of_plan(plan)}

@@ -12,6 +12,7 @@ from stairwright.arguments import MOST_SEED
 from stairwright.documents import Model, content_hash
 from stairwright.errors import InputError
 from stairwright.planning.plan import Method
+from stairwright.planning.tolerance import Tolerance
 from stairwright.robot.description import Robot
 from stairwright.simulation.ranges import Ranges
 from stairwright.terrain.generation import (
@@ -91,6 +92,9 @@ class Study(Model):
     friction: Friction | None = Field(None, description="the terrain's own by default")
     method: Method = "path"
     weights: dict[SettingName, bool | float] = Field({}, max_length=32)
+    tolerance: Tolerance | None = Field(
+        None, description="that plans of the method path shall stand; axes may vary it"
+    )
     axes: list[Axis] = Field(min_length=1, max_length=MOST_AXES)
     compute: Compute = "plan"
     diagnose: Diagnose = Field(
@@ -151,6 +155,8 @@ class Study(Model):
     def family(self) -> str:
         """Hash of everything but texts and values of axes: studies that share cells share it."""
         data = self.model_dump(mode="json", exclude={"name", "description", "axes"})
+        if self.tolerance is None:  # the name of what was asked before there was one stays
+            data.pop("tolerance")
         data["axes"] = [axis.name for axis in self.axes]
         if self.diagnose == "last" and self.boundary_axis is not None:
             data["diagnose"] = ["last", self.boundary_axis.points[-1]]

@@ -14,6 +14,7 @@ from stairwright.control.settings import parse_settings
 from stairwright.documents import parse, wording
 from stairwright.errors import InputError
 from stairwright.planning.plan import Method
+from stairwright.planning.tolerance import Tolerance, parse_tolerance
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
 from stairwright.terrain.generation import generate
@@ -39,17 +40,21 @@ class CellQuestion:
     controller: Mapping[str, Any] = field(default_factory=dict)
     disturbance: Mapping[str, float] = field(default_factory=dict)
     seed: int = 0
+    tolerance: Tolerance | None = None
 
     @property
     def plan(self) -> dict[str, Any]:
         """The body of POST /plans that asks for this cell's plan."""
-        return {
+        body = {
             "terrain": self.terrain.model_dump(mode="json"),
             "robot": self.robot.model_dump(mode="json"),
             "friction": self.friction,
             "method": self.method,
             "weights": dict(self.weights),
         }
+        if self.tolerance is not None:
+            body["tolerance"] = self.tolerance.asked
+        return body
 
 
 _SIMULATED: Mapping[str, tuple[str, ...]] = {
@@ -103,15 +108,19 @@ class Questions:
         method: Method = plain.get("method", study.method)  # type: ignore[assignment]
         weights = dict(study.weights) | {t.path[0]: v for t, v in given if t.part == "weights"}
         robot = self._robot([(t, v) for t, v in given if t.part in _OF_ROBOT])
+        mu = terrain.friction if friction is None else as_friction(friction)
+        tolerance = study.tolerance.asked if study.tolerance else {}
+        tolerance |= {t.path[0]: float(v) for t, v in given if t.part == "tolerance"}
         return CellQuestion(
             terrain,
             robot,
-            terrain.friction if friction is None else as_friction(friction),
+            mu,
             method,
             parse_weights(method, weights).model_dump(mode="json"),
             dict(study.controller) | {t.path[0]: v for t, v in given if t.part == "controller"},
             {t.path[0]: float(v) for t, v in given if t.part == "disturbance"},
             _whole(plain.get("seed", study.seed), "seed"),
+            parse_tolerance(tolerance, method, mu),
         )
 
     def _terrain(self, measures: dict[str, Value]) -> Terrain:

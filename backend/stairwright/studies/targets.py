@@ -13,6 +13,7 @@ from pydantic import BaseModel
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
 from stairwright.planning.plan import Method
+from stairwright.planning.tolerance import Tolerance
 from stairwright.planning.weights import MODELS
 from stairwright.robot.description import Robot
 from stairwright.simulation.disturbance import Disturbance
@@ -20,7 +21,7 @@ from stairwright.terrain.generation import FlatParameters, RampParameters, Stair
 
 Part = Literal[
     "terrain", "friction", "payload", "weights", "method", "robot", "robot_file", "controller",
-    "disturbance", "seed",
+    "disturbance", "seed", "tolerance",
 ]  # fmt: skip
 Generated = StairParameters | RampParameters | FlatParameters
 
@@ -80,6 +81,7 @@ def target(name: str, method: Method = "path") -> Target:
         "weights": MODELS[method],
         "controller": ControllerSettings,
         "disturbance": Disturbance,
+        "tolerance": Tolerance,
     }
     for part, fields in tuned.items():
         if part == head and len(path) == 1:
@@ -99,7 +101,7 @@ def target(name: str, method: Method = "path") -> Target:
     raise InputError(
         f"nothing is called {name[:60]!r}; there are: {groups} and their other measures, "
         "friction, payload, speed, method, weights.NAME, robot, robot.PATH, controller.NAME, "
-        "disturbance.NAME, seed"
+        "disturbance.NAME, tolerance.NAME, seed"
     )
 
 

@@ -460,6 +460,58 @@ export interface paths {
         patch: operations["save_trials_notes"];
         trace?: never;
     };
+    "/api/v1/margins": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Margins
+         * @description Stored margins, newest first.
+         */
+        get: operations["list_margins"];
+        put?: never;
+        /**
+         * Post Margins
+         * @description Find a plan's margins; the answer is the job. A known result makes a job that is done.
+         */
+        post: operations["create_margins"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/margins/{margins_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Margins
+         * @description The delay and the loss of friction up to which every rollout succeeds.
+         */
+        get: operations["get_margins"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete Margins
+         * @description Remove a plan's margins. The plan stays.
+         */
+        delete: operations["delete_margins"];
+        options?: never;
+        head?: never;
+        /**
+         * Save Margins Notes
+         * @description Name a plan's margins, note something about them, or pin them.
+         */
+        patch: operations["save_margins_notes"];
+        trace?: never;
+    };
     "/api/v1/jobs": {
         parameters: {
             query?: never;
@@ -1572,7 +1624,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "rollout" | "trials";
+            kind: "rollout" | "trials" | "margins";
             /**
              * State
              * @enum {string}
@@ -2003,6 +2055,8 @@ export interface components {
             knees?: components["schemas"]["Knees"] | null;
             /** @description which margin is least */
             binding?: components["schemas"]["Binding"] | null;
+            /** @description how far the world may be from what was drawn, where that was asked for; margins are then those at the lowest friction */
+            tolerance?: components["schemas"]["Tolerance"] | null;
         };
         /**
          * PlanRequest
@@ -2077,6 +2131,8 @@ export interface components {
              * @enum {string}
              */
             timing: "steady" | "fast";
+            /** @description how far the world may be from what is drawn, with the certificate holding for all of it; of the method `path` */
+            tolerance?: components["schemas"]["Tolerance"] | null;
         };
         /**
          * PlaybackRequest
@@ -2594,6 +2650,52 @@ export interface components {
             version: string;
         };
         /**
+         * RobustMargins
+         * @description What a plan stands in simulation (``stairwright/margins/1``).
+         */
+        RobustMargins: {
+            /**
+             * Schema
+             * @default stairwright/margins/1
+             * @constant
+             */
+            schema: "stairwright/margins/1";
+            /**
+             * Id
+             * @description hash of the question
+             */
+            id: string;
+            /** Plan Id */
+            plan_id: string;
+            /** Terrain Hash */
+            terrain_hash: string;
+            /** Robot Hash */
+            robot_hash: string;
+            controller: components["schemas"]["ControllerSettings"];
+            /** Seed */
+            seed: number;
+            /**
+             * Delay
+             * @description of the loop, up to which it succeeds; none if not even without [s]
+             */
+            delay: number | null;
+            /**
+             * Friction
+             * @description less than planned, up to which it succeeds
+             */
+            friction: number | null;
+            /**
+             * Delay Ends
+             * @description what happens beyond; empty if nothing was tried there
+             */
+            delay_ends: string;
+            /**
+             * Friction Ends
+             * @description what happens beyond; empty if nothing was tried there
+             */
+            friction_ends: string;
+        };
+        /**
          * Rollout
          * @description A rollout (``stairwright/rollout/1``); `id` is a hash of everything that went into it.
          */
@@ -2705,6 +2807,8 @@ export interface components {
              * @enum {string}
              */
             timing: "steady" | "fast";
+            /** @description with `terrain` */
+            tolerance?: components["schemas"]["Tolerance"] | null;
             /**
              * Friction
              * @description friction in the simulation (and of the plan, with `terrain`)
@@ -2840,6 +2944,10 @@ export interface components {
                     [key: string]: unknown;
                 };
             };
+            /** Tolerance */
+            tolerance: {
+                [key: string]: unknown;
+            };
             /** Controller */
             controller: {
                 [key: string]: unknown;
@@ -2859,6 +2967,70 @@ export interface components {
             exports: {
                 [key: string]: components["schemas"]["ExportFormat"][];
             };
+        };
+        /**
+         * Simulation
+         * @description A plan by its id or in full, or what to plan first; and how to carry it out.
+         */
+        Simulation: {
+            /**
+             * Plan Id
+             * @description a plan that POST /plans answered with
+             */
+            plan_id?: string | null;
+            /** @description a whole plan document */
+            plan?: components["schemas"]["Plan"] | null;
+            /**
+             * Terrain
+             * @description what to plan over first
+             */
+            terrain?: (string | components["schemas"]["Terrain"]) | null;
+            /**
+             * Robot
+             * @description with `terrain`
+             * @default a1_wheeled
+             */
+            robot: string | components["schemas"]["Robot"];
+            /**
+             * Method
+             * @description with `terrain`
+             * @default path
+             * @enum {string}
+             */
+            method: "path" | "critical" | "nominal";
+            /**
+             * Weights
+             * @description with `terrain`
+             */
+            weights?: {
+                [key: string]: boolean | number;
+            } | null;
+            /**
+             * Timing
+             * @description with `terrain`
+             * @default steady
+             * @enum {string}
+             */
+            timing: "steady" | "fast";
+            /** @description with `terrain` */
+            tolerance?: components["schemas"]["Tolerance"] | null;
+            /**
+             * Friction
+             * @description friction in the simulation (and of the plan, with `terrain`)
+             */
+            friction?: number | null;
+            /**
+             * Controller
+             * @description controller settings by name, see GET /settings
+             */
+            controller?: {
+                [key: string]: boolean | string | (number | null);
+            } | null;
+            /**
+             * Seed
+             * @default 0
+             */
+            seed: number;
         };
         /**
          * StairParameters
@@ -3020,6 +3192,8 @@ export interface components {
             weights: {
                 [key: string]: boolean | number;
             };
+            /** @description that plans of the method path shall stand; axes may vary it */
+            tolerance?: components["schemas"]["Tolerance"] | null;
             /** Axes */
             axes: components["schemas"]["Axis"][];
             /**
@@ -3228,6 +3402,34 @@ export interface components {
             limits?: string[] | null;
         };
         /**
+         * Tolerance
+         * @description What a plan shall stand; docs/method.md says what the certificate makes of it.
+         *
+         *     Faces are stretches steeper than 45 degrees, treads what lies between them; both keep their
+         *     slopes. The robot adapts as it does with its own sensors: the trunk keeps its pitch, its place
+         *     follows the ground under the wheels by the load they carry, and the legs reach for the ground.
+         */
+        Tolerance: {
+            /**
+             * Height off
+             * @description each tread lies up to this much higher or lower than drawn [m]
+             * @default 0
+             */
+            height: number;
+            /**
+             * Place off
+             * @description each face stands up to this much nearer or farther than drawn [m]
+             * @default 0
+             */
+            place: number;
+            /**
+             * Friction lower
+             * @description friction is up to this much lower than planned
+             * @default 0
+             */
+            friction: number;
+        };
+        /**
          * Trial
          * @description One rollout of the set.
          */
@@ -3375,6 +3577,8 @@ export interface components {
              * @enum {string}
              */
             timing: "steady" | "fast";
+            /** @description with `terrain` */
+            tolerance?: components["schemas"]["Tolerance"] | null;
             /**
              * Friction
              * @description friction in the simulation (and of the plan, with `terrain`)
@@ -6421,13 +6625,458 @@ export interface operations {
             };
         };
     };
+    list_margins: {
+        parameters: {
+            query?: {
+                /** @description at most this many */
+                limit?: number;
+                /** @description after this many */
+                offset?: number;
+                /** @description words in name, note, terrain, robot or outcome */
+                search?: string;
+                /** @description only those pinned, or not */
+                pinned?: boolean | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    ETag: components["headers"]["ETag"];
+                    "X-Total-Count": components["headers"]["X-Total-Count"];
+                    Link: components["headers"]["Link"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StoredEntry"][];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    create_margins: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description an open session: sessions take turns in the queues */
+                "stairwright-session"?: string | null;
+                /** @description a repeated request with the same key does its work once */
+                "idempotency-key"?: string | null;
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Simulation"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    Location: components["headers"]["Location"];
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["JobDocument"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unsupported Media Type: `media-type` */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Too Many Requests: `attempts`, `connections`, `queue-full`, `sessions` */
+            429: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            503: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    get_margins: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                margins_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    ETag: components["headers"]["ETag"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RobustMargins"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    delete_margins: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                margins_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    save_margins_notes: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                margins_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["EntryChanges"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StoredEntry"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unsupported Media Type: `media-type` */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
     list_jobs: {
         parameters: {
             query?: {
                 /** @description only in these states */
                 state?: ("queued" | "running" | "done" | "failed" | "cancelled")[];
                 /** @description only of these kinds */
-                kind?: ("rollout" | "trials")[];
+                kind?: ("rollout" | "trials" | "margins")[];
                 /** @description at most this many */
                 limit?: number;
                 /** @description after this many */

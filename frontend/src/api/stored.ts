@@ -15,6 +15,7 @@ export interface Summary {
   problem?: string | null;
   friction?: number;
   weights?: SettingValues;
+  tolerance?: SettingValues;
   controller?: SettingValues;
   seed?: number;
   disturbance?: Record<string, number>;

@@ -149,6 +149,7 @@ export interface SettingsGroup {
 
 export interface Settings {
   weights: Partial<Record<Method, SettingsGroup>>;
+  tolerance: SettingsGroup;
   controller: SettingsGroup;
   disturbance: SettingsGroup;
   /** Deviations that trials draw from, by name. */
@@ -168,4 +169,5 @@ export interface PlanRequest {
   method: Method;
   weights?: SettingValues;
   timing?: PlanTiming;
+  tolerance?: SettingValues;
 }

@@ -21,6 +21,7 @@ import { Icon } from "../ui/icon";
 import { SeedRow } from "./seed";
 import { Segments } from "./segments";
 import { SettingRow, Switch } from "./slider";
+import { Tolerance } from "./tolerance";
 import { DisturbancesAndTrials } from "./trials";
 
 const METHODS: [Method, string][] = [
@@ -135,6 +136,7 @@ function Weights() {
           onChange={(value) => setWeight(name, value)}
         />
       ))}
+      {method.value === "path" && <Tolerance />}
       <Effect />
     </>
   );

@@ -27,7 +27,7 @@ function group(
   return Object.entries(values ?? {}).map(([name, value]) => one(name, value, schema?.[name]));
 }
 
-/** Friction first, then method, weights, controller, disturbance, seed. */
+/** Friction first, then method, weights, tolerance, controller, disturbance, seed. */
 export function chips({ summary: s }: Entry): string[] {
   const known = settings.value;
   return [
@@ -35,6 +35,7 @@ export function chips({ summary: s }: Entry): string[] {
     ...(s.method && METHODS[s.method] ? [METHODS[s.method]!] : []),
     ...(s.bundle ? [`${s.bundle} disturbances`] : []),
     ...group(s.weights, s.method && known?.weights[s.method]?.properties),
+    ...group(s.tolerance, known?.tolerance.properties),
     ...group(s.controller, known?.controller.properties),
     ...group(s.disturbance, disturbanceSchema.value),
     ...(s.seed ? [`seed ${s.seed}`] : []),

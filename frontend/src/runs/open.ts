@@ -17,6 +17,8 @@ import {
   seed,
   settings,
   terrains,
+  tolerance,
+  toleranceSchema,
   weights,
 } from "../state/setup";
 import { toast } from "../state/toast";
@@ -43,6 +45,7 @@ function showPlan(plan: Plan): void {
   method.value = plan.method;
   const schema = settings.peek()?.weights[plan.method]?.properties;
   weights.value = { ...weights.peek(), [plan.method]: differing(plan.weights ?? {}, schema) };
+  tolerance.value = differing({ ...plan.tolerance }, toleranceSchema.peek());
 }
 
 /** Plans and rollouts as they were; a set of trials as its plan and settings. */

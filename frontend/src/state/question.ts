@@ -3,7 +3,7 @@
 import { computed } from "@preact/signals";
 import type { Method, PlanRequest } from "../api/types";
 import { drawing, isEmpty, terrainDocument } from "./drawing";
-import { changedWeights, method, robotSource, robots, settings, timing } from "./setup";
+import { changedWeights, method, robotSource, robots, settings, timing, tolerance } from "./setup";
 
 export const request = computed<PlanRequest | null>(() => {
   if (isEmpty.value || robots.value.length === 0 || !settings.value) return null;
@@ -18,13 +18,13 @@ export const requestWith = (robot: PlanRequest["robot"]): PlanRequest | null =>
 
 /** The question of B: the same without pose optimisation. */
 export function unoptimised(question: PlanRequest): PlanRequest {
-  const { weights: _, timing: __, ...rest } = question;
+  const { weights: _, timing: __, tolerance: ___, ...rest } = question;
   return { ...rest, method: "nominal" };
 }
 
 /** The question that the quick method is asked: the same without the full method's weights. */
 export function quick(question: PlanRequest): PlanRequest {
-  const { weights: _, timing: __, ...rest } = question;
+  const { weights: _, timing: __, tolerance: ___, ...rest } = question;
   return { ...rest, method: "critical" };
 }
 
@@ -36,6 +36,9 @@ function ask(by: Method, weights: PlanRequest["weights"]): PlanRequest {
     friction: state.friction,
     method: by,
     ...(by === "path" && timing.value === "fast" ? { timing: "fast" as const } : {}),
+    ...(by === "path" && Object.keys(tolerance.value).length > 0
+      ? { tolerance: tolerance.value }
+      : {}),
     ...(weights && Object.keys(weights).length > 0 ? { weights } : {}),
   };
 }

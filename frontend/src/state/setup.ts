@@ -26,6 +26,8 @@ export const compare = signal(false);
 export const seed = signal(0);
 /** Only what differs from the default, by method. */
 export const weights = signal<Partial<Record<Method, SettingValues>>>({});
+/** How far the world may be from what is drawn, with the plan's certificate holding: not 0. */
+export const tolerance = signal<SettingValues>({});
 export const controller = signal<SettingValues>({});
 /** How the real world differs from what plan and controller believe: only what is not 0. */
 export const disturbance = signal<SettingValues>({});
@@ -73,9 +75,15 @@ export const controllerSchema = computed<Record<string, SettingSchema>>(
 export const disturbanceSchema = computed<Record<string, SettingSchema>>(
   () => settings.value?.disturbance.properties ?? {},
 );
+export const toleranceSchema = computed<Record<string, SettingSchema>>(
+  () => settings.value?.tolerance.properties ?? {},
+);
 export const changedWeights = computed(() => weights.value[method.value] ?? {});
-export const changedCount = computed(
-  () => Object.keys(changedWeights.value).length + Object.keys(controller.value).length,
+export const changedCount = computed(() =>
+  [changedWeights, controller, ...(method.value === "path" ? [tolerance] : [])].reduce(
+    (sum, each) => sum + Object.keys(each.value).length,
+    0,
+  ),
 );
 
 function withValue(
@@ -91,6 +99,10 @@ function withValue(
 export function setWeight(name: string, value: SettingChange): void {
   const next = withValue(changedWeights.peek(), weightSchema.peek()[name], name, value);
   weights.value = { ...weights.peek(), [method.peek()]: next };
+}
+
+export function setTolerance(name: string, value: SettingChange): void {
+  tolerance.value = withValue(tolerance.peek(), toleranceSchema.peek()[name], name, value);
 }
 
 export function setController(name: string, value: SettingChange): void {
@@ -109,6 +121,7 @@ export const choices = computed(() => ({
   timing: timing.value,
   seed: seed.value,
   weights: weights.value,
+  tolerance: tolerance.value,
   controller: controller.value,
   disturbance: disturbance.value,
 }));
@@ -122,6 +135,7 @@ export function choose(again: Choices): void {
     timing.value = again.timing;
     seed.value = again.seed;
     weights.value = again.weights;
+    tolerance.value = again.tolerance;
     controller.value = again.controller;
     disturbance.value = again.disturbance;
   });
@@ -129,5 +143,6 @@ export function choose(again: Choices): void {
 
 export function resetAll(): void {
   weights.value = { ...weights.peek(), [method.peek()]: {} };
+  tolerance.value = {};
   controller.value = {};
 }

@@ -23,6 +23,7 @@ import {
   seed,
   terrains,
   timing,
+  tolerance,
   weights,
 } from "./setup";
 import { toast } from "./toast";
@@ -38,6 +39,8 @@ interface Shared {
   /** Fast timing. */
   f?: 1;
   w?: Partial<Record<Method, SettingValues>>;
+  /** Tolerance. */
+  l?: SettingValues;
   c?: SettingValues;
   s?: number;
   /** Disturbance. */
@@ -82,6 +85,7 @@ function currentState(): Shared {
     m: method.value,
     ...(timing.value === "fast" ? { f: 1 as const } : {}),
     ...(filled(changed) ? { w: changed } : {}),
+    ...(filled(tolerance.value) ? { l: tolerance.value } : {}),
     ...(filled(controller.value) ? { c: controller.value } : {}),
     ...(seed.value ? { s: seed.value } : {}),
     ...(filled(disturbance.value) ? { d: disturbance.value } : {}),
@@ -126,6 +130,7 @@ export function restoreFromAddress(instead = "the sample is shown instead"): Res
   method.value = state.m;
   timing.value = state.f ? "fast" : "steady";
   weights.value = state.w ?? {};
+  tolerance.value = state.l ?? {};
   controller.value = state.c ?? {};
   seed.value = state.s ?? 0;
   disturbance.value = state.d ?? {};

@@ -23,6 +23,7 @@ constexpr double kPitchWeight = 0.05;   // 1/rad
 constexpr double kRateWeight = 20.0;    // 1/m^2, of the squared step from node to node
 constexpr double kBend = 0.082;         // m; how much bends count against motion
 constexpr double kHardWeight = 600.0;
+constexpr double kFirmTorque = 0.12;  // share of a motor's torque that a path leaves, a little more than it must
 
 // Clearance of a calf's end above level ground: more cannot be had on any.
 double calf_end_clearance(const RobotModel& robot) {
@@ -50,17 +51,19 @@ Objective objective(const RefineProblem& problem, const NodeSpacing& spacing, do
     o.com = {0.02, 100.0 * root};
     o.reserve = {0.02 * size, 50.0 * root};
     o.lagged = {0.06 * size, kComWeight * root * std::sqrt(w.com_margin)};
-    o.trunk = o.links = {kClearance, 150.0 * root};
-    o.reach = {0.006 * size, 150.0 * root};
+    const Room& more = problem.room;
+    o.trunk = MarginTerm{kClearance, 150.0 * root, 0.002}.with(more.trunk);
+    o.links = MarginTerm{kClearance, 150.0 * root, 0.004}.with(more.links);
+    o.reach = MarginTerm{0.006 * size, 150.0 * root, 0.0005}.with(more.reach);
     const double room = kRoomWeight * root * std::sqrt(w.clearance);
-    o.trunk_room = {kTrunkClearance * size, room};
+    o.trunk_room = MarginTerm{kTrunkClearance * size, room}.with(more.trunk);
     o.links_room = {calf_end_clearance(problem.robot), room};
     o.torque_weight = kTorqueWeight * root * std::sqrt(w.torque);
-    o.torque_room = {0.2, 8.0 * root};
+    o.torque_room = {0.2, 8.0 * root, kFirmTorque};
     o.torque_hard = 100.0;
     o.hard = kHardWeight;
-    o.legs = {0.011, 150.0 * root};
-    o.joints = {0.05, 30.0 * root};
+    o.legs = MarginTerm{0.011, 150.0 * root, 0.007}.with(more.legs);
+    o.joints = MarginTerm{0.05, 30.0 * root, 0.004}.with(more.joints);
     o.pitch_weight = kPitchWeight * root * std::sqrt(w.pitch);
     o.height_weight = 0.3 * root;
     o.height = problem.standing_height;

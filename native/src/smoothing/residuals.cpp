@@ -7,14 +7,13 @@ namespace stairwright::smoothing {
 
 namespace {
 
-constexpr double kFirmTorque = 0.12;  // share of a motor's torque that a path leaves, a little more than it must
 constexpr double kStep = 1e-5;   // m and rad; of finite differences
 
 double shortfall(double value, const MarginTerm& term) { return term.weight * std::max(0.0, term.target - value); }
 
-// Pull towards the term's target, and hard away from less than `least`.
-double hinge(double value, const MarginTerm& term, double hard, double least) {
-    return term.weight * std::max(0.0, term.target - value) + hard * std::max(0.0, least - value);
+// Pull towards the term's target, and hard away from less than its least.
+double hinge(double value, const MarginTerm& term, double hard) {
+    return term.weight * std::max(0.0, term.target - value) + hard * std::max(0.0, term.least - value);
 }
 
 // Both sides of one CoM interval.
@@ -57,7 +56,7 @@ void torque_limit_residuals(const SmoothingProblem& problem, std::size_t node, c
             const Leg& leg = problem.robot.legs[pair].leg;
             const LegTorques torques = static_torques(leg, posture.legs[pair], (*load)[pair]);
             const auto lacking = [&](double torque, const Motor& motor) {
-                return hinge(1.0 - std::abs(torque) / motor.torque, term, problem.objective.torque_hard, kFirmTorque);
+                return hinge(1.0 - std::abs(torque) / motor.torque, term, problem.objective.torque_hard);
             };
             double* of_leg = out + 3 * pair;
             of_leg[0] = std::max(of_leg[0], lacking(torques.thigh, leg.thigh_motor));
@@ -81,11 +80,11 @@ Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Bod
     com_residuals(x, interval.full, o.com, o.hard, &r[kComLow]);
     com_residuals(x, interval.reserve, o.reserve, 0.0, &r[kReserveLow]);
     com_residuals(x, interval.lagged, o.lagged, 0.0, &r[kLaggedLow]);
-    r[kTrunk] = hinge(geometry.trunk, o.trunk, o.hard, 0.002);
-    r[kLinks] = hinge(geometry.links, o.links, o.hard, 0.004);
-    r[kLegs] = hinge(geometry.legs, o.legs, o.hard, 0.007);
-    r[kJoints] = hinge(geometry.joints.slack, o.joints, o.hard, 0.004);
-    r[kReach] = hinge(geometry.posture.reach_slack, o.reach, o.hard, 0.0005);
+    r[kTrunk] = hinge(geometry.trunk, o.trunk, o.hard);
+    r[kLinks] = hinge(geometry.links, o.links, o.hard);
+    r[kLegs] = hinge(geometry.legs, o.legs, o.hard);
+    r[kJoints] = hinge(geometry.joints.slack, o.joints, o.hard);
+    r[kReach] = hinge(geometry.posture.reach_slack, o.reach, o.hard);
     r[kTrunkRoom] = shortfall(geometry.trunk, o.trunk_room);
     r[kLinksRoom] = shortfall(geometry.links, o.links_room);
     const auto& [front, rear] = problem.wheels[node];

@@ -29,7 +29,7 @@ died begins anew: its job is queued again, and its series from sample 0."""
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 
-Kind = Literal["rollout", "trials"]
+Kind = Literal["rollout", "trials", "margins"]
 
 
 def job_document(job: Job) -> JobDocument:

@@ -49,7 +49,8 @@ def plan_question(services: Services, body: PlanRequest) -> PlanQuestion:
     """The question behind a request, names resolved and defaults filled in."""
     terrain = resolve_terrain(services, body.terrain)
     robot = resolve_robot(services, body.robot)
-    return PlanQuestion.of(terrain, robot, body.friction, body.method, body.weights, body.timing)
+    asked = (body.friction, body.method, body.weights, body.timing, body.tolerance)
+    return PlanQuestion.of(terrain, robot, *asked)
 
 
 @router.post(

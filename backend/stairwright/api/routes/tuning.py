@@ -11,6 +11,7 @@ from stairwright.api.bodies import ExportFormat, SettingsDocument
 from stairwright.control.settings import ControllerSettings
 from stairwright.documents import Model
 from stairwright.export.table import FORMATS
+from stairwright.planning.tolerance import Tolerance
 from stairwright.planning.weights import MODELS
 from stairwright.simulation.disturbance import Disturbance
 from stairwright.simulation.ranges import BUNDLES
@@ -36,6 +37,7 @@ def _document() -> SettingsDocument:
     }
     return SettingsDocument(
         weights=weights,
+        tolerance=_flat(Tolerance),
         controller=_flat(ControllerSettings),
         disturbance=_flat(Disturbance),
         bundles=BUNDLES,

@@ -139,19 +139,22 @@ class DaskSimulators:
         question = {key: question[key] for key in question if key not in ("plan", "plan_digest")}
         futures: list[Any] = []
 
-        def ask(what: str, function: Callable[..., Any], *args: Any) -> Any:
+        def ask(what: str, function: Callable[..., Any], *args: Any, runs: int = 1) -> Any:
             key = f"{what}-{name}"
-            order = tasks.Order(name, self._topic, key, engine, self._deadline)
+            order = tasks.Order(name, self._topic, key, engine, self._deadline * runs)
             futures.append(client.submit(function, *args, order, key=key, priority=_PRIORITY))
             return futures[-1]
 
-        count = run.question.runs
+        margins = run.question.kind == "margins"  # one task: where it ends depends on what it finds
+        count = 1 if margins else run.question.runs
         size = max(1, min(_PART, math.ceil(count / (_PARTS * self.workers))))
         firsts = range(0, count, size)
         self._heard[name] = Shares(run, len(firsts))
         plan = ask("plan", tasks.make_plan, source)
         if run.question.kind == "rollout":
             ask("rollout", tasks.roll_out, plan, question)
+        elif margins:
+            ask("margins", tasks.find_margins, plan, question, runs=run.question.runs)
         else:
             parts = [
                 ask(f"trials{first}", tasks.try_part, plan, question, first,

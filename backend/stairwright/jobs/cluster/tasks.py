@@ -111,6 +111,17 @@ def roll_out(content: bytes, question: work.Question, order: Order) -> work.Prod
         return work.rolled_out(_plan(content), question, news.progress, observe)
 
 
+def find_margins(content: bytes, question: work.Question, order: Order) -> work.Product:
+    """Delay and friction margin of a plan, its JSON in `content`.
+
+    Raises:
+        InputError, Cancelled, OtherVersion: As `roll_out`.
+    """
+    check_version(rollout_engine(), order.engine)
+    with watch.over(order.deadline):
+        return work.margins_found(_plan(content), question, News(order).progress)
+
+
 def try_part(
     content: bytes, question: work.Question, first: int, last: int, order: Order
 ) -> list[Trial]:

@@ -19,7 +19,9 @@ from stairwright.planning.certificate.distances import Distances
 from stairwright.planning.certificate.dynamics import dynamics_of
 from stairwright.planning.certificate.equilibrium import TOUCH, WHEEL_GAP, balanced, touching
 from stairwright.planning.certificate.motion import Motion, Samples, sampled
+from stairwright.planning.certificate.tolerance.checks import tolerance_checks
 from stairwright.planning.plan import Certificate, Check, Plan
+from stairwright.planning.tolerance import Tolerance
 from stairwright.robot import kinematics as kin
 
 Floats = NDArray[np.float64]
@@ -49,7 +51,10 @@ def certify(plan: Plan | Mapping[str, Any], scope: Scope | None = None) -> Certi
     if not plan.poses:
         missing = Check(name="poses", value=0.0, bound=1.0, unit="1", passed=False)
         return Certificate(passed=False, scope=chosen, checks=[missing])
-    found = judge(Motion.of(plan), chosen)
+    motion = Motion.of(plan)
+    found = judge(motion, chosen)
+    if plan.tolerance is not None and len(plan.poses) > 1:
+        found = found.with_checks(tolerated(motion, plan.tolerance))
     return with_dynamics(found, plan) if plan.timing.rule == "fast" else found
 
 
@@ -67,6 +72,11 @@ def with_dynamics(certificate: Certificate, plan: Plan) -> Certificate:
             "passed": certificate.passed and all(check.passed for check in checks),
         }
     )
+
+
+def tolerated(motion: Motion, tolerance: Tolerance) -> list[Check]:
+    """What a motion of two poses or more keeps on every terrain within `tolerance`."""
+    return tolerance_checks(motion, tolerance, lambda samples: _Checker(samples).second_faces())
 
 
 def judge(motion: Motion, scope: Scope = "motion") -> Certificate:
@@ -133,7 +143,7 @@ class _Checker:
         slack: Floats = np.minimum(joints - low, high - joints).min(axis=1)
         return slack
 
-    def _second_faces(self) -> Floats:
+    def second_faces(self) -> Floats:
         """How near a second face must be to a wheel's centre (n, 2) for balance to lean on it [m].
 
         Only what is truly touched counts: a wheel nearly in a corner is balanced on the one face
@@ -159,7 +169,7 @@ class _Checker:
         motion = self.samples.motion
         failed = ~balanced(
             motion.vertices, self.samples.frames.wheels, self.samples.com[:, 0],
-            motion.robot.wheel.radius + WHEEL_GAP, motion.friction, self._second_faces(),
+            motion.robot.wheel.radius + WHEEL_GAP, motion.friction, self.second_faces(),
         )  # fmt: skip
         k = int(np.argmax(failed))
         return Check(

@@ -35,11 +35,12 @@ class Search:
         bounds: Bounds,
     ) -> None:
         path, robot, model = q.path, q.robot, q.robot_model
-        self.path, self.robot, self.lattice, self.bounds = path, robot, lattice, bounds
+        self.path, self.robot, self.lattice = path, robot, lattice
+        self.bounds = q.room.within(bounds, q.in_search)
         self.begin, self.end, self.weights, self.model = begin, end, q.weights, model
         self.s = sample_wheel_places(path, begin, end, lattice.step, scale(robot))
         self.centres = path.centres(self.s)
-        close = 2 * path.radius + _core.LEGS_GAP + _APART
+        close = 2 * path.radius + _core.LEGS_GAP + _APART + q.room.legs
         ends = (self._index(begin)[0], self._index(end)[1])
         self.pairs = _core.sample_pairs(self.centres, close, model.most_wheel_distance, *ends)
         still_wanted()
@@ -48,7 +49,7 @@ class Search:
         still_wanted()
         self.trunk = _core.lattice_trunk_table(
             *_core.trunk_table(
-                q.ground, model, lattice.windows, costs, bounds.trunk, self.centres, self.pairs
+                q.ground, model, lattice.windows, costs, self.bounds.trunk, self.centres, self.pairs
             )
         )
 

@@ -12,6 +12,7 @@ from stairwright.planning.plan import Margins, Plan, Pose, Problem, Timing, plan
 from stairwright.planning.smoothing.path_timing import path_parameter, pose_times
 from stairwright.planning.smoothing.refine import Refined
 from stairwright.planning.standing import CORNER, kink
+from stairwright.planning.tolerance import Tolerance
 from stairwright.planning.weights import PathWeights
 from stairwright.robot import kinematics as kin
 from stairwright.robot.description import Robot
@@ -104,12 +105,13 @@ def make_plan(
     critical: list[int] | None = None,
     total: float = 0.0,
     problem: Problem | None = None,
+    tolerance: Tolerance | None = None,
 ) -> Plan:
     """The document around poses or a problem."""
     chosen = weights.model_dump()
     return Plan.model_construct(
         schema_="stairwright/plan/1",
-        id=plan_id(terrain, robot, friction, "path", chosen),
+        id=plan_id(terrain, robot, friction, "path", chosen, tolerance=tolerance),
         method="path",
         terrain=terrain,
         terrain_hash=terrain.hash,
@@ -127,4 +129,5 @@ def make_plan(
         certificate=None,
         knees=None,
         binding=binding_of(robot, friction, poses or []),
+        tolerance=tolerance,
     )

@@ -87,7 +87,9 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
     ]
     timing = Timing(total=times[-1], rule="fast", limits=[names[k] for k in places])
     robot = plan.robot_description
-    asked = (plan.terrain, robot, plan.friction, plan.method, plan.weights, timing.rule)
+    asked = (
+        plan.terrain, robot, plan.friction, plan.method, plan.weights, timing.rule, plan.tolerance,
+    )  # fmt: skip
     return plan.model_copy(update={"id": plan_id(*asked), "poses": timed, "timing": timing})
 
 

@@ -10,6 +10,14 @@ struct PathWeights {
     double com_margin = 1.0, clearance = 1.0, torque = 1.0, smoothness = 1.0, pitch = 1.0;
 };
 
+// What a path keeps beyond its bounds, for ground that is not as drawn.
+struct Room {
+    double trunk = 0.0, links = 0.0;  // clearances [m]
+    double legs = 0.0;                // between front and rear leg [m]
+    double reach = 0.0;               // of the hip-wheel distances [m]
+    double joints = 0.0;              // of the joint ranges [rad]
+};
+
 struct RefineProblem {
     const Terrain& terrain;
     const WheelPath& path;
@@ -20,6 +28,7 @@ struct RefineProblem {
     double standing_height = 0.0;  // of the trunk above the wheels [m]
     PathWeights weights;
     bool torques = false;          // whether motors are weak: their limits shape the path
+    Room room;
 };
 
 // How nodes are laid for the smoothing.

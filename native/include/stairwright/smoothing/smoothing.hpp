@@ -15,9 +15,12 @@
 
 namespace stairwright::smoothing {
 
-// A quantity is drawn to its target with this weight; nothing draws it beyond.
+// A quantity is drawn to its target with this weight; nothing draws it beyond. Less than `least` is a violation.
 struct MarginTerm {
-    double target = 0.0, weight = 0.0;
+    double target = 0.0, weight = 0.0, least = 0.0;
+
+    // The same with so much more of it.
+    MarginTerm with(double more) const { return {target + more, weight, least + more}; }
 };
 
 struct Objective {
