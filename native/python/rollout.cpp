@@ -91,6 +91,19 @@ void bind_perception(nb::module_& m) {
         .def_rw("force_offset", &SensorErrors::force_offset)
         .def_rw("wheel_scale", &SensorErrors::wheel_scale)
         .def_rw("tilt", &SensorErrors::tilt);
+    using Torques12 = In<double, nb::shape<12>>;
+    nb::class_<RobotSensors>(m, "RobotSensors", "What a robot's own sensors say of the true state, see rollout/robot_sensors.hpp.")
+        .def(nb::init<const SensorErrors&, std::uint64_t>(), nb::arg("errors"), nb::arg("seed"))
+        .def("read", [](RobotSensors& self, const In<double, nb::shape<19>>& qpos, const In<double, nb::shape<18>>& qvel, const Torques12& torques, double dt) {
+            std::array<double, kPositions + kVelocities> numbers;
+            std::copy_n(qpos.data(), kPositions, numbers.begin());
+            std::copy_n(qvel.data(), kVelocities, numbers.begin() + kPositions);
+            control::Torques acted;
+            std::copy_n(torques.data(), 12, acted.begin());
+            const estimation::Readings out = self.read(std::bit_cast<RobotState>(numbers), acted, dt);
+            return std::tuple(out.joints, out.joint_rates, out.torques, out.angular_rate, out.specific_force);
+        }, nb::arg("qpos"), nb::arg("qvel"), nb::arg("torques"), nb::arg("dt"),
+           "Joints, their rates and torques (12 each), angular rate and specific force of the trunk (3 each).");
     nb::class_<RobotSense>(m, "RobotSense", "The robot's own sensors, late, and the estimator.")
         .def("__init__", [](RobotSense* self, const Robot& robot, const WheelPath& path, std::array<double, 2> start, double pitch,
                             const SensorErrors& errors, std::size_t delay_steps, std::uint64_t seed,
