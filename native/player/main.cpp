@@ -91,9 +91,8 @@ using Clock = std::chrono::steady_clock;
 double since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
 
 void report(const Player& player, double time) {
-    const char* phases[] = {"waiting", "settling", "driving", "arrived", "gave up", "refused", "damped"};
     const auto [leg, wheel] = player.largest_torques();
-    std::printf("%7.2f s  %-8s  %5.1f %%  pitch %6.3f rad  legs %5.1f Nm  wheels %4.1f Nm\n", time, phases[static_cast<int>(player.phase())],
+    std::printf("%7.2f s  %-8s  %5.1f %%  pitch %6.3f rad  legs %5.1f Nm  wheels %4.1f Nm\n", time, name(player.phase()),
                 100.0 * player.done(), player.pitch(), leg, wheel);
     std::fflush(stdout);
 }

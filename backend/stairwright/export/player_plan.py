@@ -18,8 +18,7 @@ from stairwright.simulation.replanning import ENOUGH, TESTED, needed_friction
 from stairwright.terrain.wheel_path import wheel_path
 
 MOTOR_LEGS = ("FR", "FL", "RR", "RL")  # how such robots number their motors
-# Abduction is held more stiffly than legs are: nothing else keeps a leg upright, and it moves little.
-HOLD = 5.0  # times the legs' stiffness
+HOLD = 5.0  # times the legs' stiffness, at abduction joints: nothing else keeps a leg upright
 SETTINGS = ControllerSettings(sensing="robot")
 
 
@@ -27,11 +26,11 @@ def player_plan(plan: Plan) -> str:
     """The text of a plan file.
 
     Raises:
-        InputError: If nothing of the plan can be carried out.
+        InputError: If the plan is infeasible; simulated robots may try such a plan, others not.
     """
-    if not plan.executable:
+    if not plan.feasible or not plan.executable:
         why = plan.problem.message if plan.problem else "the plan has no poses"
-        raise InputError(f"nothing can be carried out: {why}", ("plan",))
+        raise InputError(f"not for a robot: {why}", ("plan",))
     robot = plan.robot_description
     lines = [
         "stairwright-player 1",

@@ -11,10 +11,9 @@ import math
 import os
 import socket
 import struct
+import time
 from dataclasses import dataclass
-from typing import Any
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,6 +21,7 @@ from stairwright import _core
 from stairwright._core import GRAVITY
 from stairwright.arguments import as_friction
 from stairwright.control.settings import ControllerSettings
+from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
 from stairwright.robot.description import JOINTS, LEGS
 
@@ -46,13 +46,21 @@ MOTOR_OF = np.array(
     ]
 )
 ABDUCTION_OF = np.array([3 * MOTOR_LEGS.index(leg) for leg in LEGS])
+_RETRY = 0.05  # s
 _STATE = struct.Struct("<4sId54f")
 _COMMAND = struct.Struct("<4sI80f")
 
 
-def pack_state(sequence: int, time: float, imu: Floats, motors: Floats) -> bytes:
-    """A state packet: gyro and accelerometer `imu` (6,), q, dq and tau of `motors` (16, 3)."""
-    return _STATE.pack(b"SWS1", sequence & 0xFFFFFFFF, time, *imu.tolist(), *motors.ravel().tolist())
+def pack_state(sequence: int, at: float, imu: Floats, motors: Floats) -> bytes:
+    """A state packet.
+
+    Args:
+        sequence: Number of the packet.
+        at: Time of the state [s].
+        imu: (6,) gyro and accelerometer.
+        motors: (16, 3) q, dq and tau.
+    """
+    return _STATE.pack(b"SWS1", sequence & 0xFFFFFFFF, at, *imu.tolist(), *motors.ravel().tolist())
 
 
 def unpack_command(packet: bytes) -> tuple[int, Floats]:
@@ -164,7 +172,7 @@ class _Abduction:
         for leg in LEGS:
             j = reading.legs[leg].chain.abduction
             if j is None:
-                raise ValueError(f"{leg} has no abduction motor")
+                raise InputError(f"{leg} has no abduction joint", ("model",))
             actuator = 12 + held.index(j)
             joint = int(model.actuator_trnid[actuator, 0])
             joints.append((actuator, model.jnt_qposadr[joint], model.jnt_dofadr[joint]))
@@ -178,8 +186,8 @@ class _Abduction:
         """(4, 3) q, dq and tau, FL, FR, RL, RR."""
         if not len(self.joints):
             return self._fixed
-        data = self.run.data.data
-        return np.stack([data.qpos[self.joints[:, 1]], data.qvel[self.joints[:, 2]], self._torques], 1)
+        data, (_, q, dq) = self.run.data.data, self.joints.T
+        return np.stack([data.qpos[q], data.qvel[dq], self._torques], axis=1)
 
     def act(self, command: Floats) -> None:
         if not len(self.joints):
@@ -205,6 +213,9 @@ def play(
         player: Address and port where it listens.
         limit: Longest time of the simulation [s].
         patience: How long an answer may take [s].
+
+    Raises:
+        InputError: If no player answers.
     """
     run, sequence, pitch_max = robot.run, 0, 0.0
     planned = [pose.pitch for pose in run.plan.poses]
@@ -212,11 +223,12 @@ def play(
     cause = ("timeout", "")
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
         link.connect(player)
-        link.settimeout(patience)
         while run.time < limit:
             sequence += 1
-            link.send(pack_state(sequence, run.time, *robot.sense()))
-            command = _answer(link, sequence)
+            state = pack_state(sequence, run.time, *robot.sense())
+            command = _ask(link, state, sequence, patience)
+            if command is None and sequence == 1:
+                raise InputError(f"no player answers at {player[0]}:{player[1]}", ("port",))
             if command is None:
                 cause = ("stuck", "")
                 break
@@ -234,15 +246,24 @@ def play(
     return _judged(robot, cause, pitch_max, sequence)
 
 
-def _answer(link: socket.socket, sequence: int) -> Floats | None:
-    """The command that answers the state `sequence`; None if there is nobody any more."""
-    while True:
+def _ask(link: socket.socket, state: bytes, sequence: int, patience: float) -> Floats | None:
+    """The command that answers a state; None if there is none for `patience` [s]."""
+    until = time.monotonic() + patience
+    while (left := until - time.monotonic()) > 0.0:
         try:
+            link.settimeout(left)
+            link.send(state)
             answered, command = unpack_command(link.recv(1024))
-        except (TimeoutError, ConnectionRefusedError):
-            return None
-        if answered == sequence:
+            while answered != sequence:
+                answered, command = unpack_command(link.recv(1024))
             return command
+        except ConnectionRefusedError:  # nobody listens there, yet or any more
+            if sequence > 1:
+                return None
+            time.sleep(_RETRY)
+        except TimeoutError:
+            return None
+    return None
 
 
 def _attitude(run: Run) -> tuple[float, float]:
@@ -254,11 +275,12 @@ def _attitude(run: Run) -> tuple[float, float]:
 
 def _judged(robot: LowLevelRobot, cause: tuple[str, str], pitch_max: float, states: int) -> Played:
     run = robot.run
-    error = end_error(
-        run.plan, run.plan.terrain, run.terrain, run.disturbance, run._wheels(), own_sensors=True  # noqa: SLF001
-    )
+    wheels = run._wheels()  # noqa: SLF001
+    real, drawn = run.terrain, run.plan.terrain
+    error = end_error(run.plan, drawn, real, run.disturbance, wheels, own_sensors=True)
     first, last = run.plan.poses[0].x_c, run.plan.poses[-1].x_c
-    ending = Ending(cause[0], run.time, (float(run.data.qpos[0]) - first, last - first), error, cause[1])
+    way = (float(run.data.qpos[0]) - first, last - first)
+    ending = Ending(cause[0], run.time, way, error, cause[1])
     outcome, reason = judge(ending, run.loads, run.robot.mass * GRAVITY)
     leg, wheel = robot.peak.tolist()
     return Played(outcome, reason, run.time, error, pitch_max, (leg, wheel), states)

@@ -172,6 +172,7 @@ PlanFile read_plan_file(std::istream& text) {
         out.rows.push_back(std::bit_cast<control::Reference>(numbers));
     }
     lines.end();
+    if (!(out.friction > 0.0) || !(out.settle >= 0.0)) throw std::runtime_error("friction must be positive, settle not negative");
     return out;
 }
 

@@ -11,7 +11,7 @@ namespace stairwright::player {
 
 namespace {
 
-constexpr double kSameState = 0.25;  // of a control period: states that follow sooner are the same one
+constexpr double kSoonest = 0.6;  // of a control period: states that follow sooner are passed over
 
 const char* kJoints[] = {"FL_thigh", "FL_calf", "FL_wheel", "FR_thigh", "FR_calf", "FR_wheel",
                          "RL_thigh", "RL_calf", "RL_wheel", "RR_thigh", "RR_calf", "RR_wheel"};
@@ -52,6 +52,11 @@ LowCommand damping(const PlanFile& file) {
 }
 
 }  // namespace
+
+const char* name(Phase phase) {
+    constexpr const char* names[] = {"waiting", "settling", "driving", "arrived", "gave up", "refused", "damped"};
+    return names[static_cast<int>(phase)];
+}
 
 Player::Player(PlanFile file, const Limits& limits)
     : file_(std::move(file)), limits_(limits), path_(file_.terrain, file_.robot.legs[0].wheel.radius),
@@ -181,7 +186,7 @@ const LowCommand& Player::step(const LowState& state) {
         begun_ = state.time;
     } else {
         dt = state.time - last_;
-        if (std::abs(dt) < kSameState * control::kPeriod) return command_;
+        if (dt >= 0.0 && dt < kSoonest * control::kPeriod) return command_;
         if (!(dt > 0.0 && dt <= limits_.gap)) return damp(said("the next state came %.3f s later, %.3f at most are allowed", dt, limits_.gap)), command_;
     }
     last_ = state.time;

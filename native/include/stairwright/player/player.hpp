@@ -31,11 +31,15 @@ enum class Phase {
     damped,    // beyond a limit, or told to stop: motors only damp
 };
 
+// As a word or two.
+const char* name(Phase phase);
+
 class Player {
   public:
     explicit Player(PlanFile file, const Limits& limits = {});
 
-    // What the motors are to do after `state`. A state of the same time as the last one is none: the last command stays.
+    // What the motors are to do after `state`. The last command stays where the state before is less than 1.2 ms old:
+    // control steps are 2 ms apart, whatever the rate of states.
     const LowCommand& step(const LowState& state);
 
     // The plan goes no further for now; the robot stands and balances.
