@@ -86,7 +86,7 @@ def test_the_course_is_the_plans():
 def test_an_infeasible_plan_has_no_bundle():
     """Not even where it has poses, which a simulated robot may try."""
     for count in (0, 4):
-        plan = example_plan(count=4, problem=True)
+        plan = example_plan(count=4, problem=True).model_copy(update={"method": "critical"})
         plan = plan if count else plan.model_copy(update={"poses": [], "critical": []})
         assert plan.executable == (count > 0)
         with pytest.raises(InputError, match="not for a robot"):
