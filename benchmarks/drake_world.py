@@ -45,6 +45,7 @@ Floats = NDArray[np.float64]
 
 STIFFNESS = 3e5  # N/m of a point contact: a wheel sinks in by less than 1 mm
 DISSIPATION = 10.0  # s/m, Hunt and Crossley
+PLATE = 0.02  # m thick: what a slope is made of; thicker ones would show beyond steep drops
 _STILL = 0.1  # rad/s from which on a bearing's drag is full
 
 
@@ -86,19 +87,27 @@ class World:
         )
 
     def _add_terrain(self, terrain: Terrain) -> None:
-        world = self.plant.world_body()
+        """Boxes: a column under each stretch, and a plate on it where it slopes.
+
+        A sphere touches a box exactly, a convex hull only to the tolerance of GJK.
+        """
+        width = 2 * TERRAIN_HALF_WIDTH
         for k, outline in enumerate(prisms(terrain)):
-            name = f"terrain_{k}"
             (x0, floor), (x1, _), (_, z1), (_, z0) = outline
+            top = min(z0, z1)
+            column = RigidTransform([(x0 + x1) / 2, 0.0, (top + floor) / 2])
+            self._add_ground(f"column_{k}", Box(x1 - x0, width, top - floor), column)
             if z0 == z1:
-                size = (x1 - x0, 2 * TERRAIN_HALF_WIDTH, z0 - floor)
-                place = RigidTransform([(x0 + x1) / 2, 0.0, (z0 + floor) / 2])
-                shape = Box(*size)
-            else:
-                sides = (-TERRAIN_HALF_WIDTH, TERRAIN_HALF_WIDTH)
-                corners = np.array([(x, y, z) for y in sides for x, z in outline])
-                shape, place = Convex(corners.T, name), RigidTransform()
-            self.plant.RegisterCollisionGeometry(world, place, shape, name, self._surface)
+                continue
+            angle, length = np.arctan2(z1 - z0, x1 - x0), float(np.hypot(x1 - x0, z1 - z0))
+            middle = np.array([(x0 + x1) / 2, 0.0, (z0 + z1) / 2])
+            middle += PLATE / 2 * np.array([np.sin(angle), 0.0, -np.cos(angle)])
+            slope = RigidTransform(RotationMatrix.MakeYRotation(-angle), middle)
+            self._add_ground(f"slope_{k}", Box(length, width, PLATE), slope)
+
+    def _add_ground(self, name: str, shape: Box, place: RigidTransform) -> None:
+        world = self.plant.world_body()
+        self.plant.RegisterCollisionGeometry(world, place, shape, name, self._surface)
 
     def _add_robot(self, robot: Robot):
         plant, body = self.plant, robot.body
