@@ -1,7 +1,8 @@
 """Put what a checkout keeps at its top level into the wheel: terrains, robots, the built page.
 
 A wheel holds them as `stairwright/data/terrains`, `stairwright/data/robots` and
-`stairwright/page`, and the native core that ./dev has built beside the Python files. An editable
+`stairwright/page`, the native core's sources as `stairwright/data/native` (bundles for robots
+bring them along), and the native core that ./dev has built beside the Python files. An editable
 install needs none of this: it reads the checkout.
 """
 
@@ -13,6 +14,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 SHIPPED = {
     "terrains": "stairwright/data/terrains",
     "robots": "stairwright/data/robots",
+    "native": "stairwright/data/native",
     "frontend/dist": "stairwright/page",
 }
 

@@ -33,6 +33,7 @@ TITLES = {
     "drag": "The page while a corner is dragged",
     "start": "From start to first plan",
     "memory": "Memory",
+    "engines": "The same plans in other physics engines",
 }
 
 

@@ -93,6 +93,16 @@ def parser() -> argparse.ArgumentParser:
     _add_rate(export)
     export.add_argument("-o", "--output", metavar="FILE", required=True)
 
+    rehearse = commands.add_parser("rehearse", help="be the robot that a bundle's player drives")
+    rehearse.add_argument("plan", metavar="PLAN", help="the plan's file, as in the bundle")
+    rehearse.add_argument("--host", default="127.0.0.1", help="of the player (%(default)s)")
+    rehearse.add_argument("--port", type=int, default=9100, help="of the player (%(default)s)")
+    rehearse.add_argument("--friction", type=float, metavar="F", help="the plan's by default")
+    rehearse.add_argument("--seed", type=int, default=0, help="of the sensor noise (%(default)s)")
+    rehearse.add_argument(
+        "--model", metavar="FILE", help="simulate the robot's own MJCF or URDF, not our model of it"
+    )
+
     certify = commands.add_parser("certify", help="check a plan independently and exactly")
     certify.add_argument("plan", metavar="PLAN", help="a plan's file")
 

@@ -129,6 +129,17 @@ def export_command(given: Arguments) -> str | None:
     return None
 
 
+def rehearse_command(given: Arguments) -> str | None:
+    """`stairwright rehearse`."""
+    from .export.formats import load_plan
+    from .simulation.low_level import LowLevelRobot, play
+
+    robot = LowLevelRobot(load_plan(given.plan), given.friction, given.model, given.seed)
+    played = play(robot, (given.host, given.port))
+    print(f"{played.outcome}: {played.reason}")
+    return None if played.outcome == "success" else played.reason
+
+
 def certify_command(given: Arguments) -> str | None:
     """`stairwright certify`."""
     from .export.formats import load_plan
@@ -193,6 +204,7 @@ COMMANDS: Mapping[str, Command] = {
     "rollout": rollout_command,
     "margins": margins_command,
     "export": export_command,
+    "rehearse": rehearse_command,
     "certify": certify_command,
     "bench": bench_command,
     "study": study_command,

@@ -12,7 +12,7 @@ _PACKAGE = Path(__file__).resolve().parent
 
 
 def data_folder(name: str) -> Path:
-    """The folder `name` (``terrains``, ``robots``) of the checkout or of the installed wheel."""
+    """A folder (``terrains``, ``robots``, ``native``) of the checkout or of the installed wheel."""
     shipped = _PACKAGE / "data" / name
     return shipped if shipped.is_dir() else _PACKAGE.parents[1] / name
 

@@ -14,6 +14,7 @@ void bind_control(nanobind::module_& m);
 void bind_estimation(nanobind::module_& m);
 void bind_timing(nanobind::module_& m);
 void bind_rollout(nanobind::module_& m);
+void bind_player(nanobind::module_& m);
 void bind_lattice(nanobind::module_& m);
 void bind_lattice_sweeps(nanobind::module_& m);
 void bind_lattice_tables(nanobind::module_& m);

@@ -17,6 +17,7 @@ NB_MODULE(_core, m) {
     bind_estimation(m);
     bind_timing(m);
     bind_rollout(m);
+    bind_player(m);
     bind_lattice(m);
     bind_lattice_sweeps(m);
     bind_lattice_tables(m);

@@ -91,6 +91,19 @@ void bind_perception(nb::module_& m) {
         .def_rw("force_offset", &SensorErrors::force_offset)
         .def_rw("wheel_scale", &SensorErrors::wheel_scale)
         .def_rw("tilt", &SensorErrors::tilt);
+    using Torques12 = In<double, nb::shape<12>>;
+    nb::class_<RobotSensors>(m, "RobotSensors", "What a robot's own sensors say of the true state, see rollout/robot_sensors.hpp.")
+        .def(nb::init<const SensorErrors&, std::uint64_t>(), nb::arg("errors"), nb::arg("seed"))
+        .def("read", [](RobotSensors& self, const In<double, nb::shape<19>>& qpos, const In<double, nb::shape<18>>& qvel, const Torques12& torques, double dt) {
+            std::array<double, kPositions + kVelocities> numbers;
+            std::copy_n(qpos.data(), kPositions, numbers.begin());
+            std::copy_n(qvel.data(), kVelocities, numbers.begin() + kPositions);
+            control::Torques acted;
+            std::copy_n(torques.data(), 12, acted.begin());
+            const estimation::Readings out = self.read(std::bit_cast<RobotState>(numbers), acted, dt);
+            return std::tuple(out.joints, out.joint_rates, out.torques, out.angular_rate, out.specific_force);
+        }, nb::arg("qpos"), nb::arg("qvel"), nb::arg("torques"), nb::arg("dt"),
+           "Joints, their rates and torques (12 each), angular rate and specific force of the trunk (3 each).");
     nb::class_<RobotSense>(m, "RobotSense", "The robot's own sensors, late, and the estimator.")
         .def("__init__", [](RobotSense* self, const Robot& robot, const WheelPath& path, std::array<double, 2> start, double pitch,
                             const SensorErrors& errors, std::size_t delay_steps, std::uint64_t seed,
@@ -130,26 +143,29 @@ void bind_rollout(nb::module_& m) {
             return self.run({std::max(first, 0), last, looked, loaded, moving, begun}, {noise.data(), noise.size()});
         }, nb::arg("first"), nb::arg("last"), nb::arg("looked"), nb::arg("loaded"), nb::arg("moving"), nb::arg("begun"), nb::arg("noise"),
            "Control steps; returns where it stopped to have contacts looked at, or `last`.")
-        .def("go_on", &Rollout::go_on, "The plan goes on after a test of the grip in which wheels slipped.")
-        .def("adopt", &Rollout::adopt, nb::arg("follower"), nb::arg("friction"), "Another plan from now on, made for `friction`.")
+        .def("go_on", [](Rollout& r) { r.executor().go_on(); }, "The plan goes on after a test of the grip in which wheels slipped.")
+        .def("adopt", [](Rollout& r, const PlanFollower& follower, double friction) { r.executor().adopt(follower, friction); },
+             nb::arg("follower"), nb::arg("friction"), "Another plan from now on, made for `friction`.")
         .def("correct_map", &Rollout::correct_map, nb::arg("path"), "A map on which `map_error` is mended; another plan has to follow.")
         .def_prop_ro("map_error", [](const Rollout& r) -> std::optional<std::tuple<bool, double, double, double>> {
-            if (!r.map_error()) return {};
-            return std::tuple(r.map_error()->face, r.map_error()->s, r.map_error()->off.x, r.map_error()->off.z);
+            const auto& found = r.executor().map_error();
+            if (!found) return {};
+            return std::tuple(found->face, found->s, found->off.x, found->off.z);
         }, "What the front wheels found elsewhere than on the map, while the robot waits: whether it is a face, its place on the\n"
            "wheel-centre curve, and by how much the map is off along and up [m].")
-        .def_prop_ro("places", [](const Rollout& r) { return r.places(); }, "Of the wheels on the wheel-centre curve [m].")
+        .def_prop_ro("places", [](const Rollout& r) { return r.executor().controller().places(); }, "Of the wheels on the wheel-centre curve [m].")
         .def_prop_ro("slipped", [](const Rollout& r) -> std::optional<std::pair<double, bool>> {
-            if (!r.slipped()) return {};
-            return std::pair(r.slipped()->found, r.slipped()->front);
+            const auto& slipped = r.executor().slipped();
+            if (!slipped) return {};
+            return std::pair(slipped->found, slipped->front);
         }, "Friction at which wheels slipped in the test before the start, and whether the front ones did.")
-        .def_prop_ro("waits", &Rollout::waits, "Whether the robot stands until it is told to go on.")
+        .def_prop_ro("waits", [](const Rollout& r) { return r.executor().waits(); }, "Whether the robot stands until it is told to go on.")
         .def("diverged", &Rollout::diverged)
-        .def_prop_ro("stop", [](const Rollout& r) { return static_cast<int>(r.stop()); },
+        .def_prop_ro("stop", [](const Rollout& r) { return static_cast<int>(r.executor().stop()); },
                      "Why the robot has given up: 0 it has not, 1 no progress, 2 tilted.")
-        .def_prop_ro("stopped_at", &Rollout::stopped_at, "Since when [s].")
-        .def_prop_ro("way", [](const Rollout& r) { return r.follower().way(); })
-        .def_prop_ro("target", [](const Rollout& r) { return row(r.target()); }, nb::rv_policy::automatic)
+        .def_prop_ro("stopped_at", [](const Rollout& r) { return r.executor().stopped_at(); }, "Since when [s].")
+        .def_prop_ro("way", [](const Rollout& r) { return r.executor().follower().way(); })
+        .def_prop_ro("target", [](const Rollout& r) { return row(r.executor().target()); }, nb::rv_policy::automatic)
         .def_prop_ro("score", [](const Rollout& r) { return r.score(); })
         .def_prop_ro("judged", &judged, nb::rv_policy::automatic,
                      "Rows (n, 15) of the estimator against the truth: time, errors of attitude, velocity, place x and z; NEES;\n"

@@ -195,6 +195,9 @@ def test_a_rollout_from_start_to_files(api: httpx.Client) -> None:
                 assert any(len(arrays[key]) == samples for key in arrays.files if arrays[key].ndim)
     for name in ("json", "csv", "npz", "mcap", "mjcf"):
         assert api.get(f"/plans/{run['plan_id']}/export?format={name}").status_code == 200
+    bundle = api.get(f"/plans/{run['plan_id']}/export?format=bundle")
+    assert bundle.headers["content-type"] == "application/zip"
+    assert bundle.content[:2] == b"PK"
     assert api.get(f"{path}/export?format=mjcf").status_code == 422
 
     again = api.post("/rollouts", json={"terrain": CURB, "robot": "a1_wheeled_x", "seed": 3})

@@ -229,7 +229,8 @@ def test_a_time_that_no_ros_message_holds_is_refused(plan, time):
         PLAN_FORMATS["mcap"].write(broken)
 
 
-def test_infeasible_plan_without_poses_exports_everywhere():
+def test_infeasible_plan_without_poses_exports_everywhere_but_to_a_robot():
     plan = example_plan(count=4, problem=True).model_copy(update={"poses": [], "critical": []})
     for name, format_ in PLAN_FORMATS.items():
-        assert format_.write(plan), name
+        if name != "bundle":
+            assert format_.write(plan), name

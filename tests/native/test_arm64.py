@@ -1,4 +1,4 @@
-"""Robots' computers are 64-bit ARM: core, Python module and C++ example compile for them."""
+"""Robots' computers are 64-bit ARM: core, Python module, example and player compile for them."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def test_the_core_compiles_for_arm64() -> None:
     )
     assert done.returncode == 0, done.stderr[-3000:]
     made = [*(ROOT / ".dev" / "arm64").glob("_core.*-aarch64-linux-gnu.so")]
-    made.append(ROOT / ".dev" / "arm64" / "control_steps")
-    assert len(made) == 2
+    made += [ROOT / ".dev" / "arm64" / name for name in ("control_steps", "stairwright_player")]
+    assert len(made) == 3
     for path in made:
         head = path.read_bytes()[:20]
         assert head[:4] == b"\x7fELF"

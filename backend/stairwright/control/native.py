@@ -13,7 +13,7 @@ from stairwright.terrain.wheel_path import WheelPath
 from .controller import gains
 from .settings import ControllerSettings
 
-_OF_SETTINGS = (
+OF_SETTINGS = (
     "wheel_sync",
     "yaw_damping",
     "heading_stiffness",
@@ -30,7 +30,7 @@ _OF_SETTINGS = (
     "beta",
     "friction_share",
 )
-_OF_ROBOT = ("joint_stiffness", "joint_damping", "wheel_damping", "force_limit")
+OF_ROBOT = ("joint_stiffness", "joint_damping", "wheel_damping", "force_limit")
 
 
 def native_controller(
@@ -38,8 +38,8 @@ def native_controller(
 ) -> _core.Controller:
     """A controller at the start of its work; `friction` is what the plan was made for."""
     own, native = gains(robot, settings), _core.Gains()
-    for name in _OF_SETTINGS:
+    for name in OF_SETTINGS:
         setattr(native, name, getattr(settings, name))
-    for name in _OF_ROBOT:
+    for name in OF_ROBOT:
         setattr(native, name, getattr(own, name))
     return _core.Controller(robot.native, path.native, friction, native)

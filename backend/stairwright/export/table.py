@@ -71,6 +71,7 @@ class Format(Generic[D]):
 
 _YAML = "application/yaml"
 _JSON, _CSV, _XML = "application/json", "text/csv; charset=utf-8", "application/xml"
+_ZIP = "application/zip"
 _NPZ, _MCAP, _HTML = "application/x-npz", "application/x-mcap", "text/html; charset=utf-8"
 
 PLAN_FORMATS: dict[str, Format[Plan]] = {
@@ -80,6 +81,7 @@ PLAN_FORMATS: dict[str, Format[Plan]] = {
     "mcap": Format("mcap_file.plan_mcap", ".mcap", _MCAP, "for Foxglove and ROS 2", rated=True),
     "mjcf": Format("mjcf_file.plan_mjcf", ".xml", _XML, "robot and terrain for MuJoCo"),
     "urdf": Format("urdf_file.plan_urdf", ".urdf", _XML, "the robot for ROS 2"),
+    "bundle": Format("bundle_file.plan_bundle", ".zip", _ZIP, "player for the robot, in C++"),
 }
 ROLLOUT_FORMATS: dict[str, Format[Rollout]] = {
     "html": Format("html_file.rollout_html", ".html", _HTML, "3-D replay in one file"),

@@ -243,8 +243,9 @@ class Plan(Model):
         return len(self.poses) >= 2 and (self.feasible or self.method != "path")
 
     def save(self, path: str, rate: float | None = None) -> None:
-        """Write the plan; the ending of `path` picks the format (json, csv, npz, mcap, mjcf, urdf).
+        """Write the plan; the ending of `path` picks the format.
 
+        They are json, csv, npz, mcap, mjcf, urdf, and zip: a bundle for the robot.
         `rate` is that of the joint commands in MCAP [Hz].
         """
         from stairwright.export.formats import save_plan  # exports lie to the right of planning

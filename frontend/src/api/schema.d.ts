@@ -5524,7 +5524,7 @@ export interface operations {
     export_plan: {
         parameters: {
             query?: {
-                format?: "json" | "csv" | "npz" | "mcap" | "mjcf" | "urdf";
+                format?: "json" | "csv" | "npz" | "mcap" | "mjcf" | "urdf" | "bundle";
                 /** @description of the joint commands in mcap [Hz]; 100 if empty */
                 rate?: number | null;
             };
@@ -5550,6 +5550,7 @@ export interface operations {
                     "application/x-npz": string;
                     "application/x-mcap": string;
                     "application/xml": string;
+                    "application/zip": string;
                 };
             };
             /** @description Bad Request: `bad-json`, `host` */

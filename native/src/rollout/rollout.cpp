@@ -13,16 +13,15 @@ namespace stairwright::rollout {
 namespace {
 
 constexpr double kBeyond = 1e6;  // m, m/s, rad or rad/s, summed up: no robot gets there
-constexpr double kSamePlace = 0.15;  // m; an error of the map that was let pass is not told again so near
 constexpr int kAllContacts = 16;  // the sensor that counts every contact; before it 4 numbers a wheel
 
 }  // namespace
 
 Rollout::Rollout(const mjModel* model, mjData* data, control::Controller controller, control::PlanFollower follower,
                  Perception perception, const Motors& motors, std::size_t log_every, int substeps, double grip_need)
-    : model_(model), data_(data), controller_(std::move(controller)), follower_(std::move(follower)),
-      perception_(std::move(perception)), scale_(motors.scale),
-      grip_test_(controller_.robot(), grip_need), leg_fit_(controller_.robot()), log_(log_every), substeps_(substeps), dt_(substeps * model->opt.timestep) {
+    : model_(model), data_(data), executor_(std::move(controller), std::move(follower), grip_need),
+      perception_(std::move(perception)), scale_(motors.scale), log_(log_every), substeps_(substeps),
+      dt_(substeps * model->opt.timestep) {
     if (model->nq != control::kPositions || model->nv != control::kVelocities || model->nu != 12 ||
         model->nsensordata <= kAllContacts)
         throw std::invalid_argument("the model is not one of a robot with four wheeled legs");
@@ -52,67 +51,21 @@ Perceived Rollout::perceive(std::span<const double> noise) {
     return std::get<RobotSense>(perception_).perceive(truth(), torques_, dt_);
 }
 
-const control::Reference& Rollout::target(const Perceived& seen, bool moving, double time) {
-    if (safe_stop_.why() != control::Stop::none) return stand_;
-    moving = moving && grip_test_.over() && !waits_;
-    if (moving && seen.map_error && !map_error_ && std::abs(seen.map_error->s - ignored_) > kSamePlace) map_error_ = seen.map_error, waits_ = true;
-    moving = moving && !waits_ && plan_change_.over();
-    const bool searching = moving && seen.ahead.any();
-    const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt_, seen.ahead.hanging);
-    if (!seen.places) return drawn;
-    if (!grip_test_.over()) {
-        adapted_ = grip_test_.step(drawn, seen.state, seen.used_grip, seen.ahead.on_tread[0] && seen.ahead.on_tread[1], dt_);
-        waits_ = grip_test_.over() && grip_test_.slipped();
-        return adapted_;
-    }
-    adapted_ = plan_change_.step(drawn, dt_);
-    adapted_ = face_search_.step(leg_fit_.fit(adapted_, seen.ground, dt_), searching ? seen.ahead : control::Ahead{}, *seen.places, dt_);
-    const control::Reference& next = adapted_;
-    const auto [w, x, y, z] = seen.state.quaternion;
-    const double pitch = std::atan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y));
-    const double error = std::remainder(pitch - next.value.pitch, 2 * std::numbers::pi);
-    if (safe_stop_.watch(follower_.way(), moving && !follower_.arrived(), error, std::asin(std::clamp(2 * (y * z + w * x), -1.0, 1.0)), dt_) ==
-        control::Stop::none)
-        return next;
-    stopped_at_ = time;
-    stand_ = controller_.standing(seen.state, *seen.places);
-    stand_.progress = next.progress;
-    return stand_;
-}
-
-void Rollout::adopt(control::PlanFollower follower, double friction) {
-    follower_ = std::move(follower);
-    controller_.believe(friction);
-    plan_change_.begin(adapted_, follower_.first());
-    safe_stop_ = {};
-    waits_ = false;
-}
-
 void Rollout::correct_map(const WheelPath& path) {
     auto* sense = std::get_if<RobotSense>(&perception_);
-    if (sense == nullptr || !map_error_) throw std::invalid_argument("there is no error of the map to correct");
-    sense->estimator().correct_map(path, *map_error_);
-    // Of the robot's place on the map, each pair's offset counts half.
-    const Vec2 shift = map_error_->face ? Vec2{-0.5 * map_error_->off.x, 0.0} : Vec2{0.0, -0.5 * map_error_->off.z};
-    adapted_.value.com += shift, adapted_.value.trunk += shift;
-    controller_.believe(path);
-    leg_fit_.reset();
-    map_error_.reset();
-}
-
-void Rollout::go_on() {
-    if (map_error_) ignored_ = map_error_->s;
-    map_error_.reset();
-    waits_ = false;
+    if (sense == nullptr || !executor_.map_error()) throw std::invalid_argument("there is no error of the map to correct");
+    sense->estimator().correct_map(path, *executor_.map_error());
+    executor_.correct_map(path);
 }
 
 void Rollout::control(const Perceived& seen, bool moving, double time) {
     const RobotState state = truth();
-    const control::Reference& target = this->target(seen, moving, time);
-    const control::Command command = controller_.command(seen.state, target, 0.0, seen.places);
+    const control::Command command = executor_.step(seen, moving, time, dt_);
+    const control::Reference& target = executor_.asked();
     const control::Torques wanted = control::drive(command, seen.joints, seen.joint_rates);
     for (std::size_t i = 0; i < torques_.size(); ++i) torques_[i] += lag_ * (scale_ * wanted[i] - torques_[i]);
-    const control::Torques torques = control::limit_torques(controller_.robot(), std::span<const double, 12>(state.joint_rates), torques_);
+    const Robot& robot = executor_.controller().robot();
+    const control::Torques torques = control::limit_torques(robot, std::span<const double, 12>(state.joint_rates), torques_);
     torques_ = torques;
     std::copy(torques.begin(), torques.end(), data_->ctrl);
     score_.add(state, torques, target, dt_);
@@ -128,7 +81,7 @@ void Rollout::control(const Perceived& seen, bool moving, double time) {
     const auto& [front, rear] = target.value.wheels;
     const auto& q = target.value.joints;
     sample.target = {front, rear, q[0], q[1], q[2], q[3], target.value.pitch};
-    sample.places = controller_.places();
+    sample.places = executor_.controller().places();
     log_.add(sample);
 }
 

@@ -1,26 +1,16 @@
 // What the controller gets to know of the robot's state: the truth with noise, or what the robot's own sensors tell.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <variant>
 
-#include "stairwright/control/face_search.hpp"
-#include "stairwright/estimation/estimator.hpp"
+#include "stairwright/execution/perceived.hpp"
 #include "stairwright/rollout/robot_sensors.hpp"
 #include "stairwright/rollout/sensor_model.hpp"
 
 namespace stairwright::rollout {
 
-struct Perceived {
-    RobotState state;
-    std::optional<std::array<double, 4>> places;  // of the wheels on the map, where they are known by themselves
-    std::array<Vec2, 2> ground{};                 // how the pairs' ground differs, see estimation::Estimate
-    control::Ahead ahead{};
-    std::array<double, 4> used_grip{};            // of the wheels, see estimation::Estimate
-    std::optional<estimation::MapError> map_error;
-    std::array<double, 12> joints{}, joint_rates{};  // what the drives read now
-};
+using execution::Perceived;
 
 // Readings of the robot's sensors, some control steps late, through the estimator.
 class RobotSense {
@@ -28,8 +18,6 @@ class RobotSense {
     RobotSense(RobotSensors sensors, estimation::Estimator estimator, std::size_t delay_steps)
         : sensors_(std::move(sensors)), estimator_(std::move(estimator)), late_(delay_steps + 1), truths_(delay_steps + 1) {}
 
-    // A robot knows how late its loop is: the state is that of now, by constant rates. The drives' own loops are not
-    // late: they close on their own encoders.
     Perceived perceive(const RobotState& truth, const control::Torques& torques, double dt);
 
     const estimation::Estimator& estimator() const { return estimator_; }

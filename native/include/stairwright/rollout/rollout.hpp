@@ -1,11 +1,7 @@
 // The closed loop in MuJoCo: sense, control, record, step the physics.
 #pragma once
 
-#include "stairwright/control/grip_test.hpp"
-#include "stairwright/control/leg_fit.hpp"
-#include "stairwright/control/plan_change.hpp"
-#include "stairwright/control/plan_follower.hpp"
-#include "stairwright/control/safe_stop.hpp"
+#include "stairwright/execution/plan_executor.hpp"
 #include "stairwright/rollout/log.hpp"
 #include "stairwright/rollout/score.hpp"
 #include "stairwright/rollout/perception.hpp"
@@ -45,13 +41,12 @@ class Rollout {
     Rollout(const mjModel_* model, mjData_* data, control::Controller controller, control::PlanFollower follower,
             Perception perception, const Motors& motors, std::size_t log_every, int substeps, double grip_need = 0.0);
 
-    // The plan goes on, or another one from now on with the friction that it was made for [1]. The robot stands and
-    // waits for this after a test of the grip in which wheels slipped.
-    void go_on();
-    void adopt(control::PlanFollower follower, double friction);
-    // The map's error that the robot waits for somebody to decide on, and a map without it. Another plan has to follow.
-    const std::optional<estimation::MapError>& map_error() const { return map_error_; }
+    // A map without the error that the robot waits for somebody to decide on. Another plan has to follow.
     void correct_map(const WheelPath& path);
+
+    // What carries out the plan; decisions that it waits for go there.
+    execution::PlanExecutor& executor() { return executor_; }
+    const execution::PlanExecutor& executor() const { return executor_; }
 
     // Control steps of a chunk; returns where it stopped: before the physics of a step with a contact to look at (one
     // that is not a wheel's, or any while a link is loaded), or at the end; at once when the state has diverged.
@@ -61,20 +56,6 @@ class Rollout {
     // Whether the state is not one to compute anything from: not finite, or beyond all reason.
     bool diverged() const;
 
-    // Why the robot has given up, and since when [s]; only one that senses by itself does.
-    control::Stop stop() const { return safe_stop_.why(); }
-    double stopped_at() const { return stopped_at_; }
-
-    // What the test of the grip before the start found, if wheels slipped.
-    const std::optional<control::Grip>& slipped() const { return grip_test_.slipped(); }
-    const std::array<double, 4>& places() const { return controller_.places(); }
-    bool waits() const { return waits_; }
-
-    const control::PlanFollower& follower() const { return follower_; }
-    // What is asked for now.
-    const control::Reference& target() const {
-        return safe_stop_.why() == control::Stop::none ? follower_.target() : stand_;
-    }
     const Score& score() const { return score_; }
     const Log& log() const { return log_; }
     // Empty unless the robot senses by itself; as often as the log's samples.
@@ -84,29 +65,15 @@ class Rollout {
     RobotState truth() const;
     Perceived perceive(std::span<const double> noise);
     void control(const Perceived& seen, bool moving, double time);
-    // What to do now: go on with the plan, or stand where the robot gave up.
-    const control::Reference& target(const Perceived& seen, bool moving, double time);
 
     const mjModel_* model_;
     mjData_* data_;
-    control::Controller controller_;
-    control::PlanFollower follower_;
+    execution::PlanExecutor executor_;
     Perception perception_;
     double scale_;  // of the motors' torques
     double lag_;  // share of the wanted torque that acts after a control step
     control::Torques torques_{};
     std::vector<Judged> judged_;
-    control::GripTest grip_test_;
-    control::PlanChange plan_change_;
-    std::optional<estimation::MapError> map_error_;
-    double ignored_ = -1e9;         // where an error of the map was let pass [m]
-    bool waits_ = false;            // for somebody to decide
-    control::SafeStop safe_stop_;
-    control::LegFit leg_fit_;
-    control::FaceSearch face_search_;
-    control::Reference adapted_{};  // what is asked for, with legs that fit the ground as it is
-    control::Reference stand_{};    // what is asked for after the stop
-    double stopped_at_ = 0.0;
     Log log_;
     Score score_;
     int substeps_;

@@ -1,0 +1,215 @@
+"""The same plans under the same controller in other physics engines, verdict by verdict.
+
+    python benchmarks/engines.py [--count 12] [--first 0] [--friction 0.6] [--robots R ...]
+        [--workers N] [--quick] [--json FILE]
+
+Presets and random profiles of `profiles.py` are planned, and each feasible plan is carried out in
+MuJoCo, as the product does it, in Drake and in Bullet. Controller, sensing (ideal), the plan's
+progress and the verdict are the same code; engine, contact model and its solver are not. Each case
+is told as it is done; the table holds verdicts and the largest pitch errors, and what differs is
+named below it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import statistics
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from importlib import import_module
+from importlib.util import find_spec
+from multiprocessing import get_context
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from profiles import random_profile
+from report import Row, percentile, publish
+
+import stairwright as sw
+from stairwright import _core
+from stairwright.control.native import native_controller
+from stairwright.control.settings import ControllerSettings
+from stairwright.planning.plan import Plan
+from stairwright.robot.mujoco_model import TIMESTEP
+from stairwright.simulation import score
+from stairwright.simulation.disturbance import Disturbance
+from stairwright.simulation.run import CHUNK, CONTROL_STEPS, Run
+from stairwright.terrain.profile import Terrain
+
+Floats = NDArray[np.float64]
+
+ROBOTS = ("a1_wheeled", "go2w")
+SETTINGS = ControllerSettings(sensing="ideal")
+
+
+class EngineRun(Run):
+    """A rollout with another engine's physics; loop, controller and verdict are the product's."""
+
+    own_model = False
+
+    def __init__(self, plan: Plan, friction: float, world_of: Any) -> None:
+        self.world_of = world_of
+        super().__init__(plan, friction, SETTINGS, Disturbance(), 0, 100.0)
+        self.steered = native_controller(self.robot, self.path, plan.friction, SETTINGS)
+
+    def _world(self, terrain: Terrain) -> tuple[Any, Any]:
+        self.world = world = self.world_of(self.robot, terrain, self.friction)
+        model = SimpleNamespace(opt=SimpleNamespace(timestep=TIMESTEP))
+        never = SimpleNamespace(number=0)
+        seen = SimpleNamespace(
+            time=0.0,
+            qpos=world.qpos,
+            qvel=world.qvel,
+            ctrl=world.ctrl,
+            sensordata=np.zeros(17),
+            warning={int(kind): never for kind in range(20)},
+        )
+        return model, seen
+
+    def _geom_names(self) -> list[str]:
+        return []
+
+    def _place(self) -> None:
+        pose, world = self.plan.poses[0], self.world
+        front, rear = list(pose.q[:2]), list(pose.q[2:])
+        world.qpos[:3] = pose.x_c, 0.0, pose.z_c
+        world.qpos[3:7] = math.cos(pose.pitch / 2), 0.0, math.sin(pose.pitch / 2), 0.0
+        world.qpos[7:] = [*front, 0.0, *front, 0.0, *rear, 0.0, *rear, 0.0]
+        world.place()
+
+    def _plain_steps(self, moving: bool) -> None:
+        world = self.world
+        for k in range(CHUNK):
+            if score.diverged(world.qpos, world.qvel):
+                break
+            self.target[:] = self.follower.advance(self.places, moving, self.dt)
+            self.way = self.follower.way
+            wanted = self.steered.step(world.qpos, world.qvel, self.target)
+            self.places[:] = self.steered.places
+            rates = np.ascontiguousarray(world.qvel[6:])
+            world.ctrl[:] = _core.limit_torques(self.robot.native, rates, wanted)
+            score.keep_score(world.qpos, world.qvel, world.ctrl, self.target, self.dt, self.score)
+            self.recorder.take(self.data, self.target, self.places)
+            loads = world.loads()
+            if loads or self.loads.loads:
+                self.loads.add(self.time + k * self.dt, loads)
+            world.advance(CONTROL_STEPS)
+            self.data.time += self.dt
+
+    def _wheels(self) -> Floats:
+        return self.world.wheel_centres()
+
+
+@dataclass(frozen=True)
+class Told:
+    """What one engine says of one plan: its verdict, and the pitch's errors [rad]."""
+
+    outcome: str
+    reason: str
+    pitch_max: float
+    pitch_rms: float
+
+
+@dataclass(frozen=True)
+class Case:
+    """One plan and what each engine says of it."""
+
+    robot: str
+    terrain: str
+    preset: bool
+    told: dict[str, Told]
+
+
+def engines() -> dict[str, str]:
+    """The engines that are installed by name, and the module of each world."""
+    known = {"Drake": ("pydrake", "drake_world"), "Bullet": ("pybullet", "bullet_world")}
+    return {name: own for name, (package, own) in known.items() if find_spec(package)}
+
+
+def case(friction: float, robot: str, terrain: str | int) -> Case | None:
+    """A preset's name or a random profile's number, carried out everywhere; None without a plan."""
+    ground = random_profile(terrain)[1] if isinstance(terrain, int) else sw.load_terrain(terrain)
+    plan = sw.plan(ground, robot, friction)
+    if not plan.feasible:
+        return None
+    told = {"MuJoCo": _told(sw.rollout(plan, controller=SETTINGS, keep_plan=False))}
+    for name, module in engines().items():
+        world = import_module(module).World
+        run = EngineRun(plan, friction, world)
+        told[name] = _told(run.result(run.simulate(None), keep_plan=False))
+    return Case(robot, ground.name, isinstance(terrain, str), told)
+
+
+def _told(run: Any) -> Told:
+    m = run.metrics
+    return Told(run.outcome, run.reason, m.pitch_error_max, m.pitch_error_rms)
+
+
+def summary(cases: list[Case]) -> Iterator[Row]:
+    """A row for each robot and engine, presets and random profiles apart."""
+    for preset in (True, False):
+        for robot in dict.fromkeys(c.robot for c in cases):
+            own = [c for c in cases if c.robot == robot and c.preset == preset]
+            for engine in dict.fromkeys(name for c in own for name in c.told):
+                beside = [(c.told[engine], c.told["MuJoCo"]) for c in own]
+                same = sum(here.outcome == there.outcome for here, there in beside)
+                errors = [1e3 * here.pitch_max for here, _ in beside]
+                ratios = [here.pitch_max / there.pitch_max for here, there in beside]
+                good = sum(here.outcome == "success" for here, _ in beside)
+                yield Row(
+                    f"{robot}, {'presets' if preset else 'random profiles'}",
+                    engine,
+                    statistics.median(errors),
+                    percentile(errors, 0.95),
+                    "mrad",
+                    statistics.median(ratios),
+                    f"{good} of {len(own)}",
+                    "" if engine == "MuJoCo" else f"verdict as MuJoCo's: {same} of {len(own)}",
+                )
+
+
+def differences(cases: list[Case]) -> Iterator[str]:
+    """A sentence for each plan that is not a success everywhere."""
+    for c in cases:
+        if {t.outcome for t in c.told.values()} != {"success"}:
+            words = "; ".join(f"{name}: {t.outcome}, {t.reason}" for name, t in c.told.items())
+            yield f"{c.robot}, {c.terrain}: {words}"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=12, help="random profiles")
+    parser.add_argument("--first", type=int, default=0, help="number of the first")
+    parser.add_argument("--friction", type=float, default=0.6)
+    parser.add_argument("--robots", nargs="*", default=ROBOTS)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--quick", action="store_true", help="one robot, two terrains")
+    parser.add_argument("--json", help="write machine and rows to this file too")
+    given = parser.parse_args()
+    robots, numbers = given.robots, range(given.first, given.first + given.count)
+    terrains: list[str | int] = [*sw.terrains(), *numbers]
+    if given.quick:
+        robots, terrains = robots[:1], ["single-stair-030", given.first]
+    asked = [(robot, terrain) for robot in robots for terrain in terrains]
+    cases = []
+    with ProcessPoolExecutor(given.workers, mp_context=get_context("spawn")) as pool:
+        for done in pool.map(partial(case, given.friction), *zip(*asked, strict=True)):
+            if done is not None:
+                cases.append(done)
+                told = (f"{n} {t.outcome} {1e3 * t.pitch_max:.1f}" for n, t in done.told.items())
+                print(f"{done.robot}, {done.terrain}:", ", ".join(told), file=sys.stderr)
+    missing = sorted({"Drake", "Bullet"} - set(engines()))
+    rows = [*summary(cases), *(Row("all", name, note="not installed") for name in missing)]
+    publish(rows, given.json)
+    print(f"\n{len(asked) - len(cases)} of {len(asked)} have no plan.")
+    print(*differences(cases), sep="\n")
+
+
+if __name__ == "__main__":
+    main()

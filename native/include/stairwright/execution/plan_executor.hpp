@@ -1,0 +1,71 @@
+// One control step of a plan, from what is perceived to what the drives are told: test of the grip, the plan's progress,
+// legs that fit the ground, search for faces, safe stop, balance controller. The rollout and the player on a robot run
+// the same one.
+#pragma once
+
+#include "stairwright/control/grip_test.hpp"
+#include "stairwright/control/leg_fit.hpp"
+#include "stairwright/control/plan_change.hpp"
+#include "stairwright/control/plan_follower.hpp"
+#include "stairwright/control/safe_stop.hpp"
+#include "stairwright/execution/perceived.hpp"
+
+namespace stairwright::execution {
+
+class PlanExecutor {
+  public:
+    // `grip_need` is the friction that the ground is tested for before the start, 0 for no test [1].
+    PlanExecutor(control::Controller controller, control::PlanFollower follower, double grip_need);
+
+    // What to do now. `moving`: whether the plan may advance; `time` and the time step `dt` [s]. What only a robot
+    // that senses by itself does, it does where `seen.places` are known.
+    control::Command step(const Perceived& seen, bool moving, double time, double dt);
+
+    // A robot that stands otherwise than the plan begins gets there within some tenths of a second, and waits for that.
+    void begin_from(const Perceived& seen);
+
+    // The plan goes on, or another one from now on with the friction that it was made for [1]. The robot stands and
+    // waits for this after a test of the grip in which wheels slipped.
+    void go_on();
+    void adopt(control::PlanFollower follower, double friction);
+    bool waits() const { return waits_; }
+    // What the test of the grip before the start found, if wheels slipped.
+    const std::optional<control::Grip>& slipped() const { return grip_test_.slipped(); }
+    // The map's error that the robot waits for somebody to decide on.
+    const std::optional<estimation::MapError>& map_error() const { return map_error_; }
+    // A map without that error from now on; another plan has to follow.
+    void correct_map(const WheelPath& path);
+
+    // Why the robot has given up, and since when [s]; only one that senses by itself does.
+    control::Stop stop() const { return safe_stop_.why(); }
+    double stopped_at() const { return stopped_at_; }
+
+    const control::Controller& controller() const { return controller_; }
+    const control::PlanFollower& follower() const { return follower_; }
+    // The plan's set point, or where the robot gave up that to stand there.
+    const control::Reference& target() const {
+        return safe_stop_.why() == control::Stop::none ? follower_.target() : stand_;
+    }
+    // What was asked for at the last step.
+    const control::Reference& asked() const { return asked_; }
+
+  private:
+    const control::Reference& next_target(const Perceived& seen, bool moving, double time, double dt);
+
+    control::Controller controller_;
+    control::PlanFollower follower_;
+    control::GripTest grip_test_;
+    control::PlanChange plan_change_;
+    control::SafeStop safe_stop_;
+    control::LegFit leg_fit_;
+    control::FaceSearch face_search_;
+    std::optional<estimation::MapError> map_error_;
+    double ignored_ = -1e9;         // where an error of the map was let pass [m]
+    bool waits_ = false;            // for somebody to decide
+    control::Reference adapted_{};  // what is asked for, with legs that fit the ground as it is
+    control::Reference stand_{};    // what is asked for after the stop
+    control::Reference asked_{};
+    double stopped_at_ = 0.0;
+};
+
+}  // namespace stairwright::execution

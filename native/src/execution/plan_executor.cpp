@@ -1,0 +1,82 @@
+#include "stairwright/execution/plan_executor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace stairwright::execution {
+
+namespace {
+
+constexpr double kSamePlace = 0.15;  // m; an error of the map that was let pass is not told again so near
+
+}  // namespace
+
+PlanExecutor::PlanExecutor(control::Controller controller, control::PlanFollower follower, double grip_need)
+    : controller_(std::move(controller)), follower_(std::move(follower)), grip_test_(controller_.robot(), grip_need),
+      leg_fit_(controller_.robot()) {}
+
+const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool moving, double time, double dt) {
+    if (safe_stop_.why() != control::Stop::none) return stand_;
+    moving = moving && grip_test_.over() && !waits_;
+    if (moving && seen.map_error && !map_error_ && std::abs(seen.map_error->s - ignored_) > kSamePlace) map_error_ = seen.map_error, waits_ = true;
+    moving = moving && !waits_ && plan_change_.over();
+    const bool searching = moving && seen.ahead.any();
+    const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt, seen.ahead.hanging);
+    if (!seen.places) return drawn;
+    if (!grip_test_.over() && plan_change_.over()) {
+        adapted_ = grip_test_.step(drawn, seen.state, seen.used_grip, seen.ahead.on_tread[0] && seen.ahead.on_tread[1], dt);
+        waits_ = grip_test_.over() && grip_test_.slipped();
+        return adapted_;
+    }
+    adapted_ = plan_change_.step(drawn, dt);
+    adapted_ = face_search_.step(leg_fit_.fit(adapted_, seen.ground, dt), searching ? seen.ahead : control::Ahead{}, *seen.places, dt);
+    const control::Reference& next = adapted_;
+    const auto [w, x, y, z] = seen.state.quaternion;
+    const double pitch = std::atan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y));
+    const double error = std::remainder(pitch - next.value.pitch, 2 * std::numbers::pi);
+    if (safe_stop_.watch(follower_.way(), moving && !follower_.arrived(), error, std::asin(std::clamp(2 * (y * z + w * x), -1.0, 1.0)), dt) ==
+        control::Stop::none)
+        return next;
+    stopped_at_ = time;
+    stand_ = controller_.standing(seen.state, *seen.places);
+    stand_.progress = next.progress;
+    return stand_;
+}
+
+control::Command PlanExecutor::step(const Perceived& seen, bool moving, double time, double dt) {
+    asked_ = next_target(seen, moving, time, dt);
+    return controller_.command(seen.state, asked_, 0.0, seen.places);
+}
+
+void PlanExecutor::begin_from(const Perceived& seen) {
+    if (!seen.places) throw std::invalid_argument("the places of the wheels must be known");
+    plan_change_.begin(controller_.standing(seen.state, *seen.places), follower_.first());
+}
+
+void PlanExecutor::adopt(control::PlanFollower follower, double friction) {
+    follower_ = std::move(follower);
+    controller_.believe(friction);
+    plan_change_.begin(adapted_, follower_.first());
+    safe_stop_ = {};
+    waits_ = false;
+}
+
+void PlanExecutor::correct_map(const WheelPath& path) {
+    if (!map_error_) throw std::invalid_argument("there is no error of the map to correct");
+    // Of the robot's place on the map, each pair's offset counts half.
+    const Vec2 shift = map_error_->face ? Vec2{-0.5 * map_error_->off.x, 0.0} : Vec2{0.0, -0.5 * map_error_->off.z};
+    adapted_.value.com += shift, adapted_.value.trunk += shift;
+    controller_.believe(path);
+    leg_fit_.reset();
+    map_error_.reset();
+}
+
+void PlanExecutor::go_on() {
+    if (map_error_) ignored_ = map_error_->s;
+    map_error_.reset();
+    waits_ = false;
+}
+
+}  // namespace stairwright::execution
