@@ -71,6 +71,11 @@ class Solved:
         return float(self.nodes.margins.firm_com_margin.min())
 
     @property
+    def torque_share(self) -> float:
+        """Largest static torque of any motor, over its limit."""
+        return self.nodes.margins.torque_share
+
+    @property
     def bad(self) -> Ints:
         """Nodes at which a check of the certificate is violated most."""
         progress = path_parameter(self.nodes.s, self.nodes.body)

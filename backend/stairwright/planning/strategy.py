@@ -6,8 +6,9 @@
 3. FINE: the loosest bounds, a finer lattice, and wheels that may roll back; the first path counts.
 
 A path of the first two steps with little CoM margin is compared with what the next step finds.
-Where motors are too weak for the path found, all of it is done again with torques looked at in the
-search; where the user's weights find none, again with the default weights.
+Where motors are too weak for the path found, or have next to nothing to spare, all of it is done
+again with torques looked at in the search; where the user's weights find none, again with the
+default weights.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from .path_planner import Attempt, Blocked, PathPlanner, Solved
 from .threads import race
 
 THIN = 0.01  # m; CoM margin of a path that is compared with others
+HEAVY = 0.85  # of a motor's torque; a path that takes more is compared with one that spares motors
 COARSE = 1.7  # lattice refinement of all but the first and the finest attempt
 
 AT_ONCE = Attempt(2.0, STRICT)
@@ -44,11 +46,21 @@ def solve(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
     """
     found = _search(planner, pool)
     if isinstance(found, Solved):
-        return found
+        return _lighter(planner, found, pool)
     if found.weak and not planner.torques:
         held = solve(planner.within_torques, pool)
         return held if isinstance(held, Solved) else replace(held, weak=held.weak or found.weak)
     return solve(planner.unweighted, pool) if planner.unweighted else found
+
+
+def _lighter(planner: PathPlanner, found: Solved, pool: Executor) -> Solved:
+    """The path `found`, or one that spares the motors where that one all but overloads them."""
+    if planner.torques or found.torque_share <= HEAVY:
+        return found
+    held = _search(planner.within_torques, pool)
+    if isinstance(held, Solved) and held.torque_share < found.torque_share:
+        return held
+    return found
 
 
 def quick(planner: PathPlanner) -> Solved | Blocked:
