@@ -5,10 +5,10 @@
    the loosest bounds let a search through. If not, the terrain is impossible.
 3. FINE: the loosest bounds, a finer lattice, and wheels that may roll back; the first path counts.
 
-A path of the first two steps with little CoM margin is compared with what the next step finds.
-Where motors are too weak for the path found, or have next to nothing to spare, all of it is done
-again with torques looked at in the search; where the user's weights find none, again with the
-default weights.
+A path of the first two steps with little CoM margin, or motors that have next to nothing to spare, is
+compared with what the next step finds.
+Where motors are too weak for the path found, or all but so, all of it is done again with torques
+looked at in the search; where the user's weights find none, again with the default weights.
 """
 
 from __future__ import annotations
@@ -84,8 +84,8 @@ def _search(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
     tried: Tried = {}
     _make(planner, pool, [AT_ONCE], tried)
     best = _best(tried)
-    if best is not None and best.margin > THIN:
-        return best
+    if best is not None and (_sound(best) or (best.margin > THIN and not planner.torques)):
+        return best  # what is heavy is searched for anew within torques
     if best is None:
         at_once = tried[AT_ONCE]
         assert isinstance(at_once, Blocked)
@@ -127,10 +127,15 @@ def _make(
                 break
 
 
+def _sound(path: Solved) -> bool:
+    """Whether a path is neither thin nor heavy, so that none is compared with it."""
+    return path.margin > THIN and path.torque_share <= HEAVY
+
+
 def _best(tried: Tried) -> Solved | None:
-    """The path with the most CoM margin; of paths alike the one found first."""
+    """A sound path if there is one, with the most CoM margin; of paths alike the one found first."""
     paths = [answer for answer in tried.values() if isinstance(answer, Solved)]
-    return max(paths, key=lambda path: path.margin, default=None)
+    return max(paths, key=lambda path: (_sound(path), path.margin), default=None)
 
 
 def _opened(tried: Tried) -> bool:
