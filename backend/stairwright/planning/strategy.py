@@ -5,8 +5,8 @@
    the loosest bounds let a search through. If not, the terrain is impossible.
 3. FINE: the loosest bounds, a finer lattice, and wheels that may roll back; the first path counts.
 
-A path of the first two steps with little CoM margin, or motors that have next to nothing to spare, is
-compared with what the next step finds.
+A path of the first two steps with little CoM margin, or motors that have next to nothing to spare,
+is compared with what the next step finds.
 Where motors are too weak for the path found, or all but so, all of it is done again with torques
 looked at in the search; where the user's weights find none, again with the default weights.
 """
@@ -133,7 +133,7 @@ def _sound(path: Solved) -> bool:
 
 
 def _best(tried: Tried) -> Solved | None:
-    """A sound path if there is one, with the most CoM margin; of paths alike the one found first."""
+    """A sound path if there is one, with the most CoM margin; of such the one found first."""
     paths = [answer for answer in tried.values() if isinstance(answer, Solved)]
     return max(paths, key=lambda path: (_sound(path), path.margin), default=None)
 

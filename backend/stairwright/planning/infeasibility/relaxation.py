@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -14,7 +15,7 @@ from stairwright.planning.lattice.search import Place
 from stairwright.planning.path_planner import Blocked, PathPlanner, Solved, path_planner
 from stairwright.planning.smoothing.node_margins import JOINTS, Motor
 from stairwright.planning.standing import NoStandingPose
-from stairwright.planning.strategy import quick
+from stairwright.planning.strategy import quick, solve
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
@@ -39,7 +40,6 @@ class Candidate:
     limit: float
     change: Callable[[PathPlanner, float], PathPlanner]
     given: str = ""  # what else the change needs
-    sure: float = 1.15  # relative precision of a value that only whole plans can tell
 
     def at(self, ratio: float) -> float:
         """The value that differs from what there is by the factor `ratio` > 1."""
@@ -69,11 +69,27 @@ class Candidate:
 
     def attempt(self, planner: PathPlanner, ratio: float) -> Solved | Blocked:
         """What comes of a quick attempt at a plan with the quantity changed so."""
+        return self._planned(planner, ratio, quick)
+
+    def feasible(self, planner: PathPlanner, ratio: float, pool: Executor) -> bool:
+        """Whether all of planning, asked anew with the quantity changed so, has a plan."""
+
+        def ask(changed: PathPlanner) -> Solved | Blocked:
+            return solve(replace(changed, torques=False), pool)
+
+        return isinstance(self._planned(planner, ratio, ask), Solved)
+
+    def _planned(
+        self,
+        planner: PathPlanner,
+        ratio: float,
+        how: Callable[[PathPlanner], Solved | Blocked],
+    ) -> Solved | Blocked:
         try:
             changed = self.change(planner, self.at(ratio))
         except NoStandingPose:
             return Blocked(None, False)
-        return quick(changed)
+        return how(changed)
 
     def solves(self, planner: PathPlanner, ratio: float) -> bool:
         """Whether that leads to a certified plan."""
@@ -115,7 +131,6 @@ def motor_torque(robot: Robot, motor: Motor) -> Candidate:
     return Candidate(
         "torque", f"{motor} torque", "Nm", most, STRONGEST,
         lambda c, v: _with_robot(c, _stronger(robot, motor, v / most)),
-        sure=1.02,
     )  # fmt: skip
 
 

@@ -1,0 +1,157 @@
+"""What searches say that it takes, confirmed by plans: with a little more there is one, with a
+little less there is none.
+
+Factors are looked at on a grid of steps of 4 %. The one that is named lies in the middle of a step
+at whose upper end planning finds a certified plan, and at whose lower end all of planning, every
+attempt of the strategy, finds none: the verdict of the planner that is asked, not of a search that
+stands in for it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+from stairwright.planning.infeasibility.relaxation import Candidate
+from stairwright.planning.lattice.body_lattice import EXACT
+from stairwright.planning.lattice.pieces import pieces
+from stairwright.planning.lattice.search import Place
+from stairwright.planning.path_planner import Blocked, PathPlanner, Solved
+from stairwright.planning.threads import race
+
+Ranked = list[tuple[Candidate, float]]  # candidates, and factors that open the way
+
+WITHIN = 1.02  # a named value times or over it has a plan or none
+_STEP = WITHIN**2
+# Planning is tried so many steps above the least factor, and at the largest one.
+_MORE = (0, 1, 3, 7, 13, 23, 35)
+_BETWEEN = 1  # of them is left out where not even a search that forgives nothing finds a way
+_RIVALS = 2  # candidates for which planning is tried
+_LOOKS = 6  # questions asked of all of planning, so that an answer comes in time
+
+
+@dataclass(frozen=True)
+class Cause:
+    """What opens the way.
+
+    Attributes:
+        candidate: The quantity.
+        lower: A factor with which all of planning finds no plan.
+        upper: A factor with which it finds one.
+    """
+
+    candidate: Candidate
+    lower: float
+    upper: float
+
+    @property
+    def ratio(self) -> float:
+        """The factor that is named: in the middle, and a step's half below one that does."""
+        return self.upper / min(WITHIN, math.sqrt(self.upper / self.lower))
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """Where a way ends that was thought open."""
+
+    place: Place
+
+
+def confirmed(
+    planner: PathPlanner, ranked: Ranked, places: list[Place], pool: Executor
+) -> Cause | Beyond | None:
+    """The least factor with which a certified plan exists, and of which of the `ranked`.
+
+    Steps from those told on are tried, the least first, two at once, until one has a plan.
+
+    Args:
+        planner: The question.
+        ranked: Candidates and factors.
+        places: What the factors are known to lead past.
+        pool: Who tries.
+    """
+    tries = sorted(
+        {(min(_steps(ratio) + more, _steps(one.most)), k)
+         for k, (one, ratio) in enumerate(ranked[:_RIVALS]) for more in _MORE},
+    )  # fmt: skip
+    whole = pieces(planner, places)[0].whole
+    low: dict[int, int] = {}
+
+    def lead(one: tuple[int, int]) -> Solved | Blocked | None:
+        step, k = one
+        candidate, least = ranked[k]
+        if step == _steps(least) + _BETWEEN and not candidate.opens(
+            planner, places, _ratio(candidate, step), EXACT
+        ):
+            return None
+        return candidate.attempt(planner, _ratio(candidate, step))
+
+    with race(pool, lead, tries) as ends:
+        for (step, k), end in zip(tries, ends, strict=True):
+            if isinstance(end, Solved):
+                break
+            if end is None:
+                continue
+            if not (whole or low or end.opened):
+                return Beyond(end.reached or planner.ends[0].wheels)
+            low[k] = step
+        else:
+            return None
+    return _settled(planner, ranked[k][0], low.get(k, 0), step, pool)
+
+
+def _settled(
+    planner: PathPlanner, candidate: Candidate, low: int, high: int, pool: Executor
+) -> Cause | None:
+    """The step between a plan and none; quick attempts have one at `high`, none at `low`."""
+
+    def quick(step: int) -> bool:
+        return candidate.solves(planner, _ratio(candidate, step))
+
+    def fully(step: int) -> bool:
+        return candidate.feasible(planner, _ratio(candidate, step), pool)
+
+    low, high = _bisected(quick, low, high)
+    known = {0: False}  # what all of planning says
+    for _ in range(_LOOKS):
+        if known.get(high) is None:
+            known[high] = fully(high)
+            if not known[high]:  # quick attempts found a plan that all of planning does not come to
+                low, high = high, high + max(1, high - low)
+                if high > _steps(candidate.most):
+                    return None
+        elif known.get(low) is None:
+            known[low] = fully(low)
+            if known[low]:
+                low, high = max(0, low - 2 * (high - low)), low
+        elif high - low > 1:
+            middle = (low + high) // 2
+            known[middle] = fully(middle)
+            low, high = (low, middle) if known[middle] else (middle, high)
+        else:
+            break
+    if not known.get(high, True):
+        return None
+    while known.get(low) is not False:  # nobody has had the time to ask
+        low -= 1
+    return Cause(candidate, _ratio(candidate, low), _ratio(candidate, high))
+
+
+def _bisected(enough: Callable[[int], bool], low: int, high: int) -> tuple[int, int]:
+    """Neighbouring steps of which the larger is enough, between `low`, which is not, and `high`."""
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if enough(middle) else (middle, high)
+    return low, high
+
+
+def _steps(ratio: float) -> int:
+    """The least number of steps whose factor is at least `ratio`."""
+    return max(1, math.ceil(math.log(ratio) / math.log(_STEP) - 1e-9))
+
+
+def _ratio(candidate: Candidate, step: int) -> float:
+    """The factor after a number of steps; the last one may be shorter."""
+    return min(_STEP**step, candidate.most)
