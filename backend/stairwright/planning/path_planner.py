@@ -5,6 +5,7 @@ In which order they are tried is the strategy's (`strategy.py`).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -96,12 +97,14 @@ class Blocked:
         stops: Where loose searches end: the place from the start, and others farther on.
         opened: Whether a search came through at all.
         weak: Motors whose torque a found path exceeded.
+        share: What that path takes of a motor's torque, at most.
     """
 
     reached: Place | None
     opened: bool
     weak: Motor | None = None
     stops: tuple[Place, ...] = ()
+    share: float = math.inf
 
 
 def path_planner(
@@ -220,7 +223,9 @@ class PathPlanner(PathProblem):
             if stage is not None:
                 found = repair(self, found, bad, stage)
         worst = found.s[int(found.margins.least_slack.argmin())]
-        return Blocked((float(worst[0]), float(worst[1])), True, found.margins.overloaded)
+        weak = found.margins.overloaded
+        share = found.margins.torque_share if weak else math.inf
+        return Blocked((float(worst[0]), float(worst[1])), True, weak, share=share)
 
     def _certified(self, nodes: Refined) -> Solved:
         """The path with its certificate, passed or not."""

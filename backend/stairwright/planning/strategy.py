@@ -49,7 +49,9 @@ def solve(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
         return _lighter(planner, found, pool)
     if found.weak and not planner.torques:
         held = solve(planner.within_torques, pool)
-        return held if isinstance(held, Solved) else replace(held, weak=held.weak or found.weak)
+        if isinstance(held, Solved):
+            return held
+        return replace(held, weak=held.weak or found.weak, share=min(held.share, found.share))
     return solve(planner.unweighted, pool) if planner.unweighted else found
 
 
@@ -152,6 +154,7 @@ def _blocked(tried: Tried, obstructions: tuple[Place, ...]) -> Blocked:
         _opened(tried),
         next((one.weak for one in blocked if one.weak), None),
         obstructions,
+        min(one.share for one in blocked),
     )
 
 

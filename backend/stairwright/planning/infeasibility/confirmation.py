@@ -19,6 +19,7 @@ from stairwright.planning.lattice.body_lattice import EXACT
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
 from stairwright.planning.path_planner import Blocked, PathPlanner, Solved
+from stairwright.planning.smoothing.node_margins import FIRM_TORQUE
 from stairwright.planning.threads import race
 
 Ranked = list[tuple[Candidate, float]]  # candidates, and factors that open the way
@@ -29,7 +30,8 @@ _STEP = WITHIN**2
 _MORE = (0, 1, 3, 7, 13, 23, 35)
 _BETWEEN = 1  # of them is left out where not even a search that forgives nothing finds a way
 _RIVALS = 2  # candidates for which planning is tried
-_LOOKS = 6  # questions asked of all of planning, so that an answer comes in time
+_RISES = 6  # times that motors are made stronger, by as much as the path lacks that came of it
+_LOOKS = 5  # times that all of planning is asked, so that an answer comes in time
 
 
 @dataclass(frozen=True)
@@ -102,48 +104,80 @@ def confirmed(
     return _settled(planner, ranked[k][0], low.get(k, 0), step, pool)
 
 
+def strengthened(
+    planner: PathPlanner, motors: Candidate, share: float, pool: Executor
+) -> Cause | None:
+    """The least factor on the torque of `motors` with which a certified plan exists.
+
+    Args:
+        planner: The question, searched within torques.
+        motors: The quantity.
+        share: What the path takes of their torque that was found without them in mind.
+        pool: Who tries.
+    """
+    low, step = 0, _steps(share / FIRM_TORQUE)
+    for _ in range(_RISES):
+        if step > _steps(motors.most):
+            break
+        end = motors.attempt(planner, _ratio(motors, step))
+        if isinstance(end, Solved):
+            return _settled(planner, motors, low, step, pool)
+        if not end.weak:
+            break
+        # A path that takes more than there is tells how much it would need.
+        low, step = step, max(step + 1, _steps(_ratio(motors, step) * end.share / FIRM_TORQUE))
+    return None
+
+
 def _settled(
     planner: PathPlanner, candidate: Candidate, low: int, high: int, pool: Executor
 ) -> Cause | None:
     """The step between a plan and none; quick attempts have one at `high`, none at `low`."""
-
-    def quick(step: int) -> bool:
-        return candidate.solves(planner, _ratio(candidate, step))
-
-    def fully(step: int) -> bool:
-        return candidate.feasible(planner, _ratio(candidate, step), pool)
-
-    low, high = _bisected(quick, low, high)
+    most = _steps(candidate.most)
+    low, high = _bisected(
+        lambda step: candidate.solves(planner, _ratio(candidate, step)), low, high
+    )
     known = {0: False}  # what all of planning says
-    for _ in range(_LOOKS):
-        if known.get(high) is None:
-            known[high] = fully(high)
-            if not known[high]:  # quick attempts found a plan that all of planning does not come to
-                low, high = high, high + max(1, high - low)
-                if high > _steps(candidate.most):
-                    return None
-        elif known.get(low) is None:
-            known[low] = fully(low)
-            if known[low]:
-                low, high = max(0, low - 2 * (high - low)), low
+
+    def ask(*steps: int) -> None:
+        new = [step for step in steps if step not in known]
+        with race(
+            pool, lambda step: candidate.feasible(planner, _ratio(candidate, step)), new
+        ) as answers:
+            known.update(zip(new, answers, strict=True))
+
+    for look in range(1, _LOOKS + 1):
+        ask(low, high)
+        if known[low]:
+            low, high = max(0, low - 2**look), low
+        elif not known[high] and high >= most:
+            return None
+        elif not known[high]:  # quick attempts found a plan that all of planning does not come to
+            low, high = high, min(high + 2**look, most)
         elif high - low > 1:
             middle = (low + high) // 2
-            known[middle] = fully(middle)
+            ask(middle)
             low, high = (low, middle) if known[middle] else (middle, high)
         else:
             break
-    if not known.get(high, True):
+    low = max(step for step, feasible in known.items() if step < high and not feasible)
+    if not known.get(high):
         return None
-    while known.get(low) is not False:  # nobody has had the time to ask
-        low -= 1
     return Cause(candidate, _ratio(candidate, low), _ratio(candidate, high))
 
 
 def _bisected(enough: Callable[[int], bool], low: int, high: int) -> tuple[int, int]:
-    """Neighbouring steps of which the larger is enough, between `low`, which is not, and `high`."""
+    """Neighbouring steps of which the larger is enough, between `low`, which is not, and `high`.
+
+    What is enough is thought to be near what is needed.
+    """
+    stride = 1
     while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (low, middle) if enough(middle) else (middle, high)
+        middle = max(high - stride, (low + high) // 2)
+        if enough(middle):
+            high, stride = middle, 2 * stride
+        else:
+            low, stride = middle, 1
     return low, high
 
 

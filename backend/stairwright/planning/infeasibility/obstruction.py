@@ -15,7 +15,13 @@ from functools import cache, partial
 
 import numpy as np
 
-from stairwright.planning.infeasibility.confirmation import Beyond, Cause, Ranked, confirmed
+from stairwright.planning.infeasibility.confirmation import (
+    Beyond,
+    Cause,
+    Ranked,
+    confirmed,
+    strengthened,
+)
 from stairwright.planning.infeasibility.relaxation import (
     AMPLE,
     CLOSE,
@@ -60,10 +66,10 @@ def _cause(
     """The single change that opens the way, if one does."""
     if blocked.weak and blocked.opened:
         # A search came through: a little more torque is what its path most likely lacks.
-        motors = [(motor_torque(planner.robot, blocked.weak), 1.0)]
-        answer = confirmed(planner, motors, [], pool)
-        if answer is not None and not isinstance(answer, Beyond):
-            return answer
+        motors = motor_torque(planner.robot, blocked.weak)
+        cause = strengthened(planner, motors, blocked.share, pool)
+        if cause is not None:
+            return cause
     candidates = candidates_of(planner)
     places = list(blocked.stops)
     if not _whole(planner, places) and leads_past(planner, places):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -16,6 +15,7 @@ from stairwright.planning.path_planner import Blocked, PathPlanner, Solved, path
 from stairwright.planning.smoothing.node_margins import JOINTS, Motor
 from stairwright.planning.standing import NoStandingPose
 from stairwright.planning.strategy import quick, solve
+from stairwright.planning.threads import in_this_thread
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
@@ -71,11 +71,11 @@ class Candidate:
         """What comes of a quick attempt at a plan with the quantity changed so."""
         return self._planned(planner, ratio, quick)
 
-    def feasible(self, planner: PathPlanner, ratio: float, pool: Executor) -> bool:
+    def feasible(self, planner: PathPlanner, ratio: float) -> bool:
         """Whether all of planning, asked anew with the quantity changed so, has a plan."""
 
         def ask(changed: PathPlanner) -> Solved | Blocked:
-            return solve(replace(changed, torques=False), pool)
+            return solve(replace(changed, torques=False), in_this_thread())
 
         return isinstance(self._planned(planner, ratio, ask), Solved)
 
