@@ -126,6 +126,8 @@ class PathPlanner(PathProblem):
     """A problem and the ways to its answer."""
 
     searches: Searches = field(default_factory=dict)
+    # What came of attempts, by them and whether they were made within torques.
+    tried: dict[tuple[Attempt, bool], Solved | Blocked] = field(default_factory=dict, init=False)
 
     def find(
         self,
@@ -143,7 +145,14 @@ class PathPlanner(PathProblem):
         return passes(self, piece, bounds, fine, roll_back, self.searches)
 
     def attempt(self, how: Attempt) -> Solved | Blocked:
-        """What comes of one attempt.
+        """What comes of one attempt, which is made once."""
+        key = (how, self.torques)
+        if key not in self.tried:
+            self.tried[key] = self._attempt(how)
+        return self.tried[key]
+
+    def _attempt(self, how: Attempt) -> Solved | Blocked:
+        """Make an attempt.
 
         With weights of the user's the lattice is searched for them and for the default ones, and
         the path that costs less is taken: heavy weights lead the lattice, whose costs are rougher
@@ -178,7 +187,19 @@ class PathPlanner(PathProblem):
     @cached_property
     def within_torques(self) -> PathPlanner:
         """The same problem, searched so that every pose of the search is held by the motors."""
-        return replace(self, torques=True)
+        return self._searched(torques=True)
+
+    @cached_property
+    def regardless(self) -> PathPlanner:
+        """The same problem, searched without regard to torques, as every question is at first."""
+        return self._searched(torques=False)
+
+    def _searched(self, *, torques: bool) -> PathPlanner:
+        if torques == self.torques:
+            return self
+        other = replace(self, torques=torques)
+        other.tried = self.tried
+        return other
 
     @cached_property
     def unweighted(self) -> PathPlanner | None:

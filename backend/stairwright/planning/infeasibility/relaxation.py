@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -26,6 +26,7 @@ STRONGEST = 1000.0  # Nm; the most that a motor is described with
 AMPLE = 1.5  # friction that leaves nothing to wish for
 CLOSE = 0.02  # relative precision of the value that searches tell
 _FLAT = 0.02  # of a profile's height
+_KEPT = 4
 _FINE = 1.7  # lattice of the questions, coarser than that of plans
 
 
@@ -40,6 +41,8 @@ class Candidate:
     limit: float
     change: Callable[[PathPlanner, float], PathPlanner]
     given: str = ""  # what else the change needs
+    # Questions asked last, by their factor: what is tried anew has its tables and its first tries.
+    changed: dict[float, PathPlanner] = field(default_factory=dict, compare=False, repr=False)
 
     def at(self, ratio: float) -> float:
         """The value that differs from what there is by the factor `ratio` > 1."""
@@ -75,7 +78,7 @@ class Candidate:
         """Whether all of planning, asked anew with the quantity changed so, has a plan."""
 
         def ask(changed: PathPlanner) -> Solved | Blocked:
-            return solve(replace(changed, torques=False), in_this_thread())
+            return solve(changed.regardless, in_this_thread())
 
         return isinstance(self._planned(planner, ratio, ask), Solved)
 
@@ -85,10 +88,15 @@ class Candidate:
         ratio: float,
         how: Callable[[PathPlanner], Solved | Blocked],
     ) -> Solved | Blocked:
-        try:
-            changed = self.change(planner, self.at(ratio))
-        except NoStandingPose:
-            return Blocked(None, False)
+        changed = self.changed.get(ratio)
+        if changed is None:
+            try:
+                changed = self.change(planner, self.at(ratio))
+            except NoStandingPose:
+                return Blocked(None, False)
+            for old in list(self.changed)[: 1 - _KEPT]:
+                self.changed.pop(old, None)
+            self.changed[ratio] = changed
         return how(changed)
 
     def solves(self, planner: PathPlanner, ratio: float) -> bool:
