@@ -1,10 +1,10 @@
-"""What searches say that it takes, confirmed by plans: with a little more there is one, with a
-little less there is none.
+"""What searches say that it takes, confirmed by plans: with as much and with a little more there is
+one, with a little less there is none.
 
-Factors are looked at on a grid of steps of 4 %. The one that is named lies in the middle of a step
-at whose upper end planning finds a certified plan, and at whose lower end all of planning, every
-attempt of the strategy, finds none: the verdict of the planner that is asked, not of a search that
-stands in for it.
+Factors are looked at on a grid of steps of 2 %. With the one that is named, and with the next one,
+planning finds a certified plan; with the one before, all of planning, every attempt of the
+strategy, finds none: the verdict of the planner that is asked, not of a search that stands in for
+it.
 """
 
 from __future__ import annotations
@@ -24,11 +24,10 @@ from stairwright.planning.threads import race
 
 Ranked = list[tuple[Candidate, float]]  # candidates, and factors that open the way
 
-WITHIN = 1.02  # a named value times or over it has a plan or none
-_STEP = WITHIN**2
+_STEP = 1.02
 # Planning is tried so many steps above the least factor, and at the largest one.
-_MORE = (0, 1, 3, 7, 13, 23, 35)
-_BETWEEN = 1  # of them is left out where not even a search that forgives nothing finds a way
+_MORE = (0, 2, 6, 14, 26, 46, 70)
+_BETWEEN = 2  # of them is left out where not even a search that forgives nothing finds a way
 _RIVALS = 2  # candidates for which planning is tried
 _RISES = 6  # times that motors are made stronger, by as much as the path lacks that came of it
 _LOOKS = 5  # times that all of planning is asked, so that an answer comes in time
@@ -41,17 +40,12 @@ class Cause:
     Attributes:
         candidate: The quantity.
         lower: A factor with which all of planning finds no plan.
-        upper: A factor with which it finds one.
+        upper: The least factor with which it is known to find one.
     """
 
     candidate: Candidate
     lower: float
     upper: float
-
-    @property
-    def ratio(self) -> float:
-        """The factor that is named: in the middle, and a step's half below one that does."""
-        return self.upper / min(WITHIN, math.sqrt(self.upper / self.lower))
 
 
 @dataclass(frozen=True)
@@ -134,36 +128,38 @@ def _settled(
 ) -> Cause | None:
     """The step between a plan and none; quick attempts have one at `high`, none at `low`."""
     most = _steps(candidate.most)
-    low, high = _bisected(
-        lambda step: candidate.solves(planner, _ratio(candidate, step)), low, high
-    )
-    known = {0: False}  # what all of planning says
 
-    def ask(*steps: int) -> None:
-        new = [step for step in steps if step not in known]
-        with race(
-            pool, lambda step: candidate.feasible(planner, _ratio(candidate, step)), new
-        ) as answers:
-            known.update(zip(new, answers, strict=True))
+    def quick(step: int) -> bool:
+        return candidate.solves(planner, _ratio(candidate, step))
 
+    def fully(step: int) -> bool:
+        return candidate.feasible(planner, _ratio(candidate, step))
+
+    low, high = _bisected(quick, low, high)
+    known = {0: False}  # what all of planning says, which may differ from quick attempts
     for look in range(1, _LOOKS + 1):
-        ask(low, high)
+        more = min(high + 1, most)
+        new = sorted({low, high, more} - known.keys())
+        with race(pool, fully, new) as answers:
+            known.update(zip(new, answers, strict=True))
         if known[low]:
             low, high = max(0, low - 2**look), low
-        elif not known[high] and high >= most:
-            return None
-        elif not known[high]:  # quick attempts found a plan that all of planning does not come to
-            low, high = high, min(high + 2**look, most)
+        elif not known[more]:
+            low, high = more, min(more + 2**look, most)
+            if low == high:
+                return None
+        elif not known[high]:
+            low, high = high, more
         elif high - low > 1:
             middle = (low + high) // 2
-            ask(middle)
+            known[middle] = fully(middle)
             low, high = (low, middle) if known[middle] else (middle, high)
         else:
-            break
-    low = max(step for step, feasible in known.items() if step < high and not feasible)
-    if not known.get(high):
-        return None
-    return Cause(candidate, _ratio(candidate, low), _ratio(candidate, high))
+            return Cause(candidate, _ratio(candidate, low), _ratio(candidate, high))
+    # There was not the time to ask on.
+    high = min((step for step, feasible in known.items() if feasible), default=0)
+    low = max((step for step, feasible in known.items() if step < high and not feasible), default=0)
+    return Cause(candidate, _ratio(candidate, low), _ratio(candidate, high)) if high else None
 
 
 def _bisected(enough: Callable[[int], bool], low: int, high: int) -> tuple[int, int]:

@@ -228,7 +228,7 @@ def _problem(planner: PathPlanner, reached: Place | None, cause: Cause | None) -
         )
         return Problem(kind="reach", at=at, progress=progress, message=message)
     candidate = cause.candidate
-    value = candidate.at(cause.ratio)
+    value = candidate.at(cause.upper)
     unit = "" if candidate.unit == "1" else f" {candidate.unit}"
     message = (
         f"needs {candidate.quantity} {value:.3g}{unit}{candidate.given}, "
