@@ -30,7 +30,7 @@ _MORE = (0, 2, 6, 14, 26, 46, 70)
 _BETWEEN = 2  # of them is left out where not even a search that forgives nothing finds a way
 _RIVALS = 2  # candidates for which planning is tried
 _RISES = 6  # times that motors are made stronger, by as much as the path lacks that came of it
-_LOOKS = 5  # times that all of planning is asked, so that an answer comes in time
+_LOOKS = 7  # times that all of planning is asked, so that an answer comes in time
 
 
 @dataclass(frozen=True)
