@@ -2,8 +2,10 @@
 
 1. STRICT: one coarse search with bounds that the finished path keeps. Nine of ten end here.
 2. LOOSE: bounds broken by as much as rounding to the lattice takes; beside it a probe whether even
-   the loosest bounds let a search through. If not, the terrain is impossible.
+   the loosest bounds let a search through.
 3. FINE: the loosest bounds, a finer lattice, and wheels that may roll back; the first path counts.
+4. FINEST: where no coarse search comes through. Where the CoM has but a few centimetres, as down
+   steep stairs with all knees back, a coarse lattice has no pose in them at all.
 
 A path of the first two steps with little CoM margin, or motors that have next to nothing to spare,
 is compared with what the next step finds.
@@ -33,6 +35,7 @@ POSSIBLE = Attempt(COARSE, LOOSEST, roll_back=True, probe=True)
 MOST_FORGIVING = Attempt(COARSE, LOOSEST)
 FINER = Attempt(1.4, LOOSER)
 ROLLING_BACK = Attempt(COARSE, LOOSE, roll_back=True)
+FINEST = Attempt(1.0, LOOSE)
 
 Tried = dict[Attempt, Solved | Blocked]
 
@@ -95,7 +98,8 @@ def _search(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
             return at_once
         obstructions, closed = _obstructions_ahead(planner, at_once, pool)
         if closed:
-            return Blocked(obstructions[0], False, stops=obstructions)
+            blocked = Blocked(obstructions[0], False, stops=obstructions)
+            return _looked_at_closely(planner, blocked)
     else:
         obstructions = ()
 
@@ -114,7 +118,19 @@ def _search(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
         best = _best(tried)
         if best is not None:
             return best
-    return _blocked(tried, obstructions or ((forgiving.reached,) if forgiving.reached else ()))
+    blocked = _blocked(tried, obstructions or ((forgiving.reached,) if forgiving.reached else ()))
+    return blocked if blocked.opened else _looked_at_closely(planner, blocked)
+
+
+def _looked_at_closely(planner: PathPlanner, blocked: Blocked) -> Solved | Blocked:
+    """What the finest lattice makes of a course that is closed to coarse ones."""
+    around = pieces(planner, blocked.stops)
+    if not around[0].whole and not all(
+        planner.passes(one, FINEST.fine, FINEST.bounds) for one in around
+    ):
+        return blocked
+    finest = planner.attempt(FINEST)
+    return finest if isinstance(finest, Solved) or finest.opened else blocked
 
 
 def _make(
