@@ -39,12 +39,12 @@ def question(seed: int) -> Question:
     return [(x * scale, z * scale) for x, z in terrain.points], robot.model_dump(), 0.6
 
 
-def ask(asked: Question) -> tuple[sw.Plan, float]:
-    """The plan and how long it took [s]."""
+def ask(asked: Question) -> tuple[sw.Plan, tuple[float, float]]:
+    """The plan, and how long it took: by the clock, and of all processors [s]."""
     points, robot, friction = asked
-    begun = time.perf_counter()
+    begun = time.perf_counter(), time.process_time()
     plan = sw.plan({"points": points}, sw.Robot.model_validate(robot), friction)
-    return plan, time.perf_counter() - begun
+    return plan, (time.perf_counter() - begun[0], time.process_time() - begun[1])
 
 
 def longer(robot: dict[str, Any], factor: float) -> None:
@@ -126,10 +126,12 @@ def changed(asked: Question, plan: sw.Plan, factor: float) -> Question | None:
 def examine(seed: int) -> dict[str, Any] | None:
     """What became of one question; None if it was not refused."""
     asked = question(seed)
-    plan, seconds = ask(asked)
+    plan, (seconds, cpu) = ask(asked)
     if plan.problem is None:
         return None
-    row: dict[str, Any] = {"seed": seed, "seconds": seconds, "message": plan.problem.message}
+    row: dict[str, Any] = {
+        "seed": seed, "seconds": seconds, "cpu": cpu, "message": plan.problem.message
+    }  # fmt: skip
     limit = plan.problem.limit
     if limit is None or plan.problem.kind in ("start", "goal"):
         return row
@@ -168,11 +170,12 @@ def main() -> None:
         if not (row["more"] and row["less"]):
             print(row, flush=True)
     told = [row for row in rows if "more" in row]
-    times = [row["seconds"] for row in rows]
     print(f"{len(rows)} refusals, {len(told)} name an amount that can be asked about")
     print(f"2 % more has a plan: {sum(row['more'] for row in told)} of {len(told)}")
     print(f"2 % less has none: {sum(row['less'] for row in told)} of {len(told)}")
-    print(f"time: p50 {np.median(times):.2f} s, p95 {np.percentile(times, 95):.2f} s")
+    for name in ("seconds", "cpu"):
+        times = [row[name] for row in rows]
+        print(f"{name}: p50 {np.median(times):.2f} s, p95 {np.percentile(times, 95):.2f} s")
     if options.json:
         options.json.write_text(json.dumps(rows, indent=1))
 

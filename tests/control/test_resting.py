@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from stairwright import _core
+from stairwright.control.contact import BEFORE, support
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
@@ -67,3 +68,25 @@ def test_forces_are_continuous_through_a_corner() -> None:
     places = [(corner + d, corner - 0.35) for d in way]
     found = resting(path, places, [(-0.25, 0.3)] * len(places))
     assert np.abs(np.diff(found, axis=0)).max() < 0.05 * WEIGHT
+
+
+def test_more_friction_is_used_where_wheels_would_press_far_harder_without() -> None:
+    """Rear wheels high on a wall, front wheels on its top: with little friction they would have to
+    push the robot down."""
+    radius = 0.18
+    points = [(-3.67, 0.0), (0.0, 0.0), (0.0, 1.2337), (3.67, 1.2337)]
+    path = wheel_path(Terrain(points=points), radius)
+    found = resting(path, [(4.9708, 4.0809)], [(-0.029, 1.912)])[0]
+    np.testing.assert_allclose(found.sum(axis=0), [0.0, WEIGHT], atol=0.02 * WEIGHT)
+    assert found[1, 1] > 0.1 * WEIGHT
+    assert np.hypot(*found.T).sum() < 1.35 * WEIGHT
+
+
+def test_small_wheels_lean_on_a_corner_only_near_it() -> None:
+    out = np.zeros(8)
+    points = [(-1.0, 0.0), (0.0, 0.0), (0.0, 0.3), (1.0, 0.3)]
+    for radius, face in ((0.05, (0.0, 1.0)), (0.025, (-1.0, 0.0))):
+        path = wheel_path(Terrain(points=points), radius)
+        beyond = float(path.corners[0]) + 0.006
+        support(path, beyond, beyond, 0.6, BEFORE, out)
+        np.testing.assert_allclose(out[:2], face, atol=1e-9)

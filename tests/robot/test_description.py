@@ -67,3 +67,17 @@ def test_the_simulator_takes_the_lightest_robot():
     data["nominal_height"] = 0.2
     model = build_model(load_robot(data))
     assert model.body("trunk").mass == pytest.approx(1e-6)
+
+
+@pytest.mark.parametrize(("mass", "length"), [(700.0, 0.65), (1e3, 500.0)])
+def test_the_largest_robots_have_gains(mass, length):
+    """Stiffness in proportion to weight and legs, as far as documents may say it."""
+    data = load_robot("a1_wheeled").model_dump(mode="json")
+    data |= {"schema": "stairwright/robot/2", "gains": None}
+    data["trunk"] |= {"mass": mass, "inertia": [mass, mass, mass]}
+    for part in ("thigh", "calf"):
+        data[part] |= {"length": length}
+    data["nominal_height"] = 1.5 * length
+    robot = load_robot(data)
+    wanted = 40.0 * robot.mass / 11.84 * 2 * length / 0.4
+    assert robot.feedback.joint_stiffness == pytest.approx(min(wanted, 1e6))

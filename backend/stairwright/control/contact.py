@@ -24,8 +24,10 @@ Floats = NDArray[np.float64]
 
 WINDOW = 0.15  # m; a wheel is looked for this far from where it was
 CORNER_REACH = 0.04  # m; how far from a corner the planned face may count
-CORNER_PLANNED = 0.008  # m; a plan this near to a corner counts on both faces
-CORNER_MEASURED = 0.010  # m; a wheel this near to a corner gets there at once
+# A plan this near to a corner counts on both faces: m, and at most so much of the wheel's radius,
+# which would else be well up a riser that it is still meant to lean beside.
+CORNER_PLANNED, CORNER_SHARE = 0.008, 0.16
+CORNER_MEASURED = 1.25  # times that; a wheel this near to a corner gets there at once
 BEFORE, AFTER, BOTH = 0, 1, 2  # faces of a corner that a wheel leans on
 WIDEST = math.radians(80.0)  # half of the widest cone
 _BESIDE = 1e-6  # m
@@ -58,8 +60,9 @@ def support(
     far the force acts from the wheel's centre [m] (the radius; 0 in a corner), and the normals of
     the face before and after a corner (both the same elsewhere).
     """
+    near = min(CORNER_PLANNED, CORNER_SHARE * path.radius)
     for corner in path.corners:
-        if abs(planned - corner) >= CORNER_PLANNED or abs(measured - corner) >= CORNER_MEASURED:
+        if abs(planned - corner) >= near or abs(measured - corner) >= CORNER_MEASURED * near:
             continue
         (ax, az), (bx, bz) = path.normal(corner - _BESIDE), path.normal(corner + _BESIDE)
         if lean == BOTH:

@@ -5,6 +5,7 @@ In which order they are tried is the strategy's (`strategy.py`).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -72,6 +73,11 @@ class Solved:
         return float(self.nodes.margins.firm_com_margin.min())
 
     @property
+    def torque_share(self) -> float:
+        """Largest static torque of any motor, over its limit."""
+        return self.nodes.margins.torque_share
+
+    @property
     def bad(self) -> Ints:
         """Nodes at which a check of the certificate is violated most."""
         progress = path_parameter(self.nodes.s, self.nodes.body)
@@ -92,12 +98,14 @@ class Blocked:
         stops: Where loose searches end: the place from the start, and others farther on.
         opened: Whether a search came through at all.
         weak: Motors whose torque a found path exceeded.
+        share: What that path takes of a motor's torque, at most.
     """
 
     reached: Place | None
     opened: bool
     weak: Motor | None = None
     stops: tuple[Place, ...] = ()
+    share: float = math.inf
 
 
 def path_planner(
@@ -119,6 +127,8 @@ class PathPlanner(PathProblem):
     """A problem and the ways to its answer."""
 
     searches: Searches = field(default_factory=dict)
+    # What came of attempts, by them and whether they were made within torques.
+    tried: dict[tuple[Attempt, bool], Solved | Blocked] = field(default_factory=dict, init=False)
 
     def find(
         self,
@@ -136,7 +146,14 @@ class PathPlanner(PathProblem):
         return passes(self, piece, bounds, fine, roll_back, self.searches)
 
     def attempt(self, how: Attempt) -> Solved | Blocked:
-        """What comes of one attempt.
+        """What comes of one attempt, which is made once."""
+        key = (how, self.torques)
+        if key not in self.tried:
+            self.tried[key] = self._attempt(how)
+        return self.tried[key]
+
+    def _attempt(self, how: Attempt) -> Solved | Blocked:
+        """Make an attempt.
 
         With weights of the user's the lattice is searched for them and for the default ones, and
         the path that costs less is taken: heavy weights lead the lattice, whose costs are rougher
@@ -171,7 +188,19 @@ class PathPlanner(PathProblem):
     @cached_property
     def within_torques(self) -> PathPlanner:
         """The same problem, searched so that every pose of the search is held by the motors."""
-        return replace(self, torques=True)
+        return self._searched(torques=True)
+
+    @cached_property
+    def regardless(self) -> PathPlanner:
+        """The same problem, searched without regard to torques, as every question is at first."""
+        return self._searched(torques=False)
+
+    def _searched(self, *, torques: bool) -> PathPlanner:
+        if torques == self.torques:
+            return self
+        other = replace(self, torques=torques)
+        other.tried = self.tried
+        return other
 
     def with_room(self, room: Room, in_search: float = IN_SEARCH) -> PathPlanner:
         """The same problem, of which paths keep more than their bounds, poses of the search a share
@@ -222,7 +251,9 @@ class PathPlanner(PathProblem):
             if stage is not None:
                 found = repair(self, found, bad, stage)
         worst = found.s[int(found.margins.least_slack.argmin())]
-        return Blocked((float(worst[0]), float(worst[1])), True, found.margins.overloaded)
+        weak = found.margins.overloaded
+        share = found.margins.torque_share if weak else math.inf
+        return Blocked((float(worst[0]), float(worst[1])), True, weak, share=share)
 
     def _certified(self, nodes: Refined) -> Solved:
         """The path with its certificate, passed or not."""

@@ -67,6 +67,11 @@ class Limit(Model):
     available: float
     quantity: str = ""
     unit: str = ""
+    confirmed: tuple[float, float] | None = Field(
+        None,
+        description="values asked of all of planning: with the first there is no plan, with the "
+        "second there is one, with everything else as it is",
+    )
 
 
 class Problem(Model):

@@ -2,12 +2,15 @@
 
 1. STRICT: one coarse search with bounds that the finished path keeps. Nine of ten end here.
 2. LOOSE: bounds broken by as much as rounding to the lattice takes; beside it a probe whether even
-   the loosest bounds let a search through. If not, the terrain is impossible.
+   the loosest bounds let a search through.
 3. FINE: the loosest bounds, a finer lattice, and wheels that may roll back; the first path counts.
+4. FINEST: where no coarse search comes through. Where the CoM has but a few centimetres, as down
+   steep stairs with all knees back, a coarse lattice has no pose in them at all.
 
-A path of the first two steps with little CoM margin is compared with what the next step finds.
-Where motors are too weak for the path found, all of it is done again with torques looked at in the
-search; where the user's weights find none, again with the default weights.
+A path of the first two steps with little CoM margin, or motors that have next to nothing to spare,
+is compared with what the next step finds.
+Where motors are too weak for the path found, or all but so, all of it is done again with torques
+looked at in the search; where the user's weights find none, again with the default weights.
 """
 
 from __future__ import annotations
@@ -23,6 +26,7 @@ from .path_planner import Attempt, Blocked, PathPlanner, Solved
 from .threads import race
 
 THIN = 0.01  # m; CoM margin of a path that is compared with others
+HEAVY = 0.85  # of a motor's torque; a path that takes more is compared with one that spares motors
 COARSE = 1.7  # lattice refinement of all but the first and the finest attempt
 
 AT_ONCE = Attempt(2.0, STRICT)
@@ -31,6 +35,7 @@ POSSIBLE = Attempt(COARSE, LOOSEST, roll_back=True, probe=True)
 MOST_FORGIVING = Attempt(COARSE, LOOSEST)
 FINER = Attempt(1.4, LOOSER)
 ROLLING_BACK = Attempt(COARSE, LOOSE, roll_back=True)
+FINEST = Attempt(1.0, LOOSE)
 
 Tried = dict[Attempt, Solved | Blocked]
 
@@ -44,11 +49,23 @@ def solve(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
     """
     found = _search(planner, pool)
     if isinstance(found, Solved):
-        return found
+        return _lighter(planner, found, pool)
     if found.weak and not planner.torques:
         held = solve(planner.within_torques, pool)
-        return held if isinstance(held, Solved) else replace(held, weak=held.weak or found.weak)
+        if isinstance(held, Solved):
+            return held
+        return replace(held, weak=held.weak or found.weak, share=min(held.share, found.share))
     return solve(planner.unweighted, pool) if planner.unweighted else found
+
+
+def _lighter(planner: PathPlanner, found: Solved, pool: Executor) -> Solved:
+    """The path `found`, or one that spares the motors where that one all but overloads them."""
+    if planner.torques or found.torque_share <= HEAVY:
+        return found
+    held = _search(planner.within_torques, pool)
+    if isinstance(held, Solved) and held.torque_share < found.torque_share:
+        return held
+    return found
 
 
 def quick(planner: PathPlanner) -> Solved | Blocked:
@@ -92,8 +109,8 @@ def _search(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
     tried: Tried = {}
     _make(planner, pool, [AT_ONCE], tried)
     best = _best(tried)
-    if best is not None and best.margin > THIN:
-        return best
+    if best is not None and (_sound(best) or (best.margin > THIN and not planner.torques)):
+        return best  # what is heavy is searched for anew within torques
     if best is None:
         at_once = tried[AT_ONCE]
         assert isinstance(at_once, Blocked)
@@ -101,7 +118,8 @@ def _search(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
             return at_once
         obstructions, closed = _obstructions_ahead(planner, at_once, pool)
         if closed:
-            return Blocked(obstructions[0], False, stops=obstructions)
+            blocked = Blocked(obstructions[0], False, stops=obstructions)
+            return _looked_at_closely(planner, blocked)
     else:
         obstructions = ()
 
@@ -120,7 +138,19 @@ def _search(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
         best = _best(tried)
         if best is not None:
             return best
-    return _blocked(tried, obstructions or ((forgiving.reached,) if forgiving.reached else ()))
+    blocked = _blocked(tried, obstructions or ((forgiving.reached,) if forgiving.reached else ()))
+    return blocked if blocked.opened else _looked_at_closely(planner, blocked)
+
+
+def _looked_at_closely(planner: PathPlanner, blocked: Blocked) -> Solved | Blocked:
+    """What the finest lattice makes of a course that is closed to coarse ones."""
+    around = pieces(planner, blocked.stops)
+    if not around[0].whole and not all(
+        planner.passes(one, FINEST.fine, FINEST.bounds) for one in around
+    ):
+        return blocked
+    finest = planner.attempt(FINEST)
+    return finest if isinstance(finest, Solved) or finest.opened else blocked
 
 
 def _make(
@@ -135,10 +165,15 @@ def _make(
                 break
 
 
+def _sound(path: Solved) -> bool:
+    """Whether a path is neither thin nor heavy, so that none is compared with it."""
+    return path.margin > THIN and path.torque_share <= HEAVY
+
+
 def _best(tried: Tried) -> Solved | None:
-    """The path with the most CoM margin; of paths alike the one found first."""
+    """A sound path if there is one, with the most CoM margin; of such the one found first."""
     paths = [answer for answer in tried.values() if isinstance(answer, Solved)]
-    return max(paths, key=lambda path: path.margin, default=None)
+    return max(paths, key=lambda path: (_sound(path), path.margin), default=None)
 
 
 def _opened(tried: Tried) -> bool:
@@ -155,6 +190,7 @@ def _blocked(tried: Tried, obstructions: tuple[Place, ...]) -> Blocked:
         _opened(tried),
         next((one.weak for one in blocked if one.weak), None),
         obstructions,
+        min(one.share for one in blocked),
     )
 
 

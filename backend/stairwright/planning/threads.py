@@ -60,6 +60,11 @@ def search_threads() -> Executor:
     return _at_once.get() or _pool(os.getpid())
 
 
+def in_this_thread() -> Executor:
+    """Makes what it is given one after another, in the thread that gives it."""
+    return _AtOnce()
+
+
 @contextmanager
 def race(pool: Executor, ask: Callable[[T], R], items: Collection[T]) -> Iterator[Iterator[R]]:
     """Answers in the order of `items`, worked on at once; those not taken in the end are abandoned.

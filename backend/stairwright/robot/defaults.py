@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .parts import CollisionPoints, Gains
+from .parts import (
+    MOST_DAMPING,
+    MOST_STIFFNESS,
+    MOST_WHEEL_DAMPING,
+    CollisionPoints,
+    Gains,
+)
 
 if TYPE_CHECKING:
     from .description import Robot
@@ -32,9 +38,9 @@ def suitable_gains(robot: Robot) -> Gains:
     free = (leg.wheel.inertia[1] + leg.wheel_motor.armature) / _PERIOD
     wheel = _TUNED.wheel_damping * mass * (leg.wheel.radius / _RADIUS) ** 2
     return Gains(
-        joint_stiffness=_TUNED.joint_stiffness * mass * length,
-        joint_damping=_TUNED.joint_damping * mass * length**1.5,
-        wheel_damping=min(wheel, _STABLE * free),
+        joint_stiffness=min(_TUNED.joint_stiffness * mass * length, MOST_STIFFNESS),
+        joint_damping=min(_TUNED.joint_damping * mass * length**1.5, MOST_DAMPING),
+        wheel_damping=min(wheel, _STABLE * free, MOST_WHEEL_DAMPING),
     )
 
 

@@ -221,12 +221,18 @@ class JointFrame(Model):
     offset: Angle = Field(0.0, description="our angle where theirs is 0 [rad]")
 
 
+# Largest gains: joint stiffness [Nm/rad], joint damping, wheel damping [Nm s/rad].
+MOST_STIFFNESS, MOST_DAMPING, MOST_WHEEL_DAMPING = 1e6, 1e5, 1e4
+
+
 class Gains(Model):
     """Feedback gains that suit this robot; the controller's settings may override them."""
 
-    joint_stiffness: float = Field(ge=0.0, le=5000.0, description="thigh and calf [Nm/rad]")
-    joint_damping: float = Field(ge=0.0, le=500.0, description="thigh and calf [Nm s/rad]")
-    wheel_damping: float = Field(ge=0.0, le=100.0, description="wheel rate feedback [Nm s/rad]")
+    joint_stiffness: float = Field(ge=0.0, le=MOST_STIFFNESS, description="thigh and calf [Nm/rad]")
+    joint_damping: float = Field(ge=0.0, le=MOST_DAMPING, description="thigh and calf [Nm s/rad]")
+    wheel_damping: float = Field(
+        ge=0.0, le=MOST_WHEEL_DAMPING, description="wheel rate feedback [Nm s/rad]"
+    )
 
 
 class CollisionPoints(Model):

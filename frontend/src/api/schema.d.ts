@@ -1752,6 +1752,11 @@ export interface components {
              * @default
              */
             unit: string;
+            /**
+             * Confirmed
+             * @description values asked of all of planning: with the first there is no plan, with the second there is one, with everything else as it is
+             */
+            confirmed?: number[] | null;
         };
         /**
          * Link

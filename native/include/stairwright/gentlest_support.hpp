@@ -49,7 +49,7 @@ class WheelLoads {
     std::optional<std::array<WheelLoad, 2>> at(int way, double com_x) const;
 
   private:
-    static constexpr int kSamples = 9;
+    static constexpr int kSamples = 17;
     struct Sample {
         std::array<WheelLoad, 2> loads;
         bool held = false;

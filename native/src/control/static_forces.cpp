@@ -10,12 +10,14 @@ namespace stairwright::control {
 namespace {
 
 // Shares of the friction and largest normal force of a wheel in weights, tried in turn until the forces hold the
-// robot: little friction first, but not at the price of pinching.
+// robot: little friction first, but not at the price of pinching. Near the edge of what a share allows, wheels on
+// opposite faces may press far harder than they must, even push the robot down: more friction is worth that.
 struct Attempt {
     double friction_share, load_limit;
 };
 constexpr Attempt kAttempts[] = {{0.6, 0.6}, {0.75, 0.6}, {0.9, 0.6}, {1.0, 0.6}, {1.0, 10.0}};
 constexpr double kHeld = 0.01;    // of the weight; forces that miss less than this hold it
+constexpr double kWorthMore = 0.85;  // more friction is taken where the forces' squares fall below this share
 constexpr double kMoment = 20.0;  // 1/m^2, weight of the moment against the forces
 constexpr double kSmall = 1e-4;   // weight of the forces' size
 
@@ -68,44 +70,57 @@ void rest(const WheelPath& path, const Pose& pose, const std::array<Lean, 2>& le
 // In how many ways a wheel there may lean on the ground.
 int ways(const WheelPath& path, double s) {
     const auto& corners = path.corners();
-    for (std::size_t k = path.corner_from(s - kCornerPlanned); k < corners.size() && corners[k] <= s + kCornerPlanned; ++k)
-        if (std::abs(s - corners[k]) < kCornerPlanned) return 3;
+    const double near = corner_planned(path);
+    for (std::size_t k = path.corner_from(s - near); k < corners.size() && corners[k] <= s + near; ++k)
+        if (std::abs(s - corners[k]) < near) return 3;
     return 1;
+}
+
+// The smallest forces of one attempt over all ways of touching the ground.
+struct Resting {
+    bool held = false;
+    double value = std::numeric_limits<double>::infinity();  // their squares [N^2]; where none hold, of what they miss
+    StaticForces forces;
+};
+
+Resting resting(const WheelPath& path, const Pose& pose, double friction, const Attempt& attempt) {
+    const int front = ways(path, pose.places[0]), rear = ways(path, pose.places[1]);
+    Resting out;
+    Trial trial;
+    for (int way = 0; way < front * rear; ++way) {
+        const std::array<Lean, 2> lean = {static_cast<Lean>(2 - way % front), static_cast<Lean>(2 - way / front)};
+        // What leans on both faces takes no friction: else one of them would do.
+        const double usable = attempt.friction_share * friction;
+        rest(path, pose, lean, {lean[0] == Lean::both && front > 1 ? 0.0 : usable, lean[1] == Lean::both && rear > 1 ? 0.0 : usable},
+             attempt.load_limit, trial);
+        const bool holds = trial.missed < (kHeld * pose.weight) * (kHeld * pose.weight);
+        double size = 0.0;
+        for (const double f : trial.forces) size += f * f;
+        const double value = holds ? size : trial.missed;
+        if (holds < out.held || (holds == out.held && value >= out.value)) continue;
+        out.held = holds, out.value = value;
+        out.forces.friction_share = attempt.friction_share, out.forces.lean = lean;
+        for (int pair = 0; pair < 2; ++pair) {
+            const Vec2 normal = trial.normal[pair];
+            const double t = trial.forces[4 * pair] + trial.forces[4 * pair + 2];
+            const double n = trial.forces[4 * pair + 1] + trial.forces[4 * pair + 3];
+            out.forces.force[pair] = {t * normal.z + n * normal.x, n * normal.z - t * normal.x};
+        }
+    }
+    return out;
 }
 
 }  // namespace
 
 StaticForces static_forces(const WheelPath& path, double weight, double friction, std::array<double, 2> places, Vec2 com) {
     const Pose pose = {places, com, weight};
-    const int front = ways(path, places[0]), rear = ways(path, places[1]);
-    StaticForces out;
-    Trial trial;
+    Resting best;
     for (const Attempt& attempt : kAttempts) {
-        bool held = false;
-        double best = std::numeric_limits<double>::infinity();
-        for (int way = 0; way < front * rear; ++way) {
-            const std::array<Lean, 2> lean = {static_cast<Lean>(2 - way % front), static_cast<Lean>(2 - way / front)};
-            // What leans on both faces takes no friction: else one of them would do.
-            const double usable = attempt.friction_share * friction;
-            rest(path, pose, lean, {lean[0] == Lean::both && front > 1 ? 0.0 : usable, lean[1] == Lean::both && rear > 1 ? 0.0 : usable},
-                 attempt.load_limit, trial);
-            const bool holds = trial.missed < (kHeld * weight) * (kHeld * weight);
-            double size = 0.0;
-            for (const double f : trial.forces) size += f * f;
-            const double value = holds ? size : trial.missed;
-            if (holds < held || (holds == held && value >= best)) continue;
-            held = holds, best = value;
-            out.friction_share = attempt.friction_share, out.lean = lean;
-            for (int pair = 0; pair < 2; ++pair) {
-                const Vec2 normal = trial.normal[pair];
-                const double t = trial.forces[4 * pair] + trial.forces[4 * pair + 2];
-                const double n = trial.forces[4 * pair + 1] + trial.forces[4 * pair + 3];
-                out.force[pair] = {t * normal.z + n * normal.x, n * normal.z - t * normal.x};
-            }
-        }
-        if (held) break;
+        const Resting next = resting(path, pose, friction, attempt);
+        if (best.held && !(next.held && next.value < kWorthMore * best.value)) break;
+        best = next;
     }
-    return out;
+    return best.forces;
 }
 
 }  // namespace stairwright::control

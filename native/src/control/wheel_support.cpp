@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kWindow = 0.15;           // m; a wheel is looked for this far from where it was
 constexpr double kCornerReach = 0.04;      // m; how far from a corner the planned face may count
-constexpr double kCornerMeasured = 0.010;  // m; a wheel this near to a corner gets there at once
+constexpr double kCornerMeasured = 1.25;   // times how near the plan must be; a wheel this near gets there at once
 constexpr double kWidest = 80.0 * std::numbers::pi / 180.0;  // half of the widest cone
 constexpr double kBeside = 1e-6;           // m
 
@@ -42,10 +42,11 @@ Vec2 face_normal(const WheelPath& path, double measured, double planned) {
 
 WheelSupport wheel_support(const WheelPath& path, double measured, double planned, double friction, Lean lean) {
     const auto& corners = path.corners();
-    for (std::size_t k = path.corner_from(planned - kCornerPlanned); k < corners.size(); ++k) {
+    const double near = corner_planned(path);
+    for (std::size_t k = path.corner_from(planned - near); k < corners.size(); ++k) {
         const double corner = corners[k];
-        if (corner > planned + kCornerPlanned) break;
-        if (std::abs(planned - corner) >= kCornerPlanned || std::abs(measured - corner) >= kCornerMeasured) continue;
+        if (corner > planned + near) break;
+        if (std::abs(planned - corner) >= near || std::abs(measured - corner) >= kCornerMeasured * near) continue;
         const Vec2 a = path.normal(corner - kBeside), b = path.normal(corner + kBeside);
         if (lean == Lean::both) {
             const Vec2 sum = a + b;

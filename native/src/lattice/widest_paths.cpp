@@ -164,12 +164,13 @@ bool WidestPaths::widen(const Problem& problem, const Cell& cell, const ComInter
     for (int k = 0; k < found; ++k) {
         const int at = wider.at[k];
         const std::uint8_t least = std::min(wider.width[k], result[at]), so_far = ways[at];
-        if (least > so_far && so_far > 0) {
+        if (least <= so_far) continue;
+        if (so_far > 0 && !torques_) {  // possible, as is known
             ways[at] = least;
             best[number] = std::max(best[number], least);
             changed = true;
+            continue;
         }
-        if (least == 0 || so_far > 0) continue;
         wider.at[count] = at;
         wider.width[count] = least;
         wider.com[count] = wider.com[k];
@@ -185,14 +186,16 @@ bool WidestPaths::widen(const Problem& problem, const Cell& cell, const ComInter
                {wider.x.data(), wider.z.data(), wider.cos.data(), wider.sin.data(), count}, wider.clear.data());
     for (int k = 0; k < count; ++k) {
         if (wider.clear[k] == 0) continue;
+        const int at = wider.at[k];
+        std::uint8_t least = wider.width[k];
         if (torques_) {
             const double sine = wider.sin[k], cosine = wider.cos[k];
             const Body body = {front.x + wider.x[k], front.z + wider.z[k], std::atan2(sine, cosine)};
-            if (!torques_->hold(problem, cell, number, com, body, {cosine, sine}, wider.com[k])) continue;
+            least = std::min(least, torques_->quality(problem, cell, number, com, body, {cosine, sine}, wider.com[k]));
+            if (least <= ways[at]) continue;
         }
-        const int at = wider.at[k];
-        ways[at] = wider.width[k];
-        best[number] = std::max(best[number], wider.width[k]);
+        ways[at] = least;
+        best[number] = std::max(best[number], least);
         first[number] = std::min(first[number], at);
         last[number] = std::max(last[number], at + 1);
         changed = true;

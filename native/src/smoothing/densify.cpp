@@ -116,4 +116,17 @@ std::vector<NodeIntervals> intervals_along(const WheelPath& path, std::span<cons
     return out;
 }
 
+std::vector<std::vector<WheelLoads>> loads_along(const WheelPath& path, std::span<const Node> nodes, std::span<const double> changes,
+                                                 double friction, double lag, double weight) {
+    std::vector<std::vector<WheelLoads>> out(nodes.size());
+    const auto loads = [&](WheelPlaces s) { return WheelLoads(path, s, friction, lag, pair_interval(path, s, friction), weight); };
+    for (std::size_t k = 0; k < nodes.size(); ++k) out[k].push_back(loads(nodes[k].s));
+    for (const double at : changes) {
+        const WheelLoads there = loads(interpolate(nodes, at).s);
+        const std::size_t before = whole_part(at, nodes.size() - 1);
+        for (const std::size_t k : {before, std::min(before + 1, nodes.size() - 1)}) out[k].push_back(there);
+    }
+    return out;
+}
+
 }  // namespace stairwright::smoothing

@@ -108,10 +108,9 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
         contacts.push_back({problem.path.contact(s.front), problem.path.contact(s.rear)});
         bodies.push_back(body);
     }
-    std::vector<WheelLoads> loads;
+    std::vector<std::vector<WheelLoads>> loads;
     if (problem.torques)
-        for (std::size_t k = 0; k < n; ++k)
-            loads.emplace_back(problem.path, nodes[k].s, problem.friction, problem.lag, intervals[k].full, problem.robot.mass * kGravity);
+        loads = loads_along(problem.path, nodes, changes, problem.friction, problem.lag, problem.robot.mass * kGravity);
     const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, intervals, loads, fixed,
                                      objective(problem, spacing, hop / kUsualSpacing)};
     smooth(smoothing, bodies, kIterations);

@@ -47,21 +47,22 @@ void torque_residuals(const SmoothingProblem& problem, std::size_t node, const P
 // How far static torques are above what motors shall hold, by front thigh, calf, wheel, then rear.
 void torque_limit_residuals(const SmoothingProblem& problem, std::size_t node, const Posture& posture, double* out) {
     const MarginTerm& term = problem.objective.torque_room;
-    const WheelLoads& loads = problem.loads[node];
     std::fill(out, out + 6, 0.0);
-    for (int way = 0; way < loads.ways(); ++way) {
-        const auto load = loads.at(way, posture.com.x);
-        if (!load) continue;
-        for (const int pair : {kFront, kRear}) {
-            const Leg& leg = problem.robot.legs[pair].leg;
-            const LegTorques torques = static_torques(leg, posture.legs[pair], (*load)[pair]);
-            const auto lacking = [&](double torque, const Motor& motor) {
-                return hinge(1.0 - std::abs(torque) / motor.torque, term, problem.objective.torque_hard);
-            };
-            double* of_leg = out + 3 * pair;
-            of_leg[0] = std::max(of_leg[0], lacking(torques.thigh, leg.thigh_motor));
-            of_leg[1] = std::max(of_leg[1], lacking(torques.calf, leg.calf_motor));
-            of_leg[2] = std::max(of_leg[2], lacking(torques.wheel, leg.wheel_motor));
+    for (const WheelLoads& loads : problem.loads[node]) {
+        for (int way = 0; way < loads.ways(); ++way) {
+            const auto load = loads.at(way, posture.com.x);
+            if (!load) continue;
+            for (const int pair : {kFront, kRear}) {
+                const Leg& leg = problem.robot.legs[pair].leg;
+                const LegTorques torques = static_torques(leg, posture.legs[pair], (*load)[pair]);
+                const auto lacking = [&](double torque, const Motor& motor) {
+                    return hinge(1.0 - std::abs(torque) / motor.torque, term, problem.objective.torque_hard, kFirmTorque);
+                };
+                double* of_leg = out + 3 * pair;
+                of_leg[0] = std::max(of_leg[0], lacking(torques.thigh, leg.thigh_motor));
+                of_leg[1] = std::max(of_leg[1], lacking(torques.calf, leg.calf_motor));
+                of_leg[2] = std::max(of_leg[2], lacking(torques.wheel, leg.wheel_motor));
+            }
         }
     }
 }

@@ -11,11 +11,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from concurrent.futures import Executor
-from dataclasses import dataclass
 from functools import cache, partial
 
 import numpy as np
 
+from stairwright.planning.infeasibility.confirmation import (
+    Beyond,
+    Cause,
+    Ranked,
+    confirmed,
+    strengthened,
+)
 from stairwright.planning.infeasibility.relaxation import (
     AMPLE,
     CLOSE,
@@ -26,20 +32,13 @@ from stairwright.planning.infeasibility.relaxation import (
     leads_past,
     motor_torque,
 )
-from stairwright.planning.lattice.body_lattice import EXACT
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
-from stairwright.planning.path_planner import Blocked, Path, PathPlanner, Solved
+from stairwright.planning.path_planner import Blocked, Path, PathPlanner
 from stairwright.planning.plan import Limit, Problem
 from stairwright.planning.threads import race, search_threads
 
-Cause = tuple[Candidate, float]  # what opens the way, and by which factor
-Ranked = list[Cause]
-
 _ROUGH = 1.3  # relative precision of a factor before other quantities were asked
-_MORE = (1.005, 1.05, 1.15, 1.3, 1.7, 2.5, 4.0)  # on the least factor: planning is tried there
-_BETWEEN = 1.05  # of them is left out where not even a search that forgives nothing finds a way
-_RIVALS = 2  # candidates for which planning is tried
 _ASKED = 2  # times that candidates are ranked anew, without those that led nowhere
 
 
@@ -67,10 +66,10 @@ def _cause(
     """The single change that opens the way, if one does."""
     if blocked.weak and blocked.opened:
         # A search came through: a little more torque is what its path most likely lacks.
-        motors = [(motor_torque(planner.robot, blocked.weak), 1.0)]
-        answer = _confirmed(planner, motors, [], pool)
-        if answer is not None and not isinstance(answer, Beyond):
-            return answer
+        motors = motor_torque(planner.robot, blocked.weak)
+        cause = strengthened(planner, motors, blocked.share, pool)
+        if cause is not None:
+            return cause
     candidates = candidates_of(planner)
     places = list(blocked.stops)
     if not _whole(planner, places) and leads_past(planner, places):
@@ -105,7 +104,7 @@ def _answered(
     while True:
         ranked = _ranked(planner, candidates, places, pool)
         meanwhile()
-        answer = _confirmed(planner, ranked, places, pool)
+        answer = confirmed(planner, ranked, places, pool)
         if not isinstance(answer, Beyond):
             return ranked, answer
         if any(piece.has(planner, answer.place) for piece in pieces(planner, places)):
@@ -203,58 +202,6 @@ def _whole(planner: PathPlanner, places: list[Place]) -> bool:
     return pieces(planner, places)[0].whole
 
 
-@dataclass(frozen=True)
-class Beyond:
-    """Where a way ends that was thought open."""
-
-    place: Place
-
-
-def _confirmed(
-    planner: PathPlanner, ranked: Ranked, places: list[Place], pool: Executor
-) -> Cause | Beyond | None:
-    """The least factor with which a certified plan exists, and on which of the `ranked`.
-
-    Factors from those told on are tried, the least first, two at once. `_BETWEEN` may be left out:
-    those before and after it are within 15 % of each other.
-
-    Args:
-        course: The question.
-        ranked: Candidates and factors.
-        places: What the factors are known to lead past.
-        pool: Who tries.
-    """
-    tries = sorted(
-        {(min(ratio * more, one.most), k)
-         for k, (one, ratio) in enumerate(ranked[:_RIVALS]) for more in _MORE}
-    )  # fmt: skip
-    whole = _whole(planner, places)
-    low: dict[int, float] = {}
-
-    def lead(one: tuple[float, int]) -> Solved | Blocked | None:
-        ratio, k = one
-        candidate, least = ranked[k]
-        if ratio == least * _BETWEEN and not candidate.opens(planner, places, ratio, EXACT):
-            return None
-        return candidate.attempt(planner, ratio)
-
-    with race(pool, lead, tries) as ends:
-        for (ratio, k), end in zip(tries, ends, strict=True):
-            if isinstance(end, Solved):
-                break
-            if end is None:
-                continue
-            if not (whole or low or end.opened):
-                return Beyond(end.reached or planner.ends[0].wheels)
-            low[k] = ratio
-        else:
-            return None
-    candidate = ranked[k][0]
-    if k in low:
-        ratio = _narrow(partial(candidate.solves, planner), low[k], ratio, candidate.sure, pool)[1]
-    return candidate, ratio
-
-
 def undiagnosed(planner: PathPlanner, blocked: Blocked) -> Problem:
     """Where the wheels end, without looking for what would open the way."""
     at, progress, stop = _end(planner, blocked.reached)
@@ -280,8 +227,8 @@ def _problem(planner: PathPlanner, reached: Place | None, cause: Cause | None) -
             "a profile of a fiftieth of the height would change that"
         )
         return Problem(kind="reach", at=at, progress=progress, message=message)
-    candidate, ratio = cause
-    value = candidate.at(ratio)
+    candidate = cause.candidate
+    value = candidate.at(cause.upper)
     unit = "" if candidate.unit == "1" else f" {candidate.unit}"
     message = (
         f"needs {candidate.quantity} {value:.3g}{unit}{candidate.given}, "
@@ -292,5 +239,6 @@ def _problem(planner: PathPlanner, reached: Place | None, cause: Cause | None) -
         limit=Limit(
             needed=value, available=candidate.available,
             quantity=candidate.quantity + candidate.given, unit=candidate.unit,
+            confirmed=(candidate.at(cause.lower), candidate.at(cause.upper)),
         ),
     )  # fmt: skip

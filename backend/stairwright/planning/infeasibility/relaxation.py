@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -14,7 +14,8 @@ from stairwright.planning.lattice.search import Place
 from stairwright.planning.path_planner import Blocked, PathPlanner, Solved, path_planner
 from stairwright.planning.smoothing.node_margins import JOINTS, Motor
 from stairwright.planning.standing import NoStandingPose
-from stairwright.planning.strategy import quick
+from stairwright.planning.strategy import quick, solve
+from stairwright.planning.threads import in_this_thread
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
@@ -25,6 +26,7 @@ STRONGEST = 1000.0  # Nm; the most that a motor is described with
 AMPLE = 1.5  # friction that leaves nothing to wish for
 CLOSE = 0.02  # relative precision of the value that searches tell
 _FLAT = 0.02  # of a profile's height
+_KEPT = 4
 _FINE = 1.7  # lattice of the questions, coarser than that of plans
 
 
@@ -39,7 +41,8 @@ class Candidate:
     limit: float
     change: Callable[[PathPlanner, float], PathPlanner]
     given: str = ""  # what else the change needs
-    sure: float = 1.15  # relative precision of a value that only whole plans can tell
+    # Questions asked last, by their factor: what is tried anew has its tables and its first tries.
+    changed: dict[float, PathPlanner] = field(default_factory=dict, compare=False, repr=False)
 
     def at(self, ratio: float) -> float:
         """The value that differs from what there is by the factor `ratio` > 1."""
@@ -69,11 +72,32 @@ class Candidate:
 
     def attempt(self, planner: PathPlanner, ratio: float) -> Solved | Blocked:
         """What comes of a quick attempt at a plan with the quantity changed so."""
-        try:
-            changed = self.change(planner, self.at(ratio))
-        except NoStandingPose:
-            return Blocked(None, False)
-        return quick(changed)
+        return self._planned(planner, ratio, quick)
+
+    def feasible(self, planner: PathPlanner, ratio: float) -> bool:
+        """Whether all of planning, asked anew with the quantity changed so, has a plan."""
+
+        def ask(changed: PathPlanner) -> Solved | Blocked:
+            return solve(changed.regardless, in_this_thread())
+
+        return isinstance(self._planned(planner, ratio, ask), Solved)
+
+    def _planned(
+        self,
+        planner: PathPlanner,
+        ratio: float,
+        how: Callable[[PathPlanner], Solved | Blocked],
+    ) -> Solved | Blocked:
+        changed = self.changed.get(ratio)
+        if changed is None:
+            try:
+                changed = self.change(planner, self.at(ratio))
+            except NoStandingPose:
+                return Blocked(None, False)
+            for old in list(self.changed)[: 1 - _KEPT]:
+                self.changed.pop(old, None)
+            self.changed[ratio] = changed
+        return how(changed)
 
     def solves(self, planner: PathPlanner, ratio: float) -> bool:
         """Whether that leads to a certified plan."""
@@ -115,7 +139,6 @@ def motor_torque(robot: Robot, motor: Motor) -> Candidate:
     return Candidate(
         "torque", f"{motor} torque", "Nm", most, STRONGEST,
         lambda c, v: _with_robot(c, _stronger(robot, motor, v / most)),
-        sure=1.02,
     )  # fmt: skip
 
 

@@ -110,9 +110,14 @@ class NodeMargins:
         return least
 
     @property
+    def torque_share(self) -> float:
+        """Largest static torque of any motor, over its limit."""
+        return max(float(self.torque_shares(motor).max()) for motor in JOINTS)
+
+    @property
     def torque_excess(self) -> float:
         """Largest share of a motor's torque that standing takes beyond what it may."""
-        return max(float(self.torque_shares(motor).max()) for motor in JOINTS) - FIRM_TORQUE
+        return self.torque_share - FIRM_TORQUE
 
     @property
     def overloaded(self) -> Motor | None:

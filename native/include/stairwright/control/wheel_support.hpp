@@ -8,13 +8,16 @@
 // normals, whose apex is the wheel's centre.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "stairwright/wheel_path.hpp"
 
 namespace stairwright::control {
 
-inline constexpr double kCornerPlanned = 0.008;  // m; a plan this near to a corner counts on both faces
+// A plan this near to a corner counts on both faces [m]; less for wheels smaller than the paper's, which would
+// else be well up a riser that they are still meant to lean beside.
+inline double corner_planned(const WheelPath& path) { return std::min(0.008, 0.16 * path.radius()); }
 
 enum class Lean { before = 0, after = 1, both = 2 };
 

@@ -1,6 +1,8 @@
-// Poses whose static torques the motors do not hold: a bound of the search for robots that are weak for their weight.
+// What static torques make of a pose: a bound of the search, and a quality of its poses, for robots that are weak for
+// their weight. Ways are the wider the more of their torque the motors have to spare.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -16,9 +18,10 @@ class TorqueLimits {
     TorqueLimits(const WheelPath& path, double friction, double lag, double share, std::size_t cells)
         : path_(path), friction_(friction), lag_(lag), share_(share), loads_(cells) {}
 
-    // Whether the motors hold the trunk at `body` with the wheels of `cell`, number `number`, whose CoM is at `com_x`.
-    bool hold(const Problem& problem, const Cell& cell, std::size_t number, const ComIntervals& com, const Body& body,
-              Turn pitch, double com_x);
+    // Quality of the trunk's pose `body` with the wheels of `cell`, number `number`, whose CoM is at `com_x`: 0 where
+    // the motors do not hold it.
+    std::uint8_t quality(const Problem& problem, const Cell& cell, std::size_t number, const ComIntervals& com, const Body& body,
+                         Turn pitch, double com_x);
 
   private:
     WheelPath path_;

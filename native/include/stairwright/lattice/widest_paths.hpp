@@ -1,8 +1,8 @@
 // First pass of the search: the widest (bottleneck) path to every pose, and so the verdict whether there is one.
 //
 // A move takes one or both wheels to the next sample while the body shifts by up to two lattice steps in each
-// direction. The width of a pose is the least quality (CoM margin, at the reserved friction where that is possible) on
-// the best way to it: one byte a pose, 0 where there is no way.
+// direction. The width of a pose is the least quality (CoM margin, at the reserved friction where that is possible; for
+// weak robots also what motors have to spare) on the best way to it: one byte a pose, 0 where there is no way.
 #pragma once
 
 #include <span>
@@ -27,7 +27,7 @@ class WidestPaths {
 public:
     WidestPaths(const Lattice& lattice, std::size_t cells);
 
-    // Also ask that motors hold every pose; before the first sweep.
+    // Also ask that motors hold every pose, and how easily; before the first sweep.
     void limit_torques(TorqueLimits limits) { torques_ = std::move(limits); }
 
     // One sweep over all cells; true if any changed. Ways begin in cells that `entry` marks, in poses of `begin`;

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "stairwright/gentlest_support.hpp"
 #include "stairwright/smoothing/node_margins.hpp"
 
 namespace stairwright::smoothing {
@@ -19,5 +20,10 @@ std::vector<Node> densify(const WheelPath& path, const RobotModel& robot, std::s
 // there, because the CoM moves linearly.
 std::vector<NodeIntervals> intervals_along(const WheelPath& path, std::span<const Node> nodes,
                                            std::span<const double> changes, double friction, double reserve, double lag);
+
+// What the wheels carry at nodes, by the CoM's x; of each node also what they carry where contacts change beside it. A
+// robot weighs `weight` [N].
+std::vector<std::vector<WheelLoads>> loads_along(const WheelPath& path, std::span<const Node> nodes, std::span<const double> changes,
+                                                 double friction, double lag, double weight);
 
 }  // namespace stairwright::smoothing

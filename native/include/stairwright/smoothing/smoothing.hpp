@@ -47,7 +47,7 @@ struct SmoothingProblem {
     std::span<const WheelCentres> wheels;
     std::span<const WheelCentres> contacts;  // where the wheels touch
     std::span<const NodeIntervals> intervals;
-    std::span<const WheelLoads> loads;  // by node, where motors are weak; else empty
+    std::span<const std::vector<WheelLoads>> loads;  // by node, see loads_along, where motors are weak; else empty
     std::vector<bool> fixed;  // nodes that must not move
     Objective objective;
 };

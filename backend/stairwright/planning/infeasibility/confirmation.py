@@ -1,0 +1,187 @@
+"""What searches say that it takes, confirmed by plans: with as much and with a little more there is
+one, with a little less there is none.
+
+Factors are looked at on a grid of steps of 2 %. With the one that is named, and with the next one,
+planning finds a certified plan; with the one before, all of planning, every attempt of the
+strategy, finds none: the verdict of the planner that is asked, not of a search that stands in for
+it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+from stairwright.planning.infeasibility.relaxation import Candidate
+from stairwright.planning.lattice.body_lattice import EXACT
+from stairwright.planning.lattice.pieces import pieces
+from stairwright.planning.lattice.search import Place
+from stairwright.planning.path_planner import Blocked, PathPlanner, Solved
+from stairwright.planning.smoothing.node_margins import FIRM_TORQUE
+from stairwright.planning.threads import race
+
+Ranked = list[tuple[Candidate, float]]  # candidates, and factors that open the way
+
+_STEP = 1.02
+# Planning is tried so many steps above the least factor, and at the largest one.
+_MORE = (0, 2, 6, 14, 26, 46, 70)
+_BETWEEN = 2  # of them is left out where not even a search that forgives nothing finds a way
+_RIVALS = 2  # candidates for which planning is tried
+_RISES = 6  # times that motors are made stronger, by as much as the path lacks that came of it
+_LOOKS = 7  # times that all of planning is asked, so that an answer comes in time
+
+
+@dataclass(frozen=True)
+class Cause:
+    """What opens the way.
+
+    Attributes:
+        candidate: The quantity.
+        lower: A factor with which all of planning finds no plan.
+        upper: The least factor with which it is known to find one.
+    """
+
+    candidate: Candidate
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """Where a way ends that was thought open."""
+
+    place: Place
+
+
+def confirmed(
+    planner: PathPlanner, ranked: Ranked, places: list[Place], pool: Executor
+) -> Cause | Beyond | None:
+    """The least factor with which a certified plan exists, and of which of the `ranked`.
+
+    Steps from those told on are tried, the least first, two at once, until one has a plan.
+
+    Args:
+        planner: The question.
+        ranked: Candidates and factors.
+        places: What the factors are known to lead past.
+        pool: Who tries.
+    """
+    tries = sorted(
+        {(min(_steps(ratio) + more, _steps(one.most)), k)
+         for k, (one, ratio) in enumerate(ranked[:_RIVALS]) for more in _MORE},
+    )  # fmt: skip
+    whole = pieces(planner, places)[0].whole
+    low: dict[int, int] = {}
+
+    def lead(one: tuple[int, int]) -> Solved | Blocked | None:
+        step, k = one
+        candidate, least = ranked[k]
+        if step == _steps(least) + _BETWEEN and not candidate.opens(
+            planner, places, _ratio(candidate, step), EXACT
+        ):
+            return None
+        return candidate.attempt(planner, _ratio(candidate, step))
+
+    with race(pool, lead, tries) as ends:
+        for (step, k), end in zip(tries, ends, strict=True):
+            if isinstance(end, Solved):
+                break
+            if end is None:
+                continue
+            if not (whole or low or end.opened):
+                return Beyond(end.reached or planner.ends[0].wheels)
+            low[k] = step
+        else:
+            return None
+    return _settled(planner, ranked[k][0], low.get(k, 0), step, pool)
+
+
+def strengthened(
+    planner: PathPlanner, motors: Candidate, share: float, pool: Executor
+) -> Cause | None:
+    """The least factor on the torque of `motors` with which a certified plan exists.
+
+    Args:
+        planner: The question, searched within torques.
+        motors: The quantity.
+        share: What the path takes of their torque that was found without them in mind.
+        pool: Who tries.
+    """
+    low, step = 0, _steps(share / FIRM_TORQUE)
+    for _ in range(_RISES):
+        if step > _steps(motors.most):
+            break
+        end = motors.attempt(planner, _ratio(motors, step))
+        if isinstance(end, Solved):
+            return _settled(planner, motors, low, step, pool)
+        if not end.weak:
+            break
+        # A path that takes more than there is tells how much it would need.
+        low, step = step, max(step + 1, _steps(_ratio(motors, step) * end.share / FIRM_TORQUE))
+    return None
+
+
+def _settled(
+    planner: PathPlanner, candidate: Candidate, low: int, high: int, pool: Executor
+) -> Cause | None:
+    """The step between a plan and none; quick attempts have one at `high`, none at `low`."""
+    most = _steps(candidate.most)
+
+    def quick(step: int) -> bool:
+        return candidate.solves(planner, _ratio(candidate, step))
+
+    def fully(step: int) -> bool:
+        return candidate.feasible(planner, _ratio(candidate, step))
+
+    low, high = _bisected(quick, low, high)
+    known = {0: False}  # what all of planning says, which may differ from quick attempts
+    for look in range(1, _LOOKS + 1):
+        more = min(high + 1, most)
+        new = sorted({low, high, more} - known.keys())
+        with race(pool, fully, new) as answers:
+            known.update(zip(new, answers, strict=True))
+        if known[low]:
+            low, high = max(0, low - 2**look), low
+        elif not known[more]:
+            low, high = more, min(more + 2**look, most)
+            if low == high:
+                return None
+        elif not known[high]:
+            low, high = high, more
+        elif high - low > 1:
+            middle = (low + high) // 2
+            known[middle] = fully(middle)
+            low, high = (low, middle) if known[middle] else (middle, high)
+        else:
+            return Cause(candidate, _ratio(candidate, low), _ratio(candidate, high))
+    # There was not the time to ask on.
+    high = min((step for step, feasible in known.items() if feasible), default=0)
+    low = max((step for step, feasible in known.items() if step < high and not feasible), default=0)
+    return Cause(candidate, _ratio(candidate, low), _ratio(candidate, high)) if high else None
+
+
+def _bisected(enough: Callable[[int], bool], low: int, high: int) -> tuple[int, int]:
+    """Neighbouring steps of which the larger is enough, between `low`, which is not, and `high`.
+
+    What is enough is thought to be near what is needed.
+    """
+    stride = 1
+    while high - low > 1:
+        middle = max(high - stride, (low + high) // 2)
+        if enough(middle):
+            high, stride = middle, 2 * stride
+        else:
+            low, stride = middle, 1
+    return low, high
+
+
+def _steps(ratio: float) -> int:
+    """The least number of steps whose factor is at least `ratio`."""
+    return max(1, math.ceil(math.log(ratio) / math.log(_STEP) - 1e-9))
+
+
+def _ratio(candidate: Candidate, step: int) -> float:
+    """The factor after a number of steps; the last one may be shorter."""
+    return min(_STEP**step, candidate.most)
