@@ -64,7 +64,8 @@ def plan_path(
     planner, found = _best(planners)
     robot = planner.robot
     if isinstance(found, Solved):
-        plan = make_plan(terrain, robot, friction, weights, begun, *planner.document(found.nodes))
+        poses = planner.poses(found.nodes)
+        plan = make_plan(terrain, robot, friction, weights, begun, poses)
         plan = plan.model_copy(update={"certificate": found.certificate})
         if timing == "steady":
             return plan
@@ -77,7 +78,7 @@ def plan_path(
         problem = undiagnosed(planner, found)
         return make_plan(terrain, robot, friction, weights, begun, problem=problem)
     problem, way = explain(planner, found)
-    return make_plan(terrain, robot, friction, weights, begun, *way, problem)
+    return make_plan(terrain, robot, friction, weights, begun, way, problem)
 
 
 def _best(planners: Sequence[PathPlanner]) -> tuple[PathPlanner, Solved | Blocked]:

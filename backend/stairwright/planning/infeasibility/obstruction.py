@@ -29,8 +29,9 @@ from stairwright.planning.infeasibility.relaxation import (
 from stairwright.planning.lattice.body_lattice import EXACT
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
-from stairwright.planning.path_planner import Blocked, Path, PathPlanner, Solved
+from stairwright.planning.path_planner import Blocked, PathPlanner, Solved
 from stairwright.planning.plan import Limit, Problem
+from stairwright.planning.smoothing.path_document import PathPoses
 from stairwright.planning.threads import race, search_threads
 
 Cause = tuple[Candidate, float]  # what opens the way, and by which factor
@@ -43,7 +44,7 @@ _RIVALS = 2  # candidates for which planning is tried
 _ASKED = 2  # times that candidates are ranked anew, without those that led nowhere
 
 
-def explain(planner: PathPlanner, blocked: Blocked) -> tuple[Problem, Path]:
+def explain(planner: PathPlanner, blocked: Blocked) -> tuple[Problem, PathPoses | None]:
     """Name what stops `course`, and tell how far it goes.
 
     Args:
