@@ -146,12 +146,13 @@ class PathPlanner(PathProblem):
             return Blocked(None, finding.quality > 0)
         if finding.s is None:
             return Blocked(finding.reached, False)
-        answers = [self.finish(finding)]
-        if self.unweighted is not None:
-            usual = self.unweighted.find(how.fine, how.bounds, roll_back=how.roll_back)
-            if usual.s is not None:
-                answers += [self.finish(usual), self.unweighted.finish(usual)]
-        return min(answers, key=self.cost)
+        answer = self.finish(finding)
+        if self.unweighted is None:
+            return answer
+        usual = self.unweighted.find(how.fine, how.bounds, roll_back=how.roll_back)
+        if usual.s is None:
+            return answer
+        return min(answer, self.finish(usual), self.unweighted.finish(usual), key=self.cost)
 
     def cost(self, answer: Solved | Blocked) -> float:
         """What the weights make of a path; infinite where there is none."""

@@ -8,6 +8,7 @@ namespace stairwright::smoothing {
 namespace {
 
 constexpr double kFirmTorque = 0.12;  // share of a motor's torque that a path leaves, a little more than it must
+constexpr double kLeastLegs = 0.007;  // m between the legs
 constexpr double kStep = 1e-5;   // m and rad; of finite differences
 
 double shortfall(double value, const MarginTerm& term) { return term.weight * std::max(0.0, term.target - value); }
@@ -70,7 +71,8 @@ void torque_limit_residuals(const SmoothingProblem& problem, std::size_t node, c
 }  // namespace
 
 QueryRadii query_radii(const Objective& o) {
-    return {std::max(o.trunk.target, o.trunk_room.target), std::max(o.links.target, o.links_room.target)};
+    return {std::max(o.trunk.target, o.trunk_room.target), std::max(o.links.target, o.links_room.target),
+            std::max(o.legs.target, kLeastLegs)};
 }
 
 Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry) {
@@ -83,14 +85,13 @@ Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Bod
     com_residuals(x, interval.lagged, o.lagged, 0.0, &r[kLaggedLow]);
     r[kTrunk] = hinge(geometry.trunk, o.trunk, o.hard, 0.002);
     r[kLinks] = hinge(geometry.links, o.links, o.hard, 0.004);
-    r[kLegs] = hinge(geometry.legs, o.legs, o.hard, 0.007);
+    r[kLegs] = hinge(geometry.legs, o.legs, o.hard, kLeastLegs);
     r[kJoints] = hinge(geometry.joints.slack, o.joints, o.hard, 0.004);
     r[kReach] = hinge(geometry.posture.reach_slack, o.reach, o.hard, 0.0005);
     r[kTrunkRoom] = shortfall(geometry.trunk, o.trunk_room);
     r[kLinksRoom] = shortfall(geometry.links, o.links_room);
     const auto& [front, rear] = problem.wheels[node];
-    const double slope = std::atan2(front.z - rear.z, front.x - rear.x);
-    r[kPitch] = (body.pitch + o.slope_share * slope) * o.pitch_weight;
+    r[kPitch] = (body.pitch + o.slope_share * problem.slopes[node]) * o.pitch_weight;
     r[kHeight] = (body.z - 0.5 * (front.z + rear.z) - o.height) * o.height_weight;
     torque_residuals(problem, node, geometry.posture, &r[kFrontThigh]);
     if (problem.loads.empty())
@@ -113,7 +114,8 @@ NodeJacobian differentiate(const SmoothingProblem& problem, std::size_t node, co
         // What is far enough from its limits stays so; most of the time goes here.
         if (at[kJoints] > 0.0) moved.joints = pose_joints(problem.robot, x.pitch, moved.posture);
         if (at[kTrunk] > 0.0 || at[kTrunkRoom] > 0.0) moved.trunk = trunk_clearance(problem.terrain, problem.robot, x, radii.trunk);
-        if (at[kLinks] > 0.0 || at[kLinksRoom] > 0.0) moved.links = links_clearance(problem.terrain, problem.robot, moved.posture, radii.links);
+        if (at[kLinks] > 0.0 || at[kLinksRoom] > 0.0) 
+            moved.links = links_clearance(problem.terrain, problem.robot, moved.posture, radii.links, geometry.by_link);
         if (at[kLegs] > 0.0) moved.legs = legs_distance(problem.robot, moved.posture.legs);
         const Residuals r = residuals(problem, node, x, moved);
         for (int m = 0; m < kResiduals; ++m) out[a][m] = (r[m] - at[m]) * (1.0 / kStep);
