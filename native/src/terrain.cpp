@@ -74,7 +74,8 @@ double Terrain::link_clearance(Vec2 a, Vec2 b, double radius, double query_radiu
         const Vec2 p = vertices_[i], q = vertices_[i + 1];
         if (p.x > hi) break;
         if (q.x < lo || std::max(p.z, q.z) < bottom - best) continue;
-        best = std::min(best, segment_distance(a, b, p, q));
+        const double square = segment_distance_squared(a, b, p, q);
+        if (square < best * best) best = std::min(best, std::sqrt(square));
         if (p.x <= a.x && a.x <= q.x && q.x > p.x && a.z < p.z + (q.z - p.z) * (a.x - p.x) / (q.x - p.x)) inside = true;
     }
     if (best > 0.0 && !inside) return best - radius;

@@ -113,14 +113,18 @@ class _Checker:
     def _least(self, name: str, values: Floats, bound: float, unit: str) -> Check:
         k = int(np.argmin(values))
         value = float(values[k])
-        return Check(
+        return Check.trusted(
             name=name, value=value, bound=bound, unit=unit, passed=bool(value >= bound - 1e-9),
             progress=float(self.progress[k]),
         )  # fmt: skip
 
     def _most(self, name: str, values: Floats, bound: float) -> Check:
-        check = self._least(name, -values, -bound, "m")
-        return check.model_copy(update={"value": -check.value, "bound": bound})
+        k = int(np.argmax(values))
+        value = float(values[k])
+        return Check.trusted(
+            name=name, value=value, bound=bound, unit="m", passed=bool(value <= bound + 1e-9),
+            progress=float(self.progress[k]),
+        )  # fmt: skip
 
     def _clear(self, name: str, clearances: Floats) -> Check:
         slack, interval = self.samples.slack, self.samples.interval
