@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Generator, Mapping
 from pathlib import Path
 from typing import Any, Self, TypeVar
 
@@ -47,6 +47,11 @@ class Model(BaseModel):
             del copied.__dict__[name]
         return copied
 
+    def __iter__(self) -> Generator[tuple[str, Any]]:
+        """Names and values of the fields."""
+        for name, value in super().__iter__():
+            yield name, Deferred.read(value)
+
     @classmethod
     def trusted(cls, **values: Any) -> Self:
         """A record of values that are our own, unchecked: all its fields, by name, in their order.
@@ -65,6 +70,73 @@ class Model(BaseModel):
 
 
 M = TypeVar("M", bound=BaseModel)
+
+
+class Deferred:
+    """Stands in a record for a value that takes long to make, until it is needed.
+
+    It equals that value, and what is pickled or copied deeply is the value.
+    """
+
+    def __init__(self, make: Callable[[], Any]) -> None:
+        self._make: Callable[[], Any] | None = make
+        self._made: Any = None
+
+    @property
+    def value(self) -> Any:
+        """The value, made once; threads that meet here may each make it."""
+        make = self._make
+        if make is not None:
+            self._made, self._make = make(), None  # and what it is made of is let go
+        return self._made
+
+    @staticmethod
+    def read(value: Any) -> Any:
+        """`value`, or what it stands for: serialises a field that may be deferred."""
+        return value.value if isinstance(value, Deferred) else value
+
+    def __eq__(self, other: object) -> bool:
+        return bool(self.value == Deferred.read(other))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return repr(self.value)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Deferred.read, (self.value,)
+
+
+class _DeferrableField:
+    """Reads a record's field, and makes its value first where that is deferred."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __get__(self, record: BaseModel | None, owner: type | None = None) -> Any:
+        if record is None or self._name not in record.__dict__:
+            raise AttributeError(self._name)
+        value = record.__dict__[self._name]
+        if isinstance(value, Deferred):
+            value = record.__dict__[self._name] = value.value
+        return value
+
+    def __set__(self, record: BaseModel, value: Any) -> None:
+        record.__dict__[self._name] = value
+
+
+def deferrable(*names: str) -> Callable[[type[M]], type[M]]:
+    """Lets fields of a model be `Deferred` in records that are made without validation.
+
+    Such a field is serialised through `Deferred.read`.
+    """
+
+    def decorate(model: type[M]) -> type[M]:
+        for name in names:
+            setattr(model, name, _DeferrableField(name))
+        return model
+
+    return decorate
 
 
 def parse(model: type[M], data: Any) -> M:

@@ -27,6 +27,15 @@ double thickest(const Link& link) {
     return radius;
 }
 
+double girth(const Leg& leg) {
+    double out = 0.0;
+    for (const Link* link : {&leg.thigh, &leg.calf})
+        for (const Capsule& c : link->shape)
+            for (const Vec2 end : {c.a, c.b})
+                out = std::max(out, std::sqrt(point_segment_squared(end, {0.0, 0.0}, link->end)) + c.radius);
+    return out;
+}
+
 // The part of a thigh's range, with the leg straight down, that the other leg's hip leaves it. A thigh that is longer
 // than the hips are apart cannot swing past the other hip, which lies at `other` from its own. A lattice would step
 // over that.
@@ -51,7 +60,7 @@ Range past_hip(const Leg& leg, const Leg& other) {
 RobotModel::RobotModel(const Robot& given) : robot(given), mass(given.mass()) {
     for (int k = 0; k < 2; ++k) {
         const Leg &leg = robot.legs[k], &other = robot.legs[1 - k];
-        legs[k] = {leg, reach_range(leg)};
+        legs[k] = {leg, reach_range(leg), girth(leg)};
         legs[k].leg.thigh_range = past_hip(leg, other);
     }
 }
@@ -102,16 +111,62 @@ double trunk_clearance(const Terrain& terrain, const RobotModel& robot, const Bo
     return least;
 }
 
-double links_clearance(const Terrain& terrain, const RobotModel& robot, const Posture& posture, double query_radius) {
+namespace {
+
+double link_clearance(const Terrain& terrain, const RobotModel& robot, const Posture& posture, int pair, int link, double query_radius) {
+    const Leg& leg = robot.legs[pair].leg;
+    const LegPoints& p = posture.legs[pair];
     double least = query_radius;
-    for (int k = 0; k < 2; ++k)
-        visit_capsules(robot.legs[k].leg, posture.legs[k], [&](const Capsule& c) {
-            least = std::min(least, terrain.link_clearance(c.a, c.b, c.radius, query_radius));
-        });
+    const auto visit = [&](const Capsule& c) { least = std::min(least, terrain.link_clearance(c.a, c.b, c.radius, query_radius)); };
+    if (link == 0)
+        visit_capsules(leg.thigh, p.hip, p.knee - p.hip, visit);
+    else
+        visit_capsules(leg.calf, p.knee, p.wheel - p.knee, visit);
     return least;
 }
 
-double legs_distance(const RobotModel& robot, const std::array<LegPoints, 2>& legs) {
+double least_of(const LinkClearances& links) {
+    return std::min(std::min(links[0][0], links[0][1]), std::min(links[1][0], links[1][1]));
+}
+
+}  // namespace
+
+LinkClearances link_clearances(const Terrain& terrain, const RobotModel& robot, const Posture& posture, double query_radius) {
+    LinkClearances out;
+    double least = query_radius;
+    for (const int link : {1, 0})  // calves are near to the ground
+        for (const int pair : {kFront, kRear}) {
+            const double within = std::min(query_radius, std::max(least, 0.0) + kNearlyNearest);
+            out[pair][link] = link_clearance(terrain, robot, posture, pair, link, within);
+            least = std::min(least, out[pair][link]);
+        }
+    return out;
+}
+
+double links_clearance(const Terrain& terrain, const RobotModel& robot, const Posture& posture, double query_radius,
+                       const LinkClearances& before) {
+    const double near = least_of(before) + kNearlyNearest;
+    double least = query_radius;
+    for (const int pair : {kFront, kRear})
+        for (const int link : {0, 1})
+            if (before[pair][link] <= near) least = std::min(least, link_clearance(terrain, robot, posture, pair, link, query_radius));
+    return least;
+}
+
+namespace {
+
+// How far a leg reaches along x.
+Range extent(const LegModel& model, const LegPoints& p) {
+    const double tyre = std::max(model.leg.wheel.radius, model.girth);
+    return {std::min(std::min(p.hip.x, p.knee.x) - model.girth, p.wheel.x - tyre),
+            std::max(std::max(p.hip.x, p.knee.x) + model.girth, p.wheel.x + tyre)};
+}
+
+}  // namespace
+
+double legs_distance(const RobotModel& robot, const std::array<LegPoints, 2>& legs, double query_radius) {
+    const Range ahead = extent(robot.legs[kFront], legs[kFront]), behind = extent(robot.legs[kRear], legs[kRear]);
+    if (std::max(ahead.lower - behind.upper, behind.lower - ahead.upper) > query_radius) return query_radius;
     const Leg &front = robot.legs[kFront].leg, &rear = robot.legs[kRear].leg;
     const Vec2 front_wheel = legs[kFront].wheel, rear_wheel = legs[kRear].wheel;
     double best = norm(front_wheel - rear_wheel) - front.wheel.radius - rear.wheel.radius;
@@ -133,8 +188,9 @@ PoseGeometry pose_geometry(const Terrain& terrain, const RobotModel& robot, cons
     out.posture = make_posture(robot, body, wheels);
     out.joints = pose_joints(robot, body.pitch, out.posture);
     out.trunk = trunk_clearance(terrain, robot, body, radii.trunk);
-    out.links = links_clearance(terrain, robot, out.posture, radii.links);
-    out.legs = legs_distance(robot, out.posture.legs);
+    out.by_link = link_clearances(terrain, robot, out.posture, radii.links);
+    out.links = std::min(radii.links, least_of(out.by_link));
+    out.legs = legs_distance(robot, out.posture.legs, radii.legs);
     return out;
 }
 

@@ -27,14 +27,6 @@ void check_profile(const std::vector<Vec2>& vertices) {
 
 }  // namespace
 
-double segment_distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
-    const double s1 = cross(b - a, c - a), s2 = cross(b - a, d - a);
-    const double s3 = cross(d - c, a - c), s4 = cross(d - c, b - c);
-    if (s1 * s2 < 0.0 && s3 * s4 < 0.0) return 0.0;
-    return std::sqrt(std::min(std::min(point_segment_squared(a, c, d), point_segment_squared(b, c, d)),
-                              std::min(point_segment_squared(c, a, b), point_segment_squared(d, a, b))));
-}
-
 Terrain::Terrain(std::vector<Vec2> vertices) : vertices_(std::move(vertices)) {
     check_profile(vertices_);
     const double begin = vertices_.front().x;
@@ -82,7 +74,8 @@ double Terrain::link_clearance(Vec2 a, Vec2 b, double radius, double query_radiu
         const Vec2 p = vertices_[i], q = vertices_[i + 1];
         if (p.x > hi) break;
         if (q.x < lo || std::max(p.z, q.z) < bottom - best) continue;
-        best = std::min(best, segment_distance(a, b, p, q));
+        const double square = segment_distance_squared(a, b, p, q);
+        if (square < best * best) best = std::min(best, std::sqrt(square));
         if (p.x <= a.x && a.x <= q.x && q.x > p.x && a.z < p.z + (q.z - p.z) * (a.x - p.x) / (q.x - p.x)) inside = true;
     }
     if (best > 0.0 && !inside) return best - radius;

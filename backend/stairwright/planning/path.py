@@ -78,8 +78,7 @@ def plan_path(
             return document(robot, problem=tolerance_problem(outcome, tolerance))
         found = outcome
     if isinstance(found, Solved):
-        poses, critical, total = planner.document(found.nodes)
-        plan = document(robot, poses=poses, critical=critical, total=total)
+        plan = document(robot, poses=planner.poses(found.nodes))
         plan = plan.model_copy(update={"certificate": found.certificate})
         if timing == "steady":
             return plan
@@ -90,8 +89,8 @@ def plan_path(
 
     if not diagnose:
         return document(robot, problem=undiagnosed(planner, found))
-    problem, (poses, critical, total) = explain(planner, found)
-    return document(robot, poses=poses, critical=critical, total=total, problem=problem)
+    problem, way = explain(planner, found)
+    return document(robot, poses=way, problem=problem)
 
 
 def _best(planners: Sequence[PathPlanner]) -> tuple[PathPlanner, Solved | Blocked]:

@@ -24,10 +24,10 @@ from stairwright.planning.lattice.pieces import Piece, passes
 from stairwright.planning.lattice.search import Place
 from stairwright.planning.lattice.windows import Searches, find_path
 from stairwright.planning.path_problem import PathProblem
-from stairwright.planning.plan import Certificate, Pose
+from stairwright.planning.plan import Certificate
 from stairwright.planning.room import IN_SEARCH, Room
 from stairwright.planning.smoothing.node_margins import BEYOND_REPAIR, Motor
-from stairwright.planning.smoothing.path_document import make_poses
+from stairwright.planning.smoothing.path_document import PathPoses
 from stairwright.planning.smoothing.path_timing import path_parameter
 from stairwright.planning.smoothing.refine import Refined, refine
 from stairwright.planning.smoothing.repair import STAGES, repair
@@ -39,7 +39,6 @@ from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
 
 Ints = NDArray[np.int64]
-Path = tuple[list[Pose], list[int], float]  # poses, key poses, duration [s]
 
 
 @dataclass(frozen=True)
@@ -165,12 +164,13 @@ class PathPlanner(PathProblem):
             return Blocked(None, finding.quality > 0)
         if finding.s is None:
             return Blocked(finding.reached, False)
-        answers = [self.finish(finding)]
-        if self.unweighted is not None:
-            usual = self.unweighted.find(how.fine, how.bounds, roll_back=how.roll_back)
-            if usual.s is not None:
-                answers += [self.finish(usual), self.unweighted.finish(usual)]
-        return min(answers, key=self.cost)
+        answer = self.finish(finding)
+        if self.unweighted is None:
+            return answer
+        usual = self.unweighted.find(how.fine, how.bounds, roll_back=how.roll_back)
+        if usual.s is None:
+            return answer
+        return min(answer, self.finish(usual), self.unweighted.finish(usual), key=self.cost)
 
     def cost(self, answer: Solved | Blocked) -> float:
         """What the weights make of a path; infinite where there is none."""
@@ -215,11 +215,11 @@ class PathPlanner(PathProblem):
         usual = PathWeights(**kept)
         return None if usual == self.weights else replace(self, weights=usual, searches={})
 
-    def partial(self) -> tuple[Path, Place | None]:
+    def partial(self) -> tuple[PathPoses | None, Place | None]:
         """The path as far as it goes, and where wheels end; nothing where they cannot start."""
         finding = self.find(1.7, LOOSE, partial=True)
         if finding.s is None or finding.body is None or len(finding.s) < 2:
-            return ([], [], 0.0), finding.reached
+            return None, finding.reached
         last = StandingPose((float(finding.s[-1, 0]), float(finding.s[-1, 1])), finding.body[-1])
         found = refine(self, (self.ends[0], last), finding.s, finding.body)
         found = repair(self, found, found.margins.bad, STAGES[0])
@@ -227,8 +227,8 @@ class PathPlanner(PathProblem):
         if len(bad):
             found = found.part(0, int(bad[0]))
         if len(found.s) < 2:
-            return ([], [], 0.0), finding.reached
-        return self.document(found), finding.reached
+            return None, finding.reached
+        return self.poses(found), finding.reached
 
     def finish(self, finding: LatticePath) -> Solved | Blocked:
         """Smooth, repair and certify; where that fails, the arc lengths at the worst place."""
@@ -266,6 +266,6 @@ class PathPlanner(PathProblem):
             nodes.margins.q, path_parameter(nodes.s, nodes.body),
         )  # fmt: skip
 
-    def document(self, nodes: Refined) -> Path:
+    def poses(self, nodes: Refined) -> PathPoses:
         """What the plan's document says of a path."""
-        return make_poses(self.path, self.robot, nodes, self.weights)
+        return PathPoses.of(self.path, self.robot, nodes, self.weights)

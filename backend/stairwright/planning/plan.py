@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Generator, Iterable
-from typing import Any, Literal, Self
+from collections.abc import Callable
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import (
-    BaseModel,
-    Field,
-    PrivateAttr,
-    SerializerFunctionWrapHandler,
-    model_serializer,
-    model_validator,
-)
+from pydantic import Field, PlainSerializer, model_validator
 
 from stairwright.arguments import MOST_FRICTION
-from stairwright.documents import Model, content_hash
+from stairwright.documents import Deferred, Model, content_hash, deferrable
 from stairwright.errors import InputError
 from stairwright.planning.tolerance import Tolerance
 from stairwright.robot.description import Robot
@@ -109,6 +102,7 @@ class Check(Model):
     progress: float | None = Field(None, description="where the worst value stands [m]")
 
 
+@deferrable("motion")
 class Certificate(Model):
     """Outcome of the independent exact check of the poses and of the motion between them.
 
@@ -118,59 +112,24 @@ class Certificate(Model):
 
     passed: bool
     scope: Literal["motion", "poses"] = "motion"
-    motion: Problem | None = Field(
+    motion: Annotated[
+        Problem | None, PlainSerializer(Deferred.read, return_type=Problem | None)
+    ] = Field(
         None, description="what stops the motion between poses, where only these are certified"
     )
     checks: list[Check] = []
-    _find_motion: Callable[[], Problem | None] | None = PrivateAttr(None)
 
     @classmethod
     def of_poses(cls, checks: list[Check], find_motion: Callable[[], Problem | None]) -> Self:
         """A certificate of poses; `find_motion` is asked once, when `motion` is needed."""
-        certificate = cls(passed=all(c.passed for c in checks), scope="poses", checks=checks)
-        del certificate.__dict__["motion"]
-        certificate._find_motion = find_motion
-        return certificate
-
-    def __getattr__(self, name: str) -> Any:
-        # Python asks here only for what is not there yet. Threads that meet here find the same.
-        find = self._find_motion if name == "motion" else None
-        if find is not None:
-            fields = {**self.__dict__, "motion": find()}
-            ordered = {key: fields[key] for key in type(self).model_fields}
-            object.__setattr__(self, "__dict__", ordered)
-            self._find_motion = None
-        if name in self.__dict__:
-            return self.__dict__[name]
-        return super().__getattr__(name)  # type: ignore[misc]  # pydantic hides it
+        passed = all(check.passed for check in checks)
+        motion = Deferred(find_motion)
+        return cls.trusted(passed=passed, scope="poses", motion=motion, checks=checks)
 
     def with_checks(self, checks: list[Check]) -> Certificate:
         """The same one with more checks, which have to pass too."""
         passed = self.passed and all(check.passed for check in checks)
         return self.model_copy(update={"checks": [*self.checks, *checks], "passed": passed})
-
-    def _whole(self) -> Certificate:
-        """The same one, its motion judged."""
-        _ = self.motion
-        return self
-
-    @model_serializer(mode="wrap")  # a type of what it returns would take the schema's place
-    def _written(self, write: SerializerFunctionWrapHandler):  # type: ignore[no-untyped-def]
-        return write(self._whole())
-
-    def __eq__(self, other: object) -> bool:
-        if isinstance(other, Certificate):
-            other._whole()
-        return BaseModel.__eq__(self._whole(), other)
-
-    def __iter__(self) -> Generator[tuple[str, Any]]:
-        return super(Certificate, self._whole()).__iter__()
-
-    def __repr_args__(self) -> Iterable[tuple[str | None, Any]]:
-        return super(Certificate, self._whole()).__repr_args__()
-
-    def __getstate__(self) -> dict[Any, Any]:
-        return super(Certificate, self._whole()).__getstate__()
 
 
 Bend = Literal["back", "forward"]
@@ -192,6 +151,7 @@ class Binding(Model):
     progress: float = Field(description="[m]")
 
 
+@deferrable("poses")
 class Plan(Model):
     """A plan (``stairwright/plan/1``); `id` is a hash of everything that went into it."""
 
@@ -207,7 +167,8 @@ class Plan(Model):
     weights: dict[str, float] = {}
     status: Literal["feasible", "infeasible"]
     problem: Problem | None = None
-    poses: list[Pose] = []
+    # Those of a path are made when they are first read, written or compared.
+    poses: Annotated[list[Pose], PlainSerializer(Deferred.read, return_type=list[Pose])] = []
     critical: list[int] = Field([], description="indices of the key poses")
     timing: Timing
     solve_time: float = Field(description="[s]")

@@ -48,8 +48,7 @@ JointAngles joint_angles(const Leg& leg, double pitch, Vec2 knee, Vec2 reach);
 
 // What takes a link's frame to the world when `line` leads from its upper joint to its lower one: no angle is needed.
 inline Turn link_turn(const Link& link, Vec2 line) {
-    const double over = 1.0 / (link.length * link.length);
-    return {dot(link.end, line) * over, cross(line, link.end) * over};
+    return {dot(link.end, line) * link.per_square, cross(line, link.end) * link.per_square};
 }
 
 // Hip, knee and wheel of a leg at joint angles `q`.

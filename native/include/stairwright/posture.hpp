@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "stairwright/kinematics.hpp"
 #include "stairwright/terrain.hpp"
@@ -14,6 +15,7 @@ inline constexpr double kLegsGap = 0.005;  // m; front and rear leg stay this fa
 struct LegModel {
     Leg leg;           // its thigh's range is what the other leg's hip leaves of it
     ReachRange reach;  // distances from hip to wheel that the calf's range allows [m]
+    double girth = 0.0;  // farthest that its links reach from the lines between its joints [m]
 };
 
 struct RobotModel {
@@ -49,13 +51,23 @@ PoseJoints pose_joints(const RobotModel& robot, double pitch, const Posture& pos
 
 // Clearances [m]; beyond `query_radius` they are not told apart.
 double trunk_clearance(const Terrain& terrain, const RobotModel& robot, const Body& body, double query_radius);
-double links_clearance(const Terrain& terrain, const RobotModel& robot, const Posture& posture, double query_radius);
-// Distance of the front from the rear leg in one plane: thighs, calves, wheels; negative if they touch.
-double legs_distance(const RobotModel& robot, const std::array<LegPoints, 2>& legs);
+// By pair: of thigh and calf [m].
+using LinkClearances = std::array<std::array<double, 2>, 2>;
+// A link that is so much farther from the ground than the nearest is left out where only the nearest counts.
+inline constexpr double kNearlyNearest = 1e-3;  // m
+// Of each link, exact for those that are nearly as near as the nearest; of others no more than that they are not.
+LinkClearances link_clearances(const Terrain& terrain, const RobotModel& robot, const Posture& posture, double query_radius);
+// Least clearance after a tiny motion from where the clearances were `before`.
+double links_clearance(const Terrain& terrain, const RobotModel& robot, const Posture& posture, double query_radius,
+                       const LinkClearances& before);
+// Distance of the front from the rear leg in one plane: thighs, calves, wheels; negative if they touch. What is seen at
+// a glance to be more than `query_radius` is not told apart.
+double legs_distance(const RobotModel& robot, const std::array<LegPoints, 2>& legs,
+                     double query_radius = std::numeric_limits<double>::infinity());
 
 // Clearances beyond these are not told apart [m].
 struct QueryRadii {
-    double trunk = 0.0, links = 0.0;
+    double trunk = 0.0, links = 0.0, legs = std::numeric_limits<double>::infinity();
 };
 
 // Everything of one pose that needs no forces.
@@ -63,6 +75,7 @@ struct PoseGeometry {
     Posture posture;
     PoseJoints joints;
     double trunk = 0.0, links = 0.0, legs = 0.0;  // clearances [m]
+    LinkClearances by_link{};                     // of the links, see link_clearances
 };
 PoseGeometry pose_geometry(const Terrain& terrain, const RobotModel& robot, const Body& body,
                            const WheelCentres& wheels, QueryRadii radii);

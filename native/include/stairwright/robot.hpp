@@ -42,6 +42,7 @@ struct Link {
     double inertia = 0.0;  // Iyy about the mass centre [kg m^2]
     std::vector<Capsule> shape;
     double length = norm(end);
+    double per_square = 1.0 / (length * length);  // 1 / length^2
     // Angle of the line from joint to joint when the link's own angle is 0: 0 for a straight link.
     double bend = std::atan2(-end.x, -end.z);
 };

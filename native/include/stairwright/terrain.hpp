@@ -1,6 +1,7 @@
 // The ground below an x-monotone profile, and exact distances of points, links and polygons from it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,13 +15,21 @@ inline double point_segment_squared(Vec2 p, Vec2 a, Vec2 b) {
     const Vec2 d = b - a;
     const double square = dot(d, d);
     double t = square > 1e-18 ? dot(p - a, d) / square : 0.0;
-    t = std::fmin(1.0, std::fmax(0.0, t));
+    t = std::min(1.0, std::max(0.0, t));
     const Vec2 e = p - a - t * d;
     return dot(e, e);
 }
 
-// Distance of the segments a-b and c-d; 0 where they cross.
-double segment_distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d);
+// Squared distance of the segments a-b and c-d; 0 where they cross.
+inline double segment_distance_squared(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
+    const double s1 = cross(b - a, c - a), s2 = cross(b - a, d - a);
+    const double s3 = cross(d - c, a - c), s4 = cross(d - c, b - c);
+    if (s1 * s2 < 0.0 && s3 * s4 < 0.0) return 0.0;
+    return std::min(std::min(point_segment_squared(a, c, d), point_segment_squared(b, c, d)),
+                    std::min(point_segment_squared(c, a, b), point_segment_squared(d, a, b)));
+}
+
+inline double segment_distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d) { return std::sqrt(segment_distance_squared(a, b, c, d)); }
 
 // A profile whose x never decreases (equal x: a vertical face), indexed by buckets of x.
 class Terrain {

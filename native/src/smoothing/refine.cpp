@@ -102,16 +102,19 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
     const std::vector<NodeIntervals> intervals =
         intervals_along(problem.path, nodes, changes, problem.friction, problem.reserve, problem.lag);
     std::vector<WheelCentres> wheels, contacts;
+    std::vector<double> slopes;
     std::vector<Body> bodies;
     for (const auto& [s, body] : nodes) {
         wheels.push_back({problem.path.centre(s.front), problem.path.centre(s.rear)});
         contacts.push_back({problem.path.contact(s.front), problem.path.contact(s.rear)});
         bodies.push_back(body);
+        const Vec2 line = wheels.back()[kFront] - wheels.back()[kRear];
+        slopes.push_back(std::atan2(line.z, line.x));
     }
     std::vector<std::vector<WheelLoads>> loads;
     if (problem.torques)
         loads = loads_along(problem.path, nodes, changes, problem.friction, problem.lag, problem.robot.mass * kGravity);
-    const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, intervals, loads, fixed,
+    const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, loads, fixed,
                                      objective(problem, spacing, hop / kUsualSpacing)};
     smooth(smoothing, bodies, kIterations);
     for (std::size_t k = 0; k < n; ++k) nodes[k].body = bodies[k];

@@ -56,7 +56,7 @@ void torque_limit_residuals(const SmoothingProblem& problem, std::size_t node, c
                 const Leg& leg = problem.robot.legs[pair].leg;
                 const LegTorques torques = static_torques(leg, posture.legs[pair], (*load)[pair]);
                 const auto lacking = [&](double torque, const Motor& motor) {
-                    return hinge(1.0 - std::abs(torque) / motor.torque, term, problem.objective.torque_hard, kFirmTorque);
+                    return hinge(1.0 - std::abs(torque) / motor.torque, term, problem.objective.torque_hard);
                 };
                 double* of_leg = out + 3 * pair;
                 of_leg[0] = std::max(of_leg[0], lacking(torques.thigh, leg.thigh_motor));
@@ -70,7 +70,8 @@ void torque_limit_residuals(const SmoothingProblem& problem, std::size_t node, c
 }  // namespace
 
 QueryRadii query_radii(const Objective& o) {
-    return {std::max(o.trunk.target, o.trunk_room.target), std::max(o.links.target, o.links_room.target)};
+    return {std::max(o.trunk.target, o.trunk_room.target), std::max(o.links.target, o.links_room.target),
+            std::max(o.legs.target, o.legs.least)};
 }
 
 Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry) {
@@ -89,8 +90,7 @@ Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Bod
     r[kTrunkRoom] = shortfall(geometry.trunk, o.trunk_room);
     r[kLinksRoom] = shortfall(geometry.links, o.links_room);
     const auto& [front, rear] = problem.wheels[node];
-    const double slope = std::atan2(front.z - rear.z, front.x - rear.x);
-    r[kPitch] = (body.pitch + o.slope_share * slope) * o.pitch_weight;
+    r[kPitch] = (body.pitch + o.slope_share * problem.slopes[node]) * o.pitch_weight;
     r[kHeight] = (body.z - 0.5 * (front.z + rear.z) - o.height) * o.height_weight;
     torque_residuals(problem, node, geometry.posture, &r[kFrontThigh]);
     if (problem.loads.empty())
@@ -113,7 +113,8 @@ NodeJacobian differentiate(const SmoothingProblem& problem, std::size_t node, co
         // What is far enough from its limits stays so; most of the time goes here.
         if (at[kJoints] > 0.0) moved.joints = pose_joints(problem.robot, x.pitch, moved.posture);
         if (at[kTrunk] > 0.0 || at[kTrunkRoom] > 0.0) moved.trunk = trunk_clearance(problem.terrain, problem.robot, x, radii.trunk);
-        if (at[kLinks] > 0.0 || at[kLinksRoom] > 0.0) moved.links = links_clearance(problem.terrain, problem.robot, moved.posture, radii.links);
+        if (at[kLinks] > 0.0 || at[kLinksRoom] > 0.0) 
+            moved.links = links_clearance(problem.terrain, problem.robot, moved.posture, radii.links, geometry.by_link);
         if (at[kLegs] > 0.0) moved.legs = legs_distance(problem.robot, moved.posture.legs);
         const Residuals r = residuals(problem, node, x, moved);
         for (int m = 0; m < kResiduals; ++m) out[a][m] = (r[m] - at[m]) * (1.0 / kStep);

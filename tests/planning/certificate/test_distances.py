@@ -12,6 +12,7 @@ import shapely
 import stairwright as sw
 from stairwright.planning.certificate.certify import judge
 from stairwright.planning.certificate.distances import Distances
+from stairwright.planning.certificate.equilibrium import near_faces
 from stairwright.planning.certificate.motion import Motion, Samples, sampled
 from stairwright.terrain.profile import Terrain, height_at
 
@@ -119,10 +120,13 @@ def test_trunk(all_samples):
 
 
 def test_rims(all_samples):
-    sunk = 0
+    sunk = seen = 0
     for samples in all_samples:
         motion = WithLine(samples.motion)
-        for leg, found in enumerate(Distances(samples).wheels()):
+        centres = samples.frames.wheels.reshape(-1, 2)
+        near = near_faces(motion.vertices, centres, motion.robot.wheel.radius + 0.002)
+        seen += int(np.isfinite(near.distances[:, 0]).sum())
+        for leg, found in enumerate(Distances(samples).wheels(near)):
             for k, centre in enumerate(samples.frames.wheels[:, leg]):
                 distance = shapely.distance(motion.line, shapely.points(centre))
                 distance = distance if above(motion, centre) else -distance
@@ -130,6 +134,7 @@ def test_rims(all_samples):
                 if abs(distance) < 0.5:  # ground far away is not seen
                     assert found[k] == pytest.approx(distance - motion.robot.wheel.radius)
     assert sunk
+    assert seen > 1000
 
 
 def test_gap_between_legs(all_samples):

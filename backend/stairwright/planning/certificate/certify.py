@@ -17,7 +17,7 @@ from stairwright.arguments import as_model
 from stairwright.errors import InputError
 from stairwright.planning.certificate.distances import Distances
 from stairwright.planning.certificate.dynamics import dynamics_of
-from stairwright.planning.certificate.equilibrium import TOUCH, WHEEL_GAP, balanced, touching
+from stairwright.planning.certificate.equilibrium import TOUCH, WHEEL_GAP, balanced, near_faces
 from stairwright.planning.certificate.motion import Motion, Samples, sampled
 from stairwright.planning.certificate.tolerance.checks import tolerance_checks
 from stairwright.planning.plan import Certificate, Check, Plan
@@ -103,11 +103,13 @@ class _Checker:
     def __init__(self, samples: Samples) -> None:
         self.samples, self.progress = samples, samples.motion.progress
         self.unsettled = np.zeros(int(samples.interval.max(initial=-1)) + 1, np.bool_)
+        motion, wheels = samples.motion, samples.frames.wheels.reshape(-1, 2)
+        self.near = near_faces(motion.vertices, wheels, motion.robot.wheel.radius + WHEEL_GAP)
 
     def checks(self) -> list[Check]:
         """All checks in the order of a reader's interest."""
         distances = Distances(self.samples)
-        rims = distances.wheels()
+        rims = distances.wheels(self.near)
         return [
             self._most("gap between wheels and ground", np.max(rims, axis=0), WHEEL_GAP),
             self._most("wheels sunk into the ground", -np.min(rims, axis=0), WHEEL_SINK),
@@ -121,14 +123,18 @@ class _Checker:
     def _least(self, name: str, values: Floats, bound: float, unit: str) -> Check:
         k = int(np.argmin(values))
         value = float(values[k])
-        return Check(
+        return Check.trusted(
             name=name, value=value, bound=bound, unit=unit, passed=bool(value >= bound - 1e-9),
             progress=float(self.progress[k]),
         )  # fmt: skip
 
     def _most(self, name: str, values: Floats, bound: float) -> Check:
-        check = self._least(name, -values, -bound, "m")
-        return check.model_copy(update={"value": -check.value, "bound": bound})
+        k = int(np.argmax(values))
+        value = float(values[k])
+        return Check.trusted(
+            name=name, value=value, bound=bound, unit="m", passed=bool(value <= bound + 1e-9),
+            progress=float(self.progress[k]),
+        )  # fmt: skip
 
     def _clear(self, name: str, clearances: Floats) -> Check:
         slack, interval = self.samples.slack, self.samples.interval
@@ -156,9 +162,8 @@ class _Checker:
         out = np.full(wheels.shape[:2], r + TOUCH)
         if ends.all():
             return out
-        touch = np.full(wheels[ends].shape[0] * 2, r + TOUCH)
-        centres = wheels[ends].reshape(-1, 2)
-        wedged = touching(motion.vertices, centres, r + TOUCH, touch)[2][:, 1].reshape(-1, 2)
+        near = self.near.touched(r + TOUCH, np.full(2 * len(ends), r + TOUCH))
+        wedged = near[:, 1].reshape(-1, 2)[ends]
         moved = np.linalg.norm(np.diff(wheels[ends], axis=0), axis=2)
         stays = wedged[:-1] & wedged[1:] & (moved <= 2 * TOUCH)
         out[~ends] = np.where(stays[samples.interval[~ends[:-1]]], r + WHEEL_GAP, r + TOUCH)
@@ -167,10 +172,9 @@ class _Checker:
     def _balance(self) -> Check:
         """Whether forces inside the friction cones of all touching faces balance the weight."""
         motion = self.samples.motion
-        failed = ~balanced(
-            motion.vertices, self.samples.frames.wheels, self.samples.com[:, 0],
-            motion.robot.wheel.radius + WHEEL_GAP, motion.friction, self.second_faces(),
-        )  # fmt: skip
+        reach, further = motion.robot.wheel.radius + WHEEL_GAP, self.second_faces().ravel()
+        touched = self.near.touched(reach, further)
+        failed = ~balanced(self.near, touched, self.samples.com[:, 0], motion.friction)
         k = int(np.argmax(failed))
         return Check(
             name="samples out of balance", value=float(failed.sum()), bound=0.0, unit="1",

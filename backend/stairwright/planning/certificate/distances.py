@@ -1,13 +1,13 @@
 """Distances of the robot from the ground and of its legs from each other, for the certificate.
 
-Exact (shapely) wherever they may be the least or less than the motion between two samples; what is
-farther off is told by bounds, at a fraction of the time. Ground more than a metre away is not seen.
+Exact (shapely) wherever they may be the least or less than the motion between two samples. What is
+farther off is told by bounds, at a fraction of the time: from one sample to the next no distance
+changes by more than the parts move. Ground more than a metre away is not seen.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import reduce
+from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
 
@@ -15,18 +15,22 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from stairwright.planning.certificate.equilibrium import NearFaces
 from stairwright.planning.certificate.motion import Samples
 from stairwright.robot import kinematics as kin
 from stairwright.terrain.profile import height_at
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 Shapes = NDArray[Any]  # of shapely geometries
+Exact = Callable[[Ints, Ints], Floats]  # distances at some samples of some parts
 
-_CHUNK = 64  # samples that share one piece of terrain
+_CHUNK = 128  # samples that share one piece of terrain
 _FEW = 16  # samples that are no more than this are all looked at exactly, which is sooner
-_SIGHT = 0.01  # m; clearance up to which parts are looked at before one is known
-_MORE = 1e-6  # m; so much more is looked at than matters: what is not seen is farther off for sure
+_STEPS = (12, 3, 1)  # every so manieth sample is looked at, where what is known leaves it open
+_JUMP = 1e3  # m; more than any distance
+_MORE = 1e-6  # m; so much more is looked at than matters: what is not is farther off for sure
 
 
 class Distances:
@@ -38,135 +42,95 @@ class Distances:
         self.vertices = samples.motion.vertices
         self.starts = np.arange(0, len(self.body), _CHUNK)
         self.lines = [self._ground_near(self.body[k : k + _CHUNK, 0]) for k in self.starts]
-        self.capsules = [self._capsules(leg) for leg in range(2)]
-        self.everywhere = np.arange(len(self.body))
+        self.axes, self.radii = zip(*(self._capsules(leg) for leg in range(2)), strict=True)
 
-    def wheels(self) -> list[Floats]:
-        """Of the rims of the front and of the rear wheels from the ground; negative where sunk."""
-        out = []
-        for centres in np.moveaxis(self.samples.frames.wheels, 1, 0):
-            distance = self._from_ground(shapely.points(centres), self.everywhere)
-            distance = np.where(self._above(centres), distance, -distance)
-            out.append(distance - self.robot.wheel.radius)
-        return out
+    def wheels(self, near: NearFaces) -> list[Floats]:
+        """Of the rims of the front and of the rear wheels from the ground; negative where sunk.
+
+        Args:
+            near: The faces near to all wheels (2 n,); where one sees none, shapely is asked.
+        """
+        wheels = self.samples.frames.wheels
+        distance = near.distances[:, 0].copy()
+        far = np.flatnonzero(np.isinf(distance))
+        if len(far):
+            centres = shapely.points(wheels.reshape(-1, 2)[far])
+            distance[far] = self._from_ground(centres, far // 2)
+        distance = np.where(self._above(wheels), distance.reshape(-1, 2), -distance.reshape(-1, 2))
+        return list(distance.T - self.robot.wheel.radius)
 
     def trunk(self) -> Floats:
-        """Of the trunk from the ground; see `_clearances`."""
-        parts = []
-        for piece in self.robot.body.outline:
-            corners = np.array([*piece.points, piece.points[0]])
-            placed = self.body[:, None, :2] + kin.rotate(self.body[:, 2, None], corners)
-            parts.append((placed, 0.0, placed[:, :-1].mean(axis=1)))
-        return self._clearances(parts, shapely.polygons)
+        """Of the trunk from the ground; see `_where_it_matters`."""
+        outlines = [
+            self.body[:, None, :2] + kin.rotate(self.body[:, 2, None], np.array(piece.points))
+            for piece in self.robot.body.outline
+        ]
+
+        def exact(k: Ints, part: Ints) -> Floats:
+            out = np.empty(len(k))
+            for i, outline in enumerate(outlines):
+                mine = part == i
+                corners = outline[k[mine]]
+                distance = self._from_ground(shapely.polygons(corners), k[mine])
+                out[mine] = np.where(self._above(corners.mean(axis=1)), distance, -1.0)
+            return out
+
+        moved = np.stack([_moved(outline) for outline in outlines], axis=1)
+        middles = np.stack([outline.mean(axis=1) for outline in outlines], axis=1)
+        return _where_it_matters(exact, self.samples.slack, moved + self._jumps(middles))
 
     def links(self) -> Floats:
-        """Of thighs and calves from the ground; see `_clearances`."""
-        parts = [
-            (line, radius, line[:, 0])
-            for leg in range(2)
-            for line, radius in reversed(self.capsules[leg])
-        ]
-        return self._clearances(parts, shapely.linestrings)
+        """Of thighs and calves from the ground; see `_where_it_matters`."""
+        axes, radii = np.concatenate(self.axes, axis=1), np.concatenate(self.radii)
 
-    def _capsules(self, leg: int) -> list[tuple[Floats, float]]:
-        """Axes (n, 2, 2) and radii of the capsules of a leg's thigh and calf [m]."""
+        def exact(k: Ints, part: Ints) -> Floats:
+            lines = axes[k, part]
+            distance = self._from_ground(shapely.linestrings(lines), k)
+            clear: Floats = np.where(self._above(lines[:, 0]), distance, -1.0) - radii[part]
+            return clear
+
+        moved = _moved(axes) + self._jumps(axes[:, :, 0])
+        return _where_it_matters(exact, self.samples.slack, moved)
+
+    def legs(self) -> Floats:
+        """Between links and wheels of the front and the rear leg, exact where it may be least."""
+        wheels, tyre = self.samples.frames.wheels, self.robot.wheel.radius
+        axes = [  # of wheels, too: one that has no length
+            np.concatenate([axes, np.repeat(wheels[:, leg, None, None], 2, axis=2)], axis=1)
+            for leg, axes in enumerate(self.axes)
+        ]
+        front, rear = (np.append(radii, tyre) for radii in self.radii)
+        touch = front[:, None] + rear
+
+        def gaps(k: Ints, _part: Ints) -> Floats:
+            apart = _apart(axes[0][k][:, :, None], axes[1][k][:, None])
+            least: Floats = np.min(apart - touch, axis=(1, 2))
+            return least
+
+        moved = np.sum([_moved(ends.reshape(len(ends), 1, -1, 2)) for ends in axes], axis=0)
+        out = _where_it_matters(gaps, np.zeros(len(self.body)), moved)
+        k = np.flatnonzero(out <= out.min() + _MORE)
+        lines = [shapely.linestrings(ends[k]) for ends in axes]
+        apart = shapely.distance(lines[0][:, :, None], lines[1][:, None])
+        out[k] = np.min(apart - touch, axis=(1, 2))
+        return out
+
+    def _capsules(self, leg: int) -> tuple[Floats, Floats]:
+        """Axes (n, k, 2, 2) and radii (k,) of the capsules of a leg's thigh and calf [m]."""
         f, own = self.samples.frames, self.robot.legs[leg]
-        out = []
+        lines, radii = [], []
         for link, upper, lower in ((own.thigh, f.hips, f.knees), (own.calf, f.knees, f.wheels)):
             down = (lower[:, leg] - upper[:, leg]) / link.length
             ahead = np.stack([-down[:, 1], down[:, 0]], axis=1)
             for start, end, radius in link.capsules:
                 ends = [upper[:, leg] + x * ahead - z * down for x, z in (start, end)]
-                out.append((np.stack(ends, axis=1), radius))
-        return out
-
-    def legs(self) -> Floats:
-        """Between links and wheels of the front and the rear leg, exact where it may be least."""
-        if len(self.body) <= _FEW:
-            return self._between_legs(self.everywhere)
-        radius, wheels = self.robot.wheel.radius, self.samples.frames.wheels
-        boxes = []
-        for leg in range(2):
-            ends = [(line[:, k], r) for line, r in self.capsules[leg] for k in range(2)]
-            ends.append((wheels[:, leg], radius))
-            low = reduce(np.minimum, [at - r for at, r in ends])
-            boxes.append((low, reduce(np.maximum, [at + r for at, r in ends])))
-        (low, high), (rear_low, rear_high) = boxes
-        between = np.maximum(low - rear_high, rear_low - high)
-        gap: Floats = np.hypot(*np.maximum(between, 0.0).T)
-        first = np.array([np.argmin(gap)])
-        near = np.flatnonzero(gap <= max(self._between_legs(first)[0], 0.0))
-        gap[near] = self._between_legs(near)
-        return gap
-
-    def _clearances(
-        self,
-        parts: Sequence[tuple[Floats, float, Floats]],
-        shape: Callable[[Floats], Shapes],
-    ) -> Floats:
-        """Least clearance of some parts from the ground.
-
-        It is exact where it may be less than a sample's slack, or where it may be the least of all
-        after that is taken off; elsewhere it is a bound.
-
-        Args:
-            parts: Outlines (n, k, 2), radii round them [m], and a point (n, 2) of each that shows
-                whether it lies above the ground.
-            shape: What makes shapely's geometries of outlines.
-        """
-        if len(self.body) <= _FEW:
-            return self._few_clearances(parts, shape)
-        slack = self.samples.slack
-        worst = np.full(len(slack), np.inf)
-        for outline, radius, point in parts:
-
-            def exact(
-                k: Ints, line: Floats = outline, r: float = radius, at: Floats = point
-            ) -> Floats:
-                distance = self._from_ground(shape(line[k]), k)
-                return np.where(self._above(at[k]), distance, -1.0) - r
-
-            # What is worst so far, or first sight shows, tells how much ground has to be looked at.
-            corners = list(np.moveaxis(outline, 1, 0))
-            box = reduce(np.minimum, corners), reduce(np.maximum, corners)
-            bound = self._at_least(*box, _SIGHT + radius) - radius - slack
-            first = np.array([np.argmin(bound)])
-            least = max(min(np.min(worst - slack), (exact(first) - slack[first])[0]), 0.0)
-            clear = self._at_least(*box, least + slack.max() + radius + _MORE) - radius
-            near = np.flatnonzero(clear - slack <= least)
-            clear[near] = exact(near)
-            worst = np.minimum(worst, clear)
-        return worst
-
-    def _few_clearances(
-        self,
-        parts: Sequence[tuple[Floats, float, Floats]],
-        shape: Callable[[Floats], Shapes],
-    ) -> Floats:
-        """`_clearances` of few samples, in the first piece of ground: exact for all parts."""
-        shapes = np.stack([shape(outline) for outline, _, _ in parts])
-        above = self._above(np.concatenate([point for _, _, point in parts])).reshape(shapes.shape)
-        distance = np.where(above, shapely.distance(self.lines[0], shapes), -1.0)
-        least: Floats = (distance - np.array([[radius] for _, radius, _ in parts])).min(axis=0)
-        return least
-
-    def _at_least(self, low: Floats, high: Floats, most: float) -> Floats:
-        """A bound of the distance (n,) of what lies between corners `low` and `high` (n, 2) from
-        the ground, at most `most`: what lies ahead or behind by more than that is no matter.
-        """
-        left, right = low[:, 0] - most, high[:, 0] + most
-        x, z = self.vertices.T
-        ends = np.maximum(np.interp(left, x, z), np.interp(right, x, z))
-        a, b = np.searchsorted(x, left, side="left"), np.searchsorted(x, right, side="right")
-        between = np.stack([a, b], axis=1).ravel()
-        inner = np.maximum.reduceat(np.append(z, -np.inf), between)[::2]
-        highest = np.maximum(ends, np.where(a < b, inner, -np.inf))
-        bound: Floats = np.minimum(low[:, 1] - highest, most)
-        return bound
+                lines.append(np.stack(ends, axis=1))
+                radii.append(radius)
+        return np.stack(lines, axis=1), np.array(radii)
 
     def _from_ground(self, shapes: Shapes, samples: Ints) -> Floats:
-        """Distance of `shapes` (k,) at `samples` (k,), which rise, from the ground near them."""
-        out = np.empty(len(samples))
+        """Distance of `shapes` (k,) at `samples` (k,), which do not fall, from the ground near."""
+        out = np.empty(shapes.shape)
         edges = [0, *np.searchsorted(samples, self.starts[1:]).tolist(), len(samples)]
         for line, (a, b) in zip(self.lines, pairwise(edges), strict=True):
             if a < b:
@@ -182,25 +146,78 @@ class Distances:
         b = min(len(places), int(np.searchsorted(places, x.max() + reach, side="right")) + 1)
         if b - a < 2:
             a, b = max(0, min(a, len(places) - 2)), max(2, b)
-        line = shapely.linestrings(self.vertices[a:b])
-        shapely.prepare(line)
-        return line
+        return shapely.linestrings(self.vertices[a:b])
 
-    def _above(self, points: Floats) -> NDArray[np.bool_]:
-        """Whether points (n, 2) lie above the ground; beyond the profile's ends there is none."""
-        x = self.vertices[:, 0]
-        beyond = (points[:, 0] < x[0]) | (points[:, 0] > x[-1])
-        above: NDArray[np.bool_] = (points[:, 1] > height_at(self.vertices, points[:, 0])) | beyond
+    def _above(self, points: Floats) -> Flags:
+        """Whether points (..., 2) lie above the ground; beyond the profile's ends there is none."""
+        x = points[..., 0]
+        height = height_at(self.vertices, x.ravel()).reshape(x.shape)
+        above: Flags = (points[..., 1] > height) | self._beyond(x)
         return above
 
-    def _between_legs(self, samples: Ints) -> Floats:
-        """Least distance between the links and wheels of both legs at some samples (n,)."""
-        wheels = self.samples.frames.wheels[samples]
-        parts = [
-            [(shapely.linestrings(line[samples]), radius) for line, radius in self.capsules[leg]]
-            + [(shapely.points(wheels[:, leg]), self.robot.wheel.radius)]
-            for leg in range(2)
-        ]
-        gaps = [shapely.distance(a, b) - ra - rb for a, ra in parts[0] for b, rb in parts[1]]
-        least: Floats = np.min(gaps, axis=0)
-        return least
+    def _beyond(self, x: Floats) -> Flags:
+        first, last = self.vertices[[0, -1], 0]
+        beyond: Flags = (x < first) | (x > last)
+        return beyond
+
+    def _jumps(self, points: Floats) -> Floats:
+        """How far (n - 1, k) a clearance may jump from one sample to the next, whose sign is told
+        by a point (n, k, 2): where that passes an end of the profile [m].
+        """
+        return np.where(np.diff(self._beyond(points[..., 0]), axis=0), _JUMP, 0.0)
+
+
+def _moved(corners: Floats) -> Floats:
+    """The most (n - 1, ...) that `corners` (n, ..., k, 2) move from one sample to the next [m]."""
+    x, z = np.diff(corners[..., 0], axis=0), np.diff(corners[..., 1], axis=0)
+    most: Floats = np.sqrt((x * x + z * z).max(axis=-1))
+    return most
+
+
+def _apart(one: Floats, other: Floats) -> Floats:
+    """Distances (...) of segments (..., 2, 2), found without shapely; 0 where they cross."""
+    # As complex numbers: the real part of conj(u) v is their dot product, the other their cross.
+    a, b = np.moveaxis(one[..., 0] + 1j * one[..., 1], -1, 0)
+    c, d = np.moveaxis(other[..., 0] + 1j * other[..., 1], -1, 0)
+    nearest, sides = [], []
+    for begin, line, points in ((a, b - a, (c, d)), (c, d - c, (a, b))):
+        square = np.maximum((line * np.conj(line)).real, 1e-18)
+        for point in points:
+            turned = np.conj(line) * (point - begin)
+            share = np.clip(turned.real / square, 0.0, 1.0)
+            nearest.append(np.abs(point - begin - share * line))
+            sides.append(turned.imag)
+    crossing = (sides[0] * sides[1] < 0.0) & (sides[2] * sides[3] < 0.0)
+    return np.where(crossing, 0.0, np.min(nearest, axis=0))
+
+
+def _where_it_matters(exact: Exact, slack: Floats, moved: Floats) -> Floats:
+    """Least distances (n,) of some parts, exact where they may be less than a sample's slack, or
+    may be the least of all after that is taken off; elsewhere bounds: no more than the distance.
+
+    Args:
+        exact: Tells the distances at some samples, which do not fall, of some parts.
+        slack: (n,) of the samples [m].
+        moved: (n - 1, parts) the most that a distance changes from a sample to the next [m].
+    """
+    n, parts = len(slack), moved.shape[1]
+    out = np.full((parts, n), -np.inf)
+    known = np.zeros((parts, n), np.bool_)
+    way = np.zeros((parts, n))
+    np.cumsum(moved.T, axis=1, out=way[:, 1:])
+    least = np.inf
+    for step in _STEPS if n > _FEW else (1,):
+        matters = ~known[:, ::step] & (out - slack <= max(least, 0.0) + _MORE)[:, ::step]
+        k, part = np.nonzero(matters.T)
+        k *= step
+        found = exact(k, part)
+        out[part, k] = found
+        known[part, k] = True
+        least = min(least, np.min(found - slack[k], initial=np.inf))
+        if step > 1:
+            ahead = np.maximum.accumulate(np.where(known, out + way, -np.inf), axis=1) - way
+            back = np.where(known, out - way, -np.inf)[:, ::-1]
+            back = np.maximum.accumulate(back, axis=1)[:, ::-1] + way
+            out = np.where(known, out, np.maximum(ahead, back))
+    least_of_all: Floats = out.min(axis=0)
+    return least_of_all

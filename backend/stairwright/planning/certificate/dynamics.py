@@ -13,8 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog
-from scipy.sparse import block_diag
 
 from stairwright._core import GRAVITY
 from stairwright.planning.certificate.equilibrium import TOUCH, WHEEL_GAP, touching
@@ -191,6 +189,10 @@ class _Motion:
 
 def _forces(plan: Plan, motion: _Motion) -> tuple[Floats, Floats]:
     """Least share of the motors (n,), and by how much the wrench is missed (n,) in weights."""
+    # Importing it takes as long as thirty plans, and only plans that move fast need it.
+    from scipy.optimize import linprog
+    from scipy.sparse import block_diag
+
     robot = plan.robot_description
     n, weight = len(plan.poses), robot.mass * GRAVITY
     centres = motion.frames.wheels.reshape(-1, 2)

@@ -99,18 +99,11 @@ def sampled(motion: Motion, closer: NDArray[np.bool_] | None = None) -> Samples:
     apart = np.repeat(stride / parts, parts)
     slack = 0.5 * np.maximum(np.append(apart, 0.0), np.append(0.0, apart))
     interval = np.repeat(np.arange(len(parts)), parts)
-    knots = np.arange(len(x), dtype=float)
     first = np.cumsum(parts) - parts
     share = (np.arange(parts.sum()) - np.repeat(first, parts)) / np.repeat(parts, parts)
-    at = np.append(np.repeat(knots[:-1], parts) + share, knots[-1])
 
-    def between(values: Floats) -> Floats:
-        return np.stack([np.interp(at, knots, column) for column in values.T], axis=1)
-
-    dense = replace(
-        motion,
-        body=between(motion.body),
-        joints=between(motion.joints),
-        progress=np.interp(at, knots, motion.progress),
-    )
+    poses = np.column_stack([motion.body, motion.joints, motion.progress])
+    steps = np.diff(poses, axis=0)
+    values = np.vstack([poses[interval] + share[:, None] * steps[interval], poses[-1:]])
+    dense = replace(motion, body=values[:, :3], joints=values[:, 3:7], progress=values[:, 7])
     return Samples(dense, slack, interval)

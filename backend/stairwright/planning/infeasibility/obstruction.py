@@ -34,15 +34,16 @@ from stairwright.planning.infeasibility.relaxation import (
 )
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
-from stairwright.planning.path_planner import Blocked, Path, PathPlanner
+from stairwright.planning.path_planner import Blocked, PathPlanner
 from stairwright.planning.plan import Limit, Problem
+from stairwright.planning.smoothing.path_document import PathPoses
 from stairwright.planning.threads import race, search_threads
 
 _ROUGH = 1.3  # relative precision of a factor before other quantities were asked
 _ASKED = 2  # times that candidates are ranked anew, without those that led nowhere
 
 
-def explain(planner: PathPlanner, blocked: Blocked) -> tuple[Problem, Path]:
+def explain(planner: PathPlanner, blocked: Blocked) -> tuple[Problem, PathPoses | None]:
     """Name what stops `course`, and tell how far it goes.
 
     Args:

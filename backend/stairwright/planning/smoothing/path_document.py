@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import time as clock
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.planning.binding import binding_of
-from stairwright.planning.plan import Margins, Plan, Pose, Problem, Timing, plan_id
+from stairwright.documents import Deferred
+from stairwright.planning import binding
+from stairwright.planning.plan import Binding, Margins, Plan, Pose, Problem, Timing, plan_id
 from stairwright.planning.smoothing.path_timing import path_parameter, pose_times
 from stairwright.planning.smoothing.refine import Refined
 from stairwright.planning.standing import CORNER, kink
@@ -22,45 +26,81 @@ from stairwright.terrain.wheel_path import WheelPath
 Floats = NDArray[np.float64]
 
 
-def make_poses(
-    path: WheelPath, robot: Robot, found: Refined, weights: PathWeights
-) -> tuple[list[Pose], list[int], float]:
-    """Poses, indices of the key poses, and the duration [s]."""
-    s, body, m = found.s, found.body, found.margins
-    q = m.q
-    time = pose_times(robot, s, body, q, m.firm_com_margin, m.torque_shares("leg"), weights.speed)
-    progress = path_parameter(s, body)
-    wheels = np.stack([path.centres(s[:, k]) for k in range(2)], axis=1)
-    contacts = np.stack([path.contacts(s[:, k]) for k in range(2)], axis=1)
-    points = kin.collision_points(robot, body[:, 0], body[:, 1], body[:, 2], q)
-    spare = (m.clearance, m.com_margin, m.friction - m.friction_needed, m.torque_margin("leg"))
-    columns = (
-        progress.tolist(), time.tolist(), *body.T.tolist(), _tuples(q), _pairs(wheels), _tuples(s),
-        _pairs(contacts), _tuples(m.com), _groups(points), _pairs(m.forces),
-        *(one.tolist() for one in spare),
-    )  # fmt: skip
-    poses = [
-        # The values are ours: validating thousands of floats would cost more than planning them.
-        Pose.trusted(
-            progress=u,
-            time=t,
-            x_c=x,
-            z_c=z,
-            pitch=pitch,
-            q=j,
-            wheels=w,
-            wheel_progress=sw,
-            contacts=c,
-            com=centre,
-            collision_points=cp,
-            forces=f,
-            margins=Margins.trusted(clearance=clear, com=tip, friction=slip, torque=load),
-        )
-        for u, t, x, z, pitch, j, w, sw, c, centre, cp, f, clear, tip, slip, load in zip(
-            *columns, strict=True
-        )
-    ]
-    return poses, key_poses(path, s), float(time[-1])
+@dataclass(frozen=True)
+class PathPoses:
+    """The poses of a path of n nodes; their documents are made when they are needed.
+
+    Attributes:
+        path: The wheel-centre curve.
+        robot: Who stands in them.
+        nodes: What the poses are made of.
+        progress: (n,) way since the start [m].
+        time: (n,) planned time since the start [s].
+    """
+
+    path: WheelPath
+    robot: Robot
+    nodes: Refined
+    progress: Floats
+    time: Floats
+
+    @classmethod
+    def of(cls, path: WheelPath, robot: Robot, nodes: Refined, weights: PathWeights) -> Self:
+        """Those of nodes, timed within limits of speed."""
+        s, body, m = nodes.s, nodes.body, nodes.margins
+        effort = m.torque_shares("leg")
+        time = pose_times(robot, s, body, m.q, m.firm_com_margin, effort, weights.speed)
+        return cls(path, robot, nodes, path_parameter(s, body), time)
+
+    @cached_property
+    def _spare(self) -> Floats:
+        """(4, n) margins as documents tell them: clearance, CoM, friction, torque."""
+        m = self.nodes.margins
+        friction = m.friction - m.friction_needed
+        return np.stack([m.clearance, m.com_margin, friction, m.torque_margin("leg")])
+
+    def binding(self) -> Binding:
+        """The margin that binds, and where."""
+        m = self.nodes.margins
+        margins = binding.Margins(self.robot, m.friction, self._spare, m.q, m.forces[:, :, 0])
+        return margins.binding(self.progress)
+
+    def key_poses(self) -> list[int]:
+        """Indices of start, end, and where a wheel enters a concave corner or leaves a nosing."""
+        return key_poses(self.path, self.nodes.s)
+
+    def documents(self) -> list[Pose]:
+        """One a node."""
+        s, body, m = self.nodes.s, self.nodes.body, self.nodes.margins
+        wheels = np.stack([self.path.centres(s[:, k]) for k in range(2)], axis=1)
+        contacts = np.stack([self.path.contacts(s[:, k]) for k in range(2)], axis=1)
+        points = kin.collision_points(self.robot, body[:, 0], body[:, 1], body[:, 2], m.q)
+        columns = (
+            self.progress.tolist(), self.time.tolist(), *body.T.tolist(), _tuples(m.q),
+            _pairs(wheels), _tuples(s), _pairs(contacts), _tuples(m.com), _groups(points),
+            _pairs(m.forces), *self._spare.tolist(),
+        )  # fmt: skip
+        return [
+            # The values are ours: validating thousands of floats costs more than planning them.
+            Pose.trusted(
+                progress=u,
+                time=t,
+                x_c=x,
+                z_c=z,
+                pitch=pitch,
+                q=j,
+                wheels=w,
+                wheel_progress=sw,
+                contacts=c,
+                com=centre,
+                collision_points=cp,
+                forces=f,
+                margins=Margins.trusted(clearance=clear, com=tip, friction=slip, torque=load),
+            )
+            for u, t, x, z, pitch, j, w, sw, c, centre, cp, f, clear, tip, slip, load in zip(
+                *columns, strict=True
+            )
+        ]
 
 
 def _tuples(rows: Floats) -> list[tuple[float, ...]]:
@@ -101,14 +141,13 @@ def make_plan(
     friction: float,
     weights: PathWeights,
     begun: float,
-    poses: list[Pose] | None = None,
-    critical: list[int] | None = None,
-    total: float = 0.0,
+    poses: PathPoses | None = None,
     problem: Problem | None = None,
     tolerance: Tolerance | None = None,
 ) -> Plan:
     """The document around poses or a problem."""
     chosen = weights.model_dump()
+    documents: Any = Deferred(poses.documents) if poses else []
     return Plan.model_construct(
         schema_="stairwright/plan/1",
         id=plan_id(terrain, robot, friction, "path", chosen, tolerance=tolerance),
@@ -122,12 +161,12 @@ def make_plan(
         weights=chosen,
         status="infeasible" if problem else "feasible",
         problem=problem,
-        poses=poses or [],
-        critical=critical or [],
-        timing=Timing(total=total),
+        poses=documents,
+        critical=poses.key_poses() if poses else [],
+        timing=Timing(total=float(poses.time[-1]) if poses else 0.0),
         solve_time=clock.perf_counter() - begun,
         certificate=None,
         knees=None,
-        binding=binding_of(robot, friction, poses or []),
+        binding=poses.binding() if poses else None,
         tolerance=tolerance,
     )

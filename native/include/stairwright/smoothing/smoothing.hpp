@@ -46,6 +46,7 @@ struct SmoothingProblem {
     const RobotModel& robot;
     std::span<const WheelCentres> wheels;
     std::span<const WheelCentres> contacts;  // where the wheels touch
+    std::span<const double> slopes;          // of the lines from the rear to the front wheels [rad]
     std::span<const NodeIntervals> intervals;
     std::span<const std::vector<WheelLoads>> loads;  // by node, see loads_along, where motors are weak; else empty
     std::vector<bool> fixed;  // nodes that must not move
