@@ -27,6 +27,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import os
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -72,9 +73,9 @@ class Kept:
         """What is kept, else what `find` gives, as JSON."""
         path = self._path(question)
         if not path.exists():
-            partial = path.with_suffix(".partial")
-            partial.write_text(json.dumps(find()))
-            partial.rename(path)
+            unfinished = path.with_suffix(f".{os.getpid()}")
+            unfinished.write_text(json.dumps(find()))
+            unfinished.rename(path)
         return json.loads(path.read_text())
 
 
@@ -194,11 +195,11 @@ def main() -> None:
             question: list[object] = [case, terrain.model_dump(mode="json")]
             question += [loaded.model_dump(mode="json"), options.trials]
             ask = partial(row_of, case, terrain, loaded)
-            if options.finish and not kept.has(question):
-                row = ask(0)
-                row[3] = "not run" if row[2] == "yes, success" else row[3]
-            else:
-                row = [*kept.answer(question, partial(ask, options.trials))]  # type: ignore[misc]
+            trials = 0 if options.finish and not kept.has(question) else options.trials
+            row = kept.answer([*question[:-1], trials], partial(ask, trials))
+            assert isinstance(row, list)
+            if not trials and options.trials and row[2] == "yes, success":
+                row[3] = "not run"
             rows.append([name, *row[1:]])
             print(rows[-1], flush=True)
     text = "\n".join([

@@ -105,7 +105,7 @@ def test_who_cancels_stops_the_workers(dask_cluster: LocalCluster, tmp_path: Pat
         run = Run(TrialsQuestion(_ask(CURB), 0.6, {}, 5, count=1000), "me")
         work = asyncio.create_task(found.carry_out(run))
         async with asyncio.timeout(240):
-            while run.gauge.progress < 0.101:  # parts are at work
+            while run.gauge.progress < 0.1005:  # parts are at work
                 await asyncio.sleep(0.05)
             work.cancel()
             with pytest.raises(asyncio.CancelledError):
@@ -178,7 +178,7 @@ def test_a_scheduler_that_goes_away(tmp_path: Path) -> None:
         run = Run(TrialsQuestion(_ask(CURB), 0.6, {}, 5, count=500), "me")
         work = asyncio.create_task(found.carry_out(run))
         async with asyncio.timeout(240):
-            while run.gauge.progress < 0.101:
+            while run.gauge.progress < 0.1005:
                 await asyncio.sleep(0.05)
             await asyncio.to_thread(first.close)
             with pytest.raises(WorkerDied):

@@ -113,13 +113,15 @@ class DaskSimulators:
         try:
             product = await result
         except asyncio.CancelledError:
-            if self._client is client:
+            mine = asyncio.current_task()
+            if mine is None or mine.cancelling():  # our caller does not want it any more
                 raise
             raise WorkerDied("the scheduler is gone") from None
         finally:
             self._working.discard(result)
             del self._heard[name]
-            if client is self._client:  # also what is done: nobody needs it any more
+            with contextlib.suppress(Exception):  # nobody may be there any more
+                # Also what is done: nobody needs it from now on.
                 await client.cancel(futures, asynchronous=True, force=True)
         return await asyncio.to_thread(work.keep, product, self._artefacts)
 
