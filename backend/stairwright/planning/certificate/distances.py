@@ -75,9 +75,12 @@ class Distances:
                 out[mine] = np.where(self._above(corners.mean(axis=1)), distance, -1.0)
             return out
 
-        moved = np.stack([_moved(outline) for outline in outlines], axis=1)
-        middles = np.stack([outline.mean(axis=1) for outline in outlines], axis=1)
-        return _where_it_matters(exact, self.samples.slack, moved + self._jumps(middles))
+        def moved() -> Floats:
+            middles = np.stack([outline.mean(axis=1) for outline in outlines], axis=1)
+            steps = np.stack([_moved(outline) for outline in outlines], axis=1)
+            return steps + self._jumps(middles)
+
+        return _where_it_matters(exact, self.samples.slack, len(outlines), moved)
 
     def links(self) -> Floats:
         """Of thighs and calves from the ground; see `_where_it_matters`."""
@@ -89,8 +92,10 @@ class Distances:
             clear: Floats = np.where(self._above(lines[:, 0]), distance, -1.0) - radii[part]
             return clear
 
-        moved = _moved(axes) + self._jumps(axes[:, :, 0])
-        return _where_it_matters(exact, self.samples.slack, moved)
+        def moved() -> Floats:
+            return _moved(axes) + self._jumps(axes[:, :, 0])
+
+        return _where_it_matters(exact, self.samples.slack, len(radii), moved)
 
     def legs(self) -> Floats:
         """Between links and wheels of the front and the rear leg, exact where it may be least."""
@@ -102,17 +107,27 @@ class Distances:
         front, rear = (np.append(radii, tyre) for radii in self.radii)
         touch = front[:, None] + rear
 
-        def gaps(k: Ints, _part: Ints) -> Floats:
+        def exact(k: Ints) -> Floats:
+            lines = [shapely.linestrings(ends[k]) for ends in axes]
+            apart = shapely.distance(lines[0][:, :, None], lines[1][:, None])
+            least: Floats = np.min(apart - touch, axis=(1, 2))
+            return least
+
+        def nearly(k: Ints, _part: Ints) -> Floats:
             apart = _apart(axes[0][k][:, :, None], axes[1][k][:, None])
             least: Floats = np.min(apart - touch, axis=(1, 2))
             return least
 
-        moved = np.sum([_moved(ends.reshape(len(ends), 1, -1, 2)) for ends in axes], axis=0)
-        out = _where_it_matters(gaps, np.zeros(len(self.body)), moved)
+        def moved() -> Floats:
+            steps = [_moved(ends.reshape(len(ends), 1, -1, 2)) for ends in axes]
+            return steps[0] + steps[1]
+
+        n = len(self.body)
+        if n <= _FEW:
+            return exact(np.arange(n))
+        out = _where_it_matters(nearly, np.zeros(n), 1, moved)
         k = np.flatnonzero(out <= out.min() + _MORE)
-        lines = [shapely.linestrings(ends[k]) for ends in axes]
-        apart = shapely.distance(lines[0][:, :, None], lines[1][:, None])
-        out[k] = np.min(apart - touch, axis=(1, 2))
+        out[k] = exact(k)
         return out
 
     def _capsules(self, leg: int) -> tuple[Floats, Floats]:
@@ -191,22 +206,29 @@ def _apart(one: Floats, other: Floats) -> Floats:
     return np.where(crossing, 0.0, np.min(nearest, axis=0))
 
 
-def _where_it_matters(exact: Exact, slack: Floats, moved: Floats) -> Floats:
+def _where_it_matters(
+    exact: Exact, slack: Floats, parts: int, moved: Callable[[], Floats]
+) -> Floats:
     """Least distances (n,) of some parts, exact where they may be less than a sample's slack, or
     may be the least of all after that is taken off; elsewhere bounds: no more than the distance.
 
     Args:
         exact: Tells the distances at some samples, which do not fall, of some parts.
         slack: (n,) of the samples [m].
-        moved: (n - 1, parts) the most that a distance changes from a sample to the next [m].
+        parts: How many.
+        moved: Tells the most (n - 1, parts) that a distance changes to the next sample [m].
     """
-    n, parts = len(slack), moved.shape[1]
+    n = len(slack)
+    if n <= _FEW:
+        k, part = np.divmod(np.arange(n * parts), parts)
+        all_of_them: Floats = exact(k, part).reshape(n, parts).min(axis=1)
+        return all_of_them
     out = np.full((parts, n), -np.inf)
     known = np.zeros((parts, n), np.bool_)
     way = np.zeros((parts, n))
-    np.cumsum(moved.T, axis=1, out=way[:, 1:])
+    np.cumsum(moved().T, axis=1, out=way[:, 1:])
     least = np.inf
-    for step in _STEPS if n > _FEW else (1,):
+    for step in _STEPS:
         matters = ~known[:, ::step] & (out - slack <= max(least, 0.0) + _MORE)[:, ::step]
         k, part = np.nonzero(matters.T)
         k *= step
