@@ -1100,7 +1100,7 @@ export interface components {
          */
         ControllerSettings: {
             /**
-             * Form
+             * Formulation
              * @description contact: forces at the contact points, in each wheel's own frame, wheel torque fed forward. paper: forces at the wheel centres, wheel torque from the rolling control alone (eqs 3-16)
              * @default contact
              * @enum {string}
@@ -1126,7 +1126,7 @@ export interface components {
              */
             speed?: number | null;
             /**
-             * Joint speed
+             * Joint speed limit
              * @description Cap on joint rates along the plan
              * @default 1.5
              */
@@ -1152,7 +1152,7 @@ export interface components {
              */
             wheel_damping?: number | null;
             /**
-             * Wheel synchronisation
+             * Wheel stiffness
              * @description Pull of each wheel to its place
              * @default 5
              */
@@ -1164,7 +1164,7 @@ export interface components {
              */
             yaw_damping: number;
             /**
-             * Heading
+             * Heading stiffness
              * @description Turns the robot back to the course
              * @default 4
              */
@@ -1212,31 +1212,31 @@ export interface components {
              */
             roll_damping: number;
             /**
-             * Force task
+             * Force tracking
              * @description S of eq 11 for the force rows
              * @default 1
              */
             force_weight: number;
             /**
-             * Moment task
+             * Moment tracking
              * @description S of eq 11 for the moment row
              * @default 20
              */
             moment_weight: number;
             /**
-             * Alpha
+             * Force size
              * @description Weight of the forces (eq 11); form contact: of their distance from the plan's static ones
              * @default 0.001
              */
             alpha: number;
             /**
-             * Beta
+             * Force change
              * @description Weight of the change of forces (eq 11)
              * @default 0.0001
              */
             beta: number;
             /**
-             * Friction used
+             * Friction share
              * @description Part of the friction that the QP may use; all of it where the plan itself needs more
              * @default 0.95
              */
@@ -1383,6 +1383,7 @@ export interface components {
              */
             rotor_inertia?: number | null;
             /**
+             * Inertial sensor
              * @description what the robot's own inertial sensor errs by
              * @default {
              *       "gyro_bias": 0,
@@ -1551,12 +1552,12 @@ export interface components {
              */
             accelerometer_bias: number;
             /**
-             * Gyro Noise
+             * Gyroscope noise
              * @description of a reading; the usual one if empty [rad/s]
              */
             gyro_noise?: number | null;
             /**
-             * Accelerometer Noise
+             * Accelerometer noise
              * @description of a reading; the usual one if empty [m/s^2]
              */
             accelerometer_noise?: number | null;

@@ -130,7 +130,7 @@ export interface SettingSchema {
   description?: string;
   type?: string | string[];
   /** Null where the robot or the plan decides. */
-  default?: number | boolean | string | null;
+  default?: number | boolean | string | object | null;
   minimum?: number;
   maximum?: number;
   exclusiveMinimum?: number;
@@ -139,6 +139,13 @@ export interface SettingSchema {
   unit?: string;
   symbol?: string;
   scale?: "log" | "linear";
+  /** Range of a slider, where the bounds are much wider. */
+  slider?: [number, number];
+  /** Heading that it stands under. */
+  group?: string;
+  /** Of a record: its fields. */
+  properties?: Record<string, SettingSchema>;
+  anyOf?: { type?: string; prefixItems?: SettingSchema[] }[];
   /** The only timing that this has an effect with. */
   timing?: PlanTiming;
 }
@@ -156,10 +163,12 @@ export interface Settings {
   exports: Record<"plan" | "rollout" | "robot", ExportFormat[]>;
 }
 
-export type SettingValue = number | boolean | string;
+export type SettingValue = number | boolean | string | readonly number[] | SettingValues;
 /** Null goes back to the default. */
 export type SettingChange = SettingValue | null;
-export type SettingValues = Record<string, SettingValue>;
+export interface SettingValues {
+  [name: string]: SettingValue;
+}
 
 export interface PlanRequest {
   terrain: TerrainDocument;

@@ -226,7 +226,7 @@ function Second() {
         value={form.value.second ?? ""}
         onChange={(event) => change({ second: event.currentTarget.value || null })}
       >
-        <option value="">one robot</option>
+        <option value="">no other robot</option>
         {robots.value
           .filter((each) => each.name !== robotName.value)
           .map((each) => (

@@ -24,6 +24,7 @@ import { Banner, FirstHint, Legend, Refusal, Veil } from "./notices";
 import { Obstruction } from "./obstruction";
 import { Current, Ghosts } from "./poses";
 import { Readout } from "./readout";
+import { RibbonPatterns, SpeedRibbon } from "./speed-ribbon";
 import { Dimensions, Ground, WheelPath } from "./terrain-layer";
 import { Toolbar } from "./toolbar";
 import { Guides, Stretches, Vertices } from "./vertices";
@@ -124,6 +125,7 @@ function Canvas() {
         >
           <rect width="1" height="8" class="ghs" />
         </pattern>
+        <RibbonPatterns />
         <linearGradient id="ground" x1="0" y1="0" x2="0" y2="1">
           <stop offset="0" class="ts0" />
           <stop offset="1" class="ts1" />
@@ -133,6 +135,7 @@ function Canvas() {
         <Grid />
         <Ground />
         <WheelPath />
+        <SpeedRibbon />
         <Ghosts />
         <Stretches />
         <Current />

@@ -78,7 +78,8 @@ export const changedCount = computed(
   () => Object.keys(changedWeights.value).length + Object.keys(controller.value).length,
 );
 
-function withValue(
+/** With one of them set, or taken out where it is the default. */
+export function withValue(
   values: SettingValues,
   schema: SettingSchema | undefined,
   name: string,
