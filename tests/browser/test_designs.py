@@ -38,7 +38,7 @@ def product(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Itera
         opened = Product(context.new_page()).open()
         opened.page.keyboard.press("3")
         opened.page.get_by_role("radio", name="Designs").click()
-        opened.page.locator(".front .best").first.wait_for()
+        opened.page.locator(".design-front .best").first.wait_for()
         yield opened
         assert opened.errors == []
 
@@ -47,12 +47,12 @@ def product(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Itera
 def room(product: Product) -> None:
     """Each test begins in the room."""
     product.page.keyboard.press("3")
-    product.page.locator(".front .best").first.wait_for()
+    product.page.locator(".design-front .best").first.wait_for()
 
 
 def test_arrows_walk_the_front_and_enter_opens_its_robot(product: Product) -> None:
     page = product.page
-    best = page.locator(".front .best")
+    best = page.locator(".design-front .best")
     rows = page.get_by_role("table").locator("tbody tr")
     assert best.count() == rows.count() > 1
     best.first.focus()
@@ -70,7 +70,7 @@ def test_a_click_opens_the_robot_with_the_numbers_of_the_design(product: Product
     page = product.page
     last = page.get_by_role("table").locator("tbody tr").last
     torque = last.locator("td").first.inner_text().removesuffix(" Nm")
-    page.locator(".front .best").last.click()
+    page.locator(".design-front .best").last.click()
     page.locator(".app[data-workspace=robot]").wait_for()
     shown = page.get_by_label("Leg torque, Nm", exact=True).input_value()
     assert float(shown) == float(torque)
@@ -94,4 +94,4 @@ def test_another_file_is_refused_in_words(product: Product, tmp_path: Path) -> N
     other.write_text("{}")
     page.get_by_label("Open a result").set_input_files(other)
     page.get_by_text("other.json is no result of a design search").wait_for()
-    assert page.locator(".front .best").count() > 1
+    assert page.locator(".design-front .best").count() > 1

@@ -81,6 +81,7 @@ export interface Series {
   pitch: number[];
   pitch_desired: number[];
   progress: number[];
+  progress_desired?: number[];
   contact_force?: number[][][];
 }
 
@@ -100,6 +101,7 @@ export interface Rollout extends Drive {
   plan_id?: string;
   outcome: Outcome;
   seed?: number;
+  controller?: Schemas["ControllerSettings"];
   reason?: string | null;
   metrics: Metrics;
   series: Series;

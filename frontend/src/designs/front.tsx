@@ -85,7 +85,7 @@ export function Front() {
     return () => observer.disconnect();
   }, []);
   return (
-    <div class="front" ref={holder}>
+    <div class="design-front" ref={holder}>
       <Drawing />
     </div>
   );

@@ -3,7 +3,7 @@
 import type { Trial, Trials } from "../api/types";
 import { degrees, fixed } from "../geometry/format";
 import { withUnit } from "../geometry/units";
-import { OUTCOMES } from "../results/figures";
+import { OUTCOMES, verdict } from "../results/figures";
 import { canRun } from "../state/rollouts";
 import { disturbanceSchema } from "../state/setup";
 import { deviations, replay, trialsStale, worstTrials } from "../state/trials";
@@ -54,7 +54,7 @@ function Worst({ trial }: { trial: Trial }) {
   );
   return (
     <li title={words.join(", ")}>
-      <span class={trial.outcome === "success" ? "" : "bad"}>{OUTCOMES[trial.outcome]}</span>
+      <span class={verdict(trial.outcome)}>{OUTCOMES[trial.outcome]}</span>
       <span title="Largest pitch error">{fixed(degrees(trial.pitch_error_max), 1)}°</span>
       <small>seed {trial.seed}</small>
       <button

@@ -13,6 +13,10 @@ export const OUTCOMES: Record<Outcome, string> = {
   stopped: "Stopped safely",
 };
 
+/** How it ended, as a class: a robot that stopped stands unharmed, others did not arrive. */
+export const verdict = (outcome: Outcome): "" | "caution" | "bad" =>
+  outcome === "success" ? "" : outcome === "stopped" ? "caution" : "bad";
+
 export interface Figure {
   title: string;
   /** Which of several. */
