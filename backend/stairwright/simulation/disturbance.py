@@ -65,7 +65,10 @@ class AddedPayload(Model):
 
 
 class ImuErrors(Model):
-    """The inertial sensor's errors, beside those that the usual one has."""
+    """Errors of the inertial sensor, beside those that the usual one has.
+
+    They matter where the controller's sensing is `robot`.
+    """
 
     gyro_bias: float = _field(-0.5, 0.5, "rad/s", "Gyroscope bias", "about each axis [rad/s]")
     accelerometer_bias: float = _field(
@@ -159,7 +162,7 @@ class Disturbance(Model):
     imu: ImuErrors = Field(
         ImuErrors(),
         title="Inertial sensor",
-        description="what the robot's own inertial sensor errs by",
+        description="what the robot's own inertial sensor errs by, where sensing is robot",
     )
 
     @property

@@ -1664,7 +1664,7 @@ export interface components {
             rotor_inertia?: number | null;
             /**
              * Inertial sensor
-             * @description what the robot's own inertial sensor errs by
+             * @description what the robot's own inertial sensor errs by, where sensing is robot
              * @default {
              *       "gyro_bias": 0,
              *       "accelerometer_bias": 0
@@ -1816,7 +1816,9 @@ export interface components {
         };
         /**
          * ImuErrors
-         * @description The inertial sensor's errors, beside those that the usual one has.
+         * @description Errors of the inertial sensor, beside those that the usual one has.
+         *
+         *     They matter where the controller's sensing is `robot`.
          */
         ImuErrors: {
             /**

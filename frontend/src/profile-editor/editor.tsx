@@ -4,6 +4,7 @@ import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Vec2 } from "../api/types";
 import { drawing } from "../state/drawing";
 import { outdated, preview } from "../state/planning";
+import { robotName } from "../state/setup";
 import { tool } from "../state/view";
 import { DimensionField } from "./dimension-field";
 import { EmptyCanvas } from "./empty";
@@ -161,9 +162,16 @@ export function Editor() {
       if (first || !moved.peek()) fit(drawing.peek().points);
     };
     measure();
+    // Another robot may need more room; a view that was chosen by hand stays.
+    const refit = robotName.subscribe(() => {
+      if (size.peek().width > 0 && !moved.peek()) fit(drawing.peek().points);
+    });
     const observer = new ResizeObserver(measure);
     observer.observe(element);
-    return () => observer.disconnect();
+    return () => {
+      refit();
+      observer.disconnect();
+    };
   }, []);
   return (
     <section

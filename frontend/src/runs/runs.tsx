@@ -99,7 +99,7 @@ function List() {
   return (
     // biome-ignore lint/a11y/noNoninteractiveTabindex: a scrolling region must take the focus
     <div class="runs-scroll" tabIndex={0} role="region" aria-label="List of runs">
-      <div class="run run-head" aria-hidden="true">
+      <div class="run-head" aria-hidden="true">
         <span />
         <span>terrain, robot</span>
         <span>settings</span>
