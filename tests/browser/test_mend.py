@@ -216,7 +216,7 @@ def test_margins_run_along_time_or_place(product: Product) -> None:
 def test_the_terrain_is_a_table_to_type_paste_and_save(product: Product) -> None:
     page = product.page
     page.get_by_role("button", name=TERRAIN).click()
-    page.get_by_role("button", name="Points…").click()
+    page.get_by_role("button", name="Points", exact=True).click()
     sheet = page.get_by_role("dialog", name="Points of three-stairs-up")
     field = sheet.get_by_label("z of point 7 in metres")
     field.fill("0.4")
@@ -240,3 +240,35 @@ def test_the_terrain_is_a_table_to_type_paste_and_save(product: Product) -> None
     product.has_corners(4)
     assert product.corner(2) == (0.0, pytest.approx(0.1))
     page.get_by_role("button", name="Close").click()
+
+
+def test_a_setting_beyond_its_bounds_says_them(product: Product) -> None:
+    page = product.page
+    page.get_by_role("radio", name="Trials").click()
+    field = page.get_by_label("CoM forward, value")
+    field.fill("300")
+    page.get_by_text("Between −200 and 200 mm").wait_for()
+    field.fill("20")
+    page.get_by_text("Between −200 and 200 mm").wait_for(state="detached")
+    heading = page.get_by_role("button", name="Load 1 changed")
+    heading.click()
+    field.wait_for(state="detached")
+    heading.click()
+    page.get_by_role("button", name="Reset CoM forward").click()
+    page.get_by_role("radio", name="Plan", exact=True).click()
+
+
+def test_a_rollout_is_asked_with_the_friction_of_each_wheel(product: Product) -> None:
+    page = product.page
+    page.get_by_role("radio", name="Trials").click()
+    page.get_by_label("Friction, wheels, FL").fill("0.5")
+    page.get_by_label("Friction, wheels, RR").fill("0.4")
+    page.get_by_label("Gyroscope bias, value").fill("0.1")
+    with page.expect_request(lambda asked: asked.url.endswith("/rollouts")) as sent:
+        product.run()
+    assert sent.value.post_data_json["disturbance"] == {
+        "friction_wheels": [0.5, 0.5, 0.5, 0.4],
+        "imu": {"gyro_bias": 0.1},
+    }
+    page.get_by_role("button", name="Clear", exact=True).click()
+    page.get_by_role("radio", name="Plan", exact=True).click()

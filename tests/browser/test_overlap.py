@@ -130,3 +130,61 @@ def test_a_refusal_has_no_overlaps(product: Product) -> None:
     product.planned()
     assert product.status == "infeasible"
     assert _everywhere(product) == []
+
+
+def test_a_fast_plan_has_no_overlaps(product: Product) -> None:
+    timing = product.page.get_by_role("radiogroup", name="Timing")
+    timing.get_by_role("radio", name="Fast").click()
+    product.planned()
+    product.page.locator(".ribbon path").first.wait_for(state="attached")
+    assert _everywhere(product) == []
+    timing.get_by_role("radio", name="Steady").click()
+
+
+def test_settings_with_a_bad_value_have_no_overlaps(product: Product) -> None:
+    page = product.page
+    page.get_by_role("radio", name="Controller").click()
+    field = page.get_by_label("Joint damping, value")
+    field.fill("500")
+    page.get_by_text("Between 0 and 100 Nm s/rad").wait_for()
+    assert _everywhere(product) == []
+    field.press("Escape")
+    page.get_by_role("radio", name="Plan", exact=True).click()
+
+
+def test_a_robot_that_stopped_and_its_disturbances_have_no_overlaps(product: Product) -> None:
+    page = product.page
+    page.get_by_role("radio", name="Controller").click()
+    page.get_by_label("Sensing").select_option("robot")
+    page.get_by_role("radio", name="Trials").click()
+    friction = page.get_by_label("Friction, value", exact=True).last
+    friction.fill("-0.45")
+    friction.press("Enter")
+    assert product.run() == "stopped"
+    page.get_by_role("heading", name="Stopped safely").wait_for()
+    assert _everywhere(product) == []
+    page.get_by_role("button", name="Clear", exact=True).click()
+    page.get_by_role("button", name="Reset all").click()
+    page.get_by_role("radio", name="Plan", exact=True).click()
+
+
+@pytest.mark.parametrize(("key", "room"), [("2", "robot"), ("3", "map"), ("4", "runs")])
+def test_the_other_workspaces_have_no_overlaps(product: Product, key: str, room: str) -> None:
+    page = product.page
+    page.keyboard.press(key)
+    page.locator(f".app[data-workspace={room}]").wait_for()
+    if room == "runs":
+        for pin in page.locator(".run-pin[aria-pressed=false]").all()[:2]:
+            pin.click()
+    assert _everywhere(product) == []
+    page.keyboard.press("1")
+
+
+def test_a_lost_connection_has_no_overlaps(product: Product) -> None:
+    page = product.page
+    page.route("**/api/v1/healthz", lambda route: route.abort())
+    page.get_by_text("No connection to the planner.").wait_for()
+    assert _everywhere(product) == []
+    page.unroute("**/api/v1/healthz")
+    # It tries again by itself.
+    page.get_by_text("No connection to the planner.").wait_for(state="detached")

@@ -138,7 +138,7 @@ def test_results_of_another_seed_or_controller_are_called_previous(story: Story)
     heading.get_by_text("previous settings").wait_for()
     inspector.get_by_role("button", name="Reset Maximum lead").click()
     heading.get_by_text("seed 0").wait_for()
-    inspector.get_by_role("radio", name="Weights").click()
+    inspector.get_by_role("radio", name="Plan").click()
 
 
 def test_timeline_moves_robot_and_cursors_together(story: Story) -> None:

@@ -22,6 +22,7 @@ from .origins import Cors
 from .queries import known_query
 from .read_only import ReadOnly
 from .routes import (
+    designs,
     health,
     jobs,
     live,
@@ -103,6 +104,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         margins,
         jobs,
         studies,
+        designs,
         sessions,
     ):
         api.include_router(routes.router)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from stairwright.arguments import as_model
 from stairwright.documents import Model
 from stairwright.errors import InputError
+from stairwright.setting_groups import grouped
 
 Form = Literal["contact", "paper"]
 Solver = Literal["native", "clarabel"]
@@ -17,6 +18,30 @@ Sensing = Literal["ideal", "robot"]
 
 # m; a robot that does not quite know where the next face is must push on to find it.
 MAXIMUM_LEAD: dict[Sensing, float] = {"ideal": 0.012, "robot": 0.03}
+
+GROUPS = {
+    "Controller": ("form", "solver", "sensing"),
+    "Pace": ("speed", "joint_speed", "maximum_lead"),
+    "Joints and wheels": ("joint_stiffness", "joint_damping", "wheel_damping", "wheel_sync"),
+    "Course": ("yaw_damping", "heading_stiffness"),
+    "Balance": (
+        "com_stiffness",
+        "com_damping",
+        "pitch_stiffness",
+        "pitch_damping",
+        "pitch_integral",
+        "roll_stiffness",
+        "roll_damping",
+    ),
+    "Contact forces": (
+        "force_weight",
+        "moment_weight",
+        "alpha",
+        "beta",
+        "friction_share",
+        "force_limit",
+    ),
+}
 
 
 def _number(
@@ -33,9 +58,11 @@ def _number(
 class ControllerSettings(Model):
     """How the robot is driven along its plan. Equation numbers are the paper's."""
 
+    model_config = ConfigDict(json_schema_extra=grouped(GROUPS))
+
     form: Form = Field(
         "contact",
-        title="Form",
+        title="Formulation",
         description="contact: forces at the contact points, in each wheel's own frame, wheel "
         "torque fed forward. paper: forces at the wheel centres, wheel torque from the rolling "
         "control alone (eqs 3-16)",
@@ -57,7 +84,7 @@ class ControllerSettings(Model):
         None, 0.02, 1.0, "m/s", "Speed", "Along the course; the plan's own timing if empty", "log"
     )
     joint_speed: float = _number(
-        1.5, 0.1, 10.0, "rad/s", "Joint speed", "Cap on joint rates along the plan", "log"
+        1.5, 0.1, 10.0, "rad/s", "Joint speed limit", "Cap on joint rates along the plan", "log"
     )
     maximum_lead: float | None = _number(
         None,
@@ -79,13 +106,13 @@ class ControllerSettings(Model):
         None, 0.0, 20.0, "Nm s/rad", "Wheel damping", "K_d of eq 14; the robot's if empty", "log"
     )
     wheel_sync: float = _number(
-        5.0, 0.0, 20.0, "1/s", "Wheel synchronisation", "Pull of each wheel to its place", "linear"
+        5.0, 0.0, 20.0, "1/s", "Wheel stiffness", "Pull of each wheel to its place", "linear"
     )
     yaw_damping: float = _number(
         1.2, 0.0, 20.0, "1", "Yaw damping", "K_d of eq 16, per wheel radius and track", "linear"
     )
     heading_stiffness: float = _number(
-        4.0, 0.0, 40.0, "1/s", "Heading", "Turns the robot back to the course", "linear"
+        4.0, 0.0, 40.0, "1/s", "Heading stiffness", "Turns the robot back to the course", "linear"
     )
     com_stiffness: float = _number(
         40.0, 0.0, 400.0, "1/s²", "CoM stiffness", "K_p of eq 8, position", "log"
@@ -121,29 +148,29 @@ class ControllerSettings(Model):
         14.0, 0.0, 100.0, "1/s", "Roll damping", "The same against the rate of roll", "linear"
     )
     force_weight: float = _number(
-        1.0, 0.001, 100.0, "1", "Force task", "S of eq 11 for the force rows", "log"
+        1.0, 0.001, 100.0, "1", "Force tracking", "S of eq 11 for the force rows", "log"
     )
     moment_weight: float = _number(
-        20.0, 0.001, 1000.0, "1/m²", "Moment task", "S of eq 11 for the moment row", "log"
+        20.0, 0.001, 1000.0, "1/m²", "Moment tracking", "S of eq 11 for the moment row", "log"
     )
     alpha: float = _number(
         1e-3,
         1e-6,
         1.0,
         "1",
-        "Alpha",
+        "Force size",
         "Weight of the forces (eq 11); form contact: of their distance from the plan's static ones",
         "log",
     )
     beta: float = _number(
-        1e-4, 0.0, 1.0, "1", "Beta", "Weight of the change of forces (eq 11)", "linear"
+        1e-4, 0.0, 1.0, "1", "Force change", "Weight of the change of forces (eq 11)", "linear"
     )
     friction_share: float = _number(
         0.95,
         0.1,
         1.0,
         "1",
-        "Friction used",
+        "Friction share",
         "Part of the friction that the QP may use; all of it where the plan itself needs more",
         "linear",
     )

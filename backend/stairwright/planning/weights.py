@@ -23,14 +23,15 @@ def _weight(default: float, low: float, high: float, unit: str, title: str, text
     )
 
 
-_SPEED: Any = Field(
-    0.12,
-    ge=0.02,
-    le=1.0,
-    title="Speed",
-    description="Wheel speed along the course where limits and margins allow",
-    json_schema_extra={"unit": "m/s", "scale": "log"},
-)
+def _speed(**extra: str) -> Any:
+    return Field(
+        0.12,
+        ge=0.02,
+        le=1.0,
+        title="Speed",
+        description="Wheel speed along the course where limits and margins allow",
+        json_schema_extra={"unit": "m/s", "scale": "log", **extra},
+    )
 
 
 class CriticalWeights(Model):
@@ -46,7 +47,7 @@ class CriticalWeights(Model):
     posture: float = _weight(
         0.01, 1e-5, 10.0, "rad⁻²", "Posture", "Pull of the joints to the standing pose"
     )
-    speed: float = _SPEED
+    speed: float = _speed()
     exact_links: bool = Field(
         True,
         title="Exact links",
@@ -102,7 +103,7 @@ class PathWeights(Model):
         "Makes small how far the pitch is off 0.8 of the slope between the wheels "
         "[rad, rms along the path]",
     )
-    speed: float = _SPEED
+    speed: float = _speed(timing="steady")
     aggressiveness: float = Field(
         0.75,
         ge=0.0,
@@ -132,7 +133,7 @@ class PathWeights(Model):
 class NominalWeights(Model):
     """The baseline optimises nothing; only its speed can be set."""
 
-    speed: float = _SPEED
+    speed: float = _speed()
 
 
 MODELS: dict[Method, type[Model]] = {

@@ -5,18 +5,48 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from stairwright.arguments import as_model
 from stairwright.documents import Model
+from stairwright.setting_groups import grouped
+
+GROUPS = {
+    "Friction": ("friction", "friction_front", "friction_rear", "friction_wheels"),
+    "Load": ("mass", "payload", "com_x", "com_z"),
+    "Terrain": ("height", "step_height_error", "face_place_error", "cross_slope"),
+    "Start": ("heading", "x_offset"),
+    "Sensors": ("odometry_scale", "pitch_bias", "noise", "imu"),
+    "Motors": ("delay", "bandwidth", "torque_scale", "stiction", "rotor_inertia"),
+}
 
 Error = Annotated[float, Field(ge=-0.1, le=0.1)]  # m
 Friction = Annotated[float, Field(gt=0.0, le=5.0)]
 
 
-def _field(low: float, high: float, unit: str, title: str, text: str) -> Any:
+def _field(
+    low: float,
+    high: float,
+    unit: str,
+    title: str,
+    text: str,
+    slider: tuple[float, float] | None = None,
+) -> Any:
+    """A number that is 0 where nothing deviates; `slider`: a range for hands, within the bounds."""
     extra: dict[str, Any] = {"unit": unit, "scale": "linear"}
+    if slider:
+        extra["slider"] = slider
     return Field(0.0, ge=low, le=high, title=title, description=text, json_schema_extra=extra)
+
+
+def _maybe(high: float, unit: str, title: str, text: str) -> Any:
+    """A number from 0 that stays as it is where it is empty."""
+
+    def extra(schema: dict[str, Any]) -> None:
+        del schema["anyOf"]  # the bounds stand where a slider looks for them
+        schema.update(type=["number", "null"], minimum=0.0, maximum=high, unit=unit, scale="linear")
+
+    return Field(None, ge=0.0, le=high, title=title, description=text, json_schema_extra=extra)
 
 
 def _deviation(title: str, text: str) -> Any:
@@ -35,29 +65,34 @@ class AddedPayload(Model):
 
 
 class ImuErrors(Model):
-    """The inertial sensor's errors, beside those that the usual one has."""
+    """Errors of the inertial sensor, beside those that the usual one has.
+
+    They matter where the controller's sensing is `robot`.
+    """
 
     gyro_bias: float = _field(-0.5, 0.5, "rad/s", "Gyroscope bias", "about each axis [rad/s]")
     accelerometer_bias: float = _field(
-        -5.0, 5.0, "m/s^2", "Accelerometer bias", "along each axis [m/s^2]"
+        -5.0, 5.0, "m/s²", "Accelerometer bias", "along each axis [m/s^2]"
     )
-    gyro_noise: float | None = Field(
-        None, ge=0.0, le=1.0, description="of a reading; the usual one if empty [rad/s]"
+    gyro_noise: float | None = _maybe(
+        1.0, "rad/s", "Gyroscope noise", "of a reading; the usual one if empty [rad/s]"
     )
-    accelerometer_noise: float | None = Field(
-        None, ge=0.0, le=20.0, description="of a reading; the usual one if empty [m/s^2]"
+    accelerometer_noise: float | None = _maybe(
+        20.0, "m/s²", "Accelerometer noise", "of a reading; the usual one if empty [m/s^2]"
     )
 
 
 class Disturbance(Model):
     """Deviations of one rollout from what the plan and the controller believe."""
 
-    friction: float = _field(-5.0, 5.0, "1", "Friction", "added to the true friction")
+    model_config = ConfigDict(json_schema_extra=grouped(GROUPS))
+
+    friction: float = _field(-5.0, 5.0, "1", "Friction", "added to the true friction", (-0.5, 0.5))
     friction_front: float = _field(
-        -5.0, 5.0, "1", "Friction, front", "added to that, at the front wheels"
+        -5.0, 5.0, "1", "Friction, front", "added to that, at the front wheels", (-0.5, 0.5)
     )
     friction_rear: float = _field(
-        -5.0, 5.0, "1", "Friction, rear", "added to that, at the rear wheels"
+        -5.0, 5.0, "1", "Friction, rear", "added to that, at the rear wheels", (-0.5, 0.5)
     )
     friction_wheels: tuple[Friction, Friction, Friction, Friction] | None = Field(
         None,
@@ -69,7 +104,13 @@ class Disturbance(Model):
         0.0,
         title="Payload",
         description="on top of the trunk's middle [kg], or a mass and its place",
-        json_schema_extra={"unit": "kg", "scale": "linear", "minimum": 0.0, "maximum": 100.0},
+        json_schema_extra={
+            "unit": "kg",
+            "scale": "linear",
+            "minimum": 0.0,
+            "maximum": 100.0,
+            "slider": (0.0, 10.0),
+        },
     )
     com_x: float = _field(-0.2, 0.2, "m", "CoM forward", "the robot's CoM moves forward [m]")
     com_z: float = _field(-0.2, 0.2, "m", "CoM up", "the robot's CoM moves up [m]")
@@ -98,26 +139,31 @@ class Disturbance(Model):
         -0.2, 0.2, "rad", "Pitch bias", "added to the pitch: the IMU is mounted pitched [rad]"
     )
     noise: float = _field(
-        0.0, 20.0, "1", "Sensor noise", "sensor noise, in units of the sensors' own"
+        0.0, 20.0, "1", "Sensor noise", "sensor noise, in units of the sensors' own", (0.0, 5.0)
     )
     delay: float = _field(0.0, 0.1, "s", "Delay", "from sensing to torque [s]")
     bandwidth: float = _field(
-        0.0, 500.0, "Hz", "Torque bandwidth", "of the torques [Hz]; 0: they act at once"
+        0.0,
+        500.0,
+        "Hz",
+        "Torque bandwidth",
+        "of the torques [Hz]; 0: they act at once",
+        (0.0, 100.0),
     )
     torque_scale: float = _field(
         -0.5, 0.5, "1", "Motor torque", "share by which motors give more than asked for"
     )
     stiction: float = _field(
-        0.0, 20.0, "Nm", "Stiction", "dry friction of each leg joint and wheel [Nm]"
+        0.0, 20.0, "Nm", "Stiction", "dry friction of each leg joint and wheel [Nm]", (0.0, 3.0)
     )
-    rotor_inertia: float | None = Field(
-        None,
-        ge=0.0,
-        le=1.0,
-        title="Rotor inertia",
-        description="of every motor, as its joint feels it [kg m^2]",
+    rotor_inertia: float | None = _maybe(
+        1.0, "kg m²", "Rotor inertia", "of every motor, as its joint feels it [kg m^2]"
     )
-    imu: ImuErrors = Field(ImuErrors(), description="what the robot's own inertial sensor errs by")
+    imu: ImuErrors = Field(
+        ImuErrors(),
+        title="Inertial sensor",
+        description="what the robot's own inertial sensor errs by, where sensing is robot",
+    )
 
     @property
     def load(self) -> AddedPayload:

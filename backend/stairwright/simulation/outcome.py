@@ -124,7 +124,7 @@ def judge(ending: Ending, loads: LinkLoads, weight: float) -> tuple[Outcome, str
         rest = "" if ending.cause == "arrived" else f" It ended {where}."
         return "collided", f"{_words(link)} carried {loads.peak:.0f} N at {time:.1f} s.{rest}"
     if ending.cause == "stopped":
-        return "stopped", f"The robot stopped and stands: {ending.detail} {where}."
+        return "stopped", f"The robot stopped {where}, and stands: {ending.detail}."
     if loads.self_contacts:
         return "collided", f"Its legs touched each other. It ended {where}."
     if ending.cause == "arrived" and ending.error <= ARRIVED:

@@ -7,6 +7,7 @@ the same designs whoever computes them, and one that was interrupted is replayed
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +24,7 @@ from stairwright.robot.description import Robot
 from .dataset import dataset_of
 from .design_document import MASS, Aim, Design, design_id
 from .design_result import Candidate, DesignResult, with_best
+from .design_shelf import keep_result
 from .document import Study, study_id
 from .fill import fill, is_complete
 from .keeping import kept_store, studies_folder
@@ -35,6 +37,7 @@ from .targets import target
 from .version import engine_of
 
 _START = 16  # designs that are spread over the bounds before any is foretold
+_TOLD = 2.0  # s between results that are kept for whoever looks on
 
 
 def design(
@@ -66,13 +69,28 @@ def design(
     name = design_id(chosen, version)
     folder = studies_folder() / name if store is None else Path(store)
     engine = choose_engine(scheduler, workers)
+    search = _Search(chosen, engine, folder, version, stopped)
+    told = -math.inf
+
+    def result(complete: bool) -> DesignResult:
+        candidates = with_best(chosen.aims, search.tried)
+        return DesignResult(id=name, design=chosen, complete=complete, candidates=candidates)
+
+    def tell(done: int, total: int) -> None:
+        nonlocal told
+        if time.monotonic() - told >= _TOLD:
+            keep_result(result(False), folder)
+            told = time.monotonic()
+        if progress is not None:
+            progress(done, total)
+
     try:
-        search = _Search(chosen, engine, folder, version, stopped)
-        complete = search.run(progress)
+        complete = search.run(tell)
     finally:
         engine.close()
-    candidates = with_best(chosen.aims, search.tried)
-    return DesignResult(id=name, design=chosen, complete=complete, candidates=candidates)
+    found = result(complete)
+    keep_result(found, folder)
+    return found
 
 
 def prepared_design(
@@ -142,7 +160,7 @@ class _Search:
             sampler=sampler, directions=[aim.direction for aim in design.aims]
         )
 
-    def run(self, progress: Callable[[int, int], None] | None) -> bool:
+    def run(self, progress: Callable[[int, int], None]) -> bool:
         """Try generations until there are enough; False if it was stopped before."""
         design, number = self._design, 0
         while len(self.tried) < design.designs:
@@ -154,8 +172,7 @@ class _Search:
             for proposal, candidate in zip(proposed, candidates, strict=True):
                 self._tell(proposal, candidate)
             number += 1
-            if progress is not None:
-                progress(len(self.tried), design.designs)
+            progress(len(self.tried), design.designs)
         return True
 
     def _propose(self) -> _Proposal:

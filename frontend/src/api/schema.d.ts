@@ -746,6 +746,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/designs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Designs
+         * @description Searches of `stairwright design` in this data folder, newest first; those at work too.
+         */
+        get: operations["list_designs"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/designs/{design_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Design
+         * @description Every design that was tried so far, and the best ones with their robots.
+         */
+        get: operations["get_design"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sessions": {
         parameters: {
             query?: never;
@@ -886,6 +926,118 @@ export interface components {
              * @description of its mass centre in the trunk's frame; on top if empty [m]
              */
             place?: number[] | null;
+        };
+        /**
+         * Aim
+         * @description What to make small or large: a number that varies, `mass`, a result, or a border.
+         *
+         *     With `between` and `tolerance` it is the last value of a quantity of the terrain, such as
+         *     step.height, that a design passes; at most one aim is such a border.
+         */
+        Aim: {
+            /** Minimise */
+            minimise?: string | null;
+            /** Maximise */
+            maximise?: string | null;
+            /** Between */
+            between?: number[] | null;
+            /** Tolerance */
+            tolerance?: number | null;
+        };
+        /**
+         * Ask
+         * @description A study that needs no axes of its own: designs are one, and a border may be another.
+         */
+        Ask: {
+            /**
+             * Schema
+             * @default stairwright/study/1
+             * @constant
+             */
+            schema: "stairwright/study/1";
+            /**
+             * Name
+             * @default
+             */
+            name: string;
+            /**
+             * Description
+             * @default
+             */
+            description: string;
+            /**
+             * Terrain
+             * @description a name, a document, or a kind with measures; by the axes if empty
+             */
+            terrain?: (string | components["schemas"]["StairParameters"] | components["schemas"]["RampParameters"] | components["schemas"]["FlatParameters"] | components["schemas"]["Terrain"]) | null;
+            /**
+             * Robot
+             * @default a1_wheeled
+             */
+            robot: string | components["schemas"]["Robot"];
+            /**
+             * Robots
+             * @description documents of the robots that an axis `robot` names
+             * @default {}
+             */
+            robots: {
+                [key: string]: components["schemas"]["Robot"];
+            };
+            /**
+             * Friction
+             * @description the terrain's own by default
+             */
+            friction?: number | null;
+            /**
+             * Method
+             * @default path
+             * @enum {string}
+             */
+            method: "path" | "critical" | "nominal";
+            /**
+             * Weights
+             * @default {}
+             */
+            weights: {
+                [key: string]: boolean | number;
+            };
+            /**
+             * Axes
+             * @default []
+             */
+            axes: components["schemas"]["Axis"][];
+            /**
+             * Compute
+             * @default plan
+             * @enum {string}
+             */
+            compute: "plan" | "rollout" | "trials";
+            /**
+             * Diagnose
+             * @description of which cells without a way is found out what would open it, which takes most of their time: all, those at the last value of the boundary axis, or none
+             * @default all
+             * @enum {string}
+             */
+            diagnose: "all" | "last" | "none";
+            /**
+             * Controller
+             * @description of rollouts and trials
+             * @default {}
+             */
+            controller: {
+                [key: string]: unknown;
+            };
+            /**
+             * Seed
+             * @default 0
+             */
+            seed: number;
+            /**
+             * @default {
+             *       "count": 29
+             *     }
+             */
+            trials: components["schemas"]["TrialSettings"];
         };
         /**
          * Axis
@@ -1052,6 +1204,42 @@ export interface components {
             up: "z" | "y";
         };
         /**
+         * Candidate
+         * @description One design that was tried.
+         */
+        Candidate: {
+            /**
+             * Values
+             * @description of what varies
+             */
+            values: {
+                [key: string]: number;
+            };
+            /**
+             * Aims
+             * @description None where it does not pass
+             */
+            aims: {
+                [key: string]: number | null;
+            };
+            /** Passed */
+            passed: boolean;
+            /**
+             * Reason
+             * @description why it does not pass
+             * @default
+             */
+            reason: string;
+            /**
+             * Best
+             * @description no other one is as good in all aims, better in one
+             * @default false
+             */
+            best: boolean;
+            /** @description of the best ones */
+            robot?: components["schemas"]["Robot"] | null;
+        };
+        /**
          * CellDocument
          * @description One cell of a study.
          */
@@ -1152,7 +1340,7 @@ export interface components {
          */
         ControllerSettings: {
             /**
-             * Form
+             * Formulation
              * @description contact: forces at the contact points, in each wheel's own frame, wheel torque fed forward. paper: forces at the wheel centres, wheel torque from the rolling control alone (eqs 3-16)
              * @default contact
              * @enum {string}
@@ -1178,7 +1366,7 @@ export interface components {
              */
             speed?: number | null;
             /**
-             * Joint speed
+             * Joint speed limit
              * @description Cap on joint rates along the plan
              * @default 1.5
              */
@@ -1204,7 +1392,7 @@ export interface components {
              */
             wheel_damping?: number | null;
             /**
-             * Wheel synchronisation
+             * Wheel stiffness
              * @description Pull of each wheel to its place
              * @default 5
              */
@@ -1216,7 +1404,7 @@ export interface components {
              */
             yaw_damping: number;
             /**
-             * Heading
+             * Heading stiffness
              * @description Turns the robot back to the course
              * @default 4
              */
@@ -1264,31 +1452,31 @@ export interface components {
              */
             roll_damping: number;
             /**
-             * Force task
+             * Force tracking
              * @description S of eq 11 for the force rows
              * @default 1
              */
             force_weight: number;
             /**
-             * Moment task
+             * Moment tracking
              * @description S of eq 11 for the moment row
              * @default 20
              */
             moment_weight: number;
             /**
-             * Alpha
+             * Force size
              * @description Weight of the forces (eq 11); form contact: of their distance from the plan's static ones
              * @default 0.001
              */
             alpha: number;
             /**
-             * Beta
+             * Force change
              * @description Weight of the change of forces (eq 11)
              * @default 0.0001
              */
             beta: number;
             /**
-             * Friction used
+             * Friction share
              * @description Part of the friction that the QP may use; all of it where the plan itself needs more
              * @default 0.95
              */
@@ -1298,6 +1486,98 @@ export interface components {
              * @description Largest normal force of a wheel (eq 12); 1.3 times the robot's weight if empty
              */
             force_limit?: number | null;
+        };
+        /**
+         * Design
+         * @description A design study (``stairwright/design/1``).
+         *
+         *     A design is a robot with numbers of its file changed. It counts where every cell of `ask`, a
+         *     study without the robot's own axes, passes: plans, rollouts or trials, as that computes.
+         */
+        Design: {
+            /**
+             * Schema
+             * @default stairwright/design/1
+             * @constant
+             */
+            schema: "stairwright/design/1";
+            /**
+             * Name
+             * @default
+             */
+            name: string;
+            /**
+             * Description
+             * @default
+             */
+            description: string;
+            /** @description what each design has to pass */
+            ask: components["schemas"]["Ask"];
+            /** Vary */
+            vary: components["schemas"]["Vary"][];
+            /** Aims */
+            aims: components["schemas"]["Aim"][];
+            /**
+             * Designs
+             * @description how many to try
+             * @default 200
+             */
+            designs: number;
+            /**
+             * Generation
+             * @description designs tried at once
+             * @default 8
+             */
+            generation: number;
+            /**
+             * Seed
+             * @description of what is proposed
+             * @default 0
+             */
+            seed: number;
+        };
+        /**
+         * DesignResult
+         * @description The outcome (``stairwright/design-result/1``).
+         */
+        DesignResult: {
+            /**
+             * Schema
+             * @default stairwright/design-result/1
+             * @constant
+             */
+            schema: "stairwright/design-result/1";
+            /** Id */
+            id: string;
+            design: components["schemas"]["Design"];
+            /** Complete */
+            complete: boolean;
+            /** Candidates */
+            candidates: components["schemas"]["Candidate"][];
+        };
+        /**
+         * DesignSummary
+         * @description What a list tells of a design search.
+         */
+        DesignSummary: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+            /** Changed */
+            changed: number;
+            /** Designs */
+            designs: number;
+            /** Tried */
+            tried: number;
+            /** Passed */
+            passed: number;
+            /** Best */
+            best: number;
+            /** Complete */
+            complete: boolean;
+            /** Aims */
+            aims: components["schemas"]["Aim"][];
         };
         /**
          * Disturbance
@@ -1435,7 +1715,8 @@ export interface components {
              */
             rotor_inertia?: number | null;
             /**
-             * @description what the robot's own inertial sensor errs by
+             * Inertial sensor
+             * @description what the robot's own inertial sensor errs by, where sensing is robot
              * @default {
              *       "gyro_bias": 0,
              *       "accelerometer_bias": 0
@@ -1587,7 +1868,9 @@ export interface components {
         };
         /**
          * ImuErrors
-         * @description The inertial sensor's errors, beside those that the usual one has.
+         * @description Errors of the inertial sensor, beside those that the usual one has.
+         *
+         *     They matter where the controller's sensing is `robot`.
          */
         ImuErrors: {
             /**
@@ -1603,12 +1886,12 @@ export interface components {
              */
             accelerometer_bias: number;
             /**
-             * Gyro Noise
+             * Gyroscope noise
              * @description of a reading; the usual one if empty [rad/s]
              */
             gyro_noise?: number | null;
             /**
-             * Accelerometer Noise
+             * Accelerometer noise
              * @description of a reading; the usual one if empty [m/s^2]
              */
             accelerometer_noise?: number | null;
@@ -3651,6 +3934,28 @@ export interface components {
              * @default []
              */
             outline: components["schemas"]["Outline"][];
+        };
+        /**
+         * Vary
+         * @description A number of the robot's file, and its bounds.
+         */
+        Vary: {
+            /**
+             * Name
+             * @description such as robot.calf.length or payload
+             */
+            name: string;
+            /**
+             * Between
+             * @description least and most
+             */
+            between: number[];
+            /**
+             * Log
+             * @description try ratios evenly instead of differences
+             * @default false
+             */
+            log: boolean;
         };
         /**
          * Wheel
@@ -8247,6 +8552,158 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    list_designs: {
+        parameters: {
+            query?: {
+                /** @description at most this many */
+                limit?: number;
+                /** @description after this many */
+                offset?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    ETag: components["headers"]["ETag"];
+                    "X-Total-Count": components["headers"]["X-Total-Count"];
+                    Link: components["headers"]["Link"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DesignSummary"][];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    get_design: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                design_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    ETag: components["headers"]["ETag"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DesignResult"];
+                };
             };
             /** @description Bad Request: `bad-json`, `host` */
             400: {

@@ -2,7 +2,16 @@
 
 import { BASE, call, json } from "./client";
 import type { components } from "./schema";
-import type { Margins, Method, Metrics, Outcome, Plan, SettingValues, Vec2 } from "./types";
+import type {
+  Margins,
+  Method,
+  Metrics,
+  Outcome,
+  Plan,
+  PlanTiming,
+  SettingValues,
+  Vec2,
+} from "./types";
 
 export type Kind = "plans" | "rollouts" | "trials";
 
@@ -18,7 +27,8 @@ export interface Summary {
   tolerance?: SettingValues;
   controller?: SettingValues;
   seed?: number;
-  disturbance?: Record<string, number>;
+  disturbance?: SettingValues;
+  timing?: PlanTiming;
   margins?: Margins | null;
   /** [s] */
   duration?: number | null;

@@ -81,6 +81,7 @@ export interface Series {
   pitch: number[];
   pitch_desired: number[];
   progress: number[];
+  progress_desired?: number[];
   contact_force?: number[][][];
 }
 
@@ -100,6 +101,7 @@ export interface Rollout extends Drive {
   plan_id?: string;
   outcome: Outcome;
   seed?: number;
+  controller?: Schemas["ControllerSettings"];
   reason?: string | null;
   metrics: Metrics;
   series: Series;
@@ -130,7 +132,7 @@ export interface SettingSchema {
   description?: string;
   type?: string | string[];
   /** Null where the robot or the plan decides. */
-  default?: number | boolean | string | null;
+  default?: number | boolean | string | object | null;
   minimum?: number;
   maximum?: number;
   exclusiveMinimum?: number;
@@ -139,6 +141,13 @@ export interface SettingSchema {
   unit?: string;
   symbol?: string;
   scale?: "log" | "linear";
+  /** Range of a slider, where the bounds are much wider. */
+  slider?: [number, number];
+  /** Heading that it stands under. */
+  group?: string;
+  /** Of a record: its fields. */
+  properties?: Record<string, SettingSchema>;
+  anyOf?: { type?: string; prefixItems?: SettingSchema[] }[];
   /** The only timing that this has an effect with. */
   timing?: PlanTiming;
 }
@@ -157,10 +166,12 @@ export interface Settings {
   exports: Record<"plan" | "rollout" | "robot", ExportFormat[]>;
 }
 
-export type SettingValue = number | boolean | string;
+export type SettingValue = number | boolean | string | readonly number[] | SettingValues;
 /** Null goes back to the default. */
 export type SettingChange = SettingValue | null;
-export type SettingValues = Record<string, SettingValue>;
+export interface SettingValues {
+  [name: string]: SettingValue;
+}
 
 export interface PlanRequest {
   terrain: TerrainDocument;

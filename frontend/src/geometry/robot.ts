@@ -31,8 +31,8 @@ export interface RobotShape {
   /** Front and rear. */
   legs: [LegShape, LegShape];
   wheel: number;
-  /** Peak torques [Nm]. */
-  limit: { leg: number; wheel: number };
+  /** Peak torques [Nm]; `leg` is the smaller one of thigh and calf. */
+  limit: { leg: number; thigh: number; calf: number; wheel: number };
   /** In trunk sizes from its centre, and as fractions of the links. */
   collisionPoints: { trunk: Vec2[]; thigh: number[]; calf: number[] };
 }
@@ -95,7 +95,7 @@ export function robotShape(file: SentRobot): RobotShape {
       },
     ],
     wheel: file.wheel.radius,
-    limit: { leg: legTorque(file), wheel: file.actuators.wheel.torque },
+    limit: limitOf(file),
     collisionPoints: pointsOf(file, outline.flat(), size),
   };
 }
@@ -141,9 +141,11 @@ function loadBox(robot: RobotShape): Vec2[] | null {
 }
 
 /** The weaker of thigh's and calf's peak torque [Nm]. */
-function legTorque(file: SentRobot): number {
-  const { leg, thigh, calf } = file.actuators;
-  return Math.min((thigh ?? leg)?.torque ?? Infinity, (calf ?? leg)?.torque ?? Infinity);
+function limitOf({ actuators }: SentRobot): RobotShape["limit"] {
+  const { leg, wheel } = actuators;
+  const thigh = (actuators.thigh ?? leg)?.torque ?? Number.POSITIVE_INFINITY;
+  const calf = (actuators.calf ?? leg)?.torque ?? Number.POSITIVE_INFINITY;
+  return { leg: Math.min(thigh, calf), thigh, calf, wheel: wheel.torque };
 }
 
 /** A vector of the trunk frame in the world; pitch turns about +y, so nose-up is negative. */

@@ -18,9 +18,11 @@ import {
 } from "../state/setup";
 import { inspectorOpen } from "../state/view";
 import { Icon } from "../ui/icon";
+import { Switch } from "../ui/switch";
 import { SeedRow } from "./seed";
 import { Segments } from "./segments";
-import { SettingRow, Switch } from "./slider";
+import { SettingGroups } from "./setting-groups";
+import { SettingRow } from "./setting-row";
 import { Tolerance } from "./tolerance";
 import { DisturbancesAndTrials } from "./trials";
 
@@ -34,15 +36,15 @@ const TIMINGS: [PlanTiming, string][] = [
   ["fast", "Fast"],
 ];
 
-type Page = "weights" | "controller" | "trials";
+type Page = "plan" | "controller" | "trials";
 const PAGES: [Page, string][] = [
-  ["weights", "Weights"],
+  ["plan", "Plan"],
   ["controller", "Controller"],
   ["trials", "Trials"],
 ];
 
 export function Inspector() {
-  const [page, setPage] = useState<Page>("weights");
+  const [page, setPage] = useState<Page>("plan");
   const open = inspectorOpen.value;
   return (
     <section class={open ? "insp" : "insp shut"} aria-label="Inspector">
@@ -73,50 +75,59 @@ export function Inspector() {
       </div>
       {open && (
         <div class="bd">
-          <Segments
-            label="Method"
-            options={METHODS}
-            value={method.value}
-            onChoose={(next) => {
-              method.value = next;
-            }}
-          />
-          {method.value === "path" && (
-            <Segments
-              label="Timing"
-              options={TIMINGS}
-              value={timing.value}
-              onChoose={(next) => {
-                timing.value = next;
-              }}
-            />
-          )}
-          <div class="r2 cmp-row">
-            <span class="lab">Compare</span>
-            <div class="ab">
-              <span>
-                <i />A planned
-              </span>
-              <span>
-                <i />B nominal pose
-              </span>
-            </div>
-            <Switch
-              label="Compare A with B"
-              on={compare.value}
-              onChange={(on) => {
-                compare.value = on;
-              }}
-            />
-          </div>
+          {page === "plan" && <Planning />}
           <div class="settings">
-            {page === "weights" && <Weights />}
+            {page === "plan" && <Weights />}
             {page === "controller" && <Controller />}
             {page === "trials" && <DisturbancesAndTrials />}
           </div>
         </div>
       )}
     </section>
+  );
+}
+
+/** How the plan is made, and the plan that it is compared with. */
+function Planning() {
+  return (
+    <>
+      <Segments
+        label="Method"
+        options={METHODS}
+        value={method.value}
+        onChoose={(next) => {
+          method.value = next;
+        }}
+      />
+      {method.value === "path" && (
+        <Segments
+          label="Timing"
+          options={TIMINGS}
+          value={timing.value}
+          onChoose={(next) => {
+            timing.value = next;
+          }}
+        />
+      )}
+      <div class="r2 cmp-row">
+        <span class="lab">Compare</span>
+        <div class="ab">
+          <span>
+            <i />A planned
+          </span>
+          <span>
+            <i />B nominal pose
+          </span>
+        </div>
+        <Switch
+          label="Compare A with B"
+          on={compare.value}
+          onChange={(on) => {
+            compare.value = on;
+          }}
+        />
+      </div>
+    </>
   );
 }
 
@@ -146,15 +157,12 @@ function Controller() {
   return (
     <>
       <SeedRow />
-      {Object.entries(controllerSchema.value).map(([name, schema]) => (
-        <SettingRow
-          key={name}
-          name={name}
-          schema={schema}
-          value={controller.value[name]}
-          onChange={(value) => setController(name, value)}
-        />
-      ))}
+      <SettingGroups
+        schemas={controllerSchema.value}
+        values={controller.value}
+        unchanged="default"
+        onChange={setController}
+      />
     </>
   );
 }

@@ -1,23 +1,17 @@
 /** One setting: slider with a tick at the default, field, unit, and a reset when changed. */
 
-import { useRef } from "preact/hooks";
+import { useRef, useState } from "preact/hooks";
 import type { SettingChange, SettingSchema, SettingValue } from "../api/types";
 import { setting } from "../geometry/format";
+import { screenUnit, withUnit } from "../geometry/units";
 import { Icon } from "../ui/icon";
 import { NumberField } from "../ui/number-field";
 
-interface SettingProps {
+export interface SettingProps {
   name: string;
   schema: SettingSchema;
   value: SettingValue | undefined;
   onChange: (value: SettingChange) => void;
-}
-
-export function SettingRow(props: SettingProps) {
-  const { schema } = props;
-  if (schema.enum) return <ChoiceRow {...props} />;
-  if (schema.type === "boolean") return <SwitchRow {...props} />;
-  return <SliderRow {...props} />;
 }
 
 interface Scale {
@@ -47,8 +41,9 @@ const rounded = (v: number) => Number(v.toPrecision(3));
 const STEP = 0.01;
 const LEAP = 0.1;
 
-function SliderRow({ name, schema, value, onChange }: SettingProps) {
+export function SliderRow({ name, schema, value, onChange }: SettingProps) {
   const track = useRef<HTMLDivElement>(null);
+  const [complaint, setComplaint] = useState("");
   /** Without a default of its own, the robot or the plan decides: "auto". */
   const auto = typeof schema.default !== "number";
   const initial = typeof schema.default === "number" ? schema.default : Number.NaN;
@@ -56,16 +51,17 @@ function SliderRow({ name, schema, value, onChange }: SettingProps) {
   const max = schema.maximum ?? schema.exclusiveMaximum ?? 1;
   const now = typeof value === "number" ? value : initial;
   const changed = value !== undefined && value !== schema.default;
-  const scale = scaleOf(schema, min, max);
+  /** Between bounds that are far apart, most of what is set lies here. */
+  const [low, high] = schema.slider ?? [min, max];
+  const scale = scaleOf(schema, low, high);
   const whole = schema.type === "integer";
-  const clamp = (v: number) => Math.min(max, Math.max(min, whole ? Math.round(v) : rounded(v)));
+  const clamp = (v: number) => Math.min(high, Math.max(low, whole ? Math.round(v) : rounded(v)));
   const unset = Number.isNaN(now);
   const shareOf = (v: number) => (Number.isNaN(v) ? 0.5 : Math.min(1, Math.max(0, scale.to(v))));
   const share = shareOf(now);
   const base = shareOf(initial);
-  /** A ratio is a number without a unit. */
-  const unit = schema.unit && schema.unit !== "1" ? schema.unit : "";
-  const words = unset ? "auto" : `${setting(now)} ${unit}`.trim();
+  const { unit, factor } = screenUnit(schema);
+  const words = unset ? "auto" : withUnit(now, schema);
   const label = schema.title ?? name;
   const percent = (s: number) => `${(s * 100).toFixed(2)}%`;
 
@@ -91,7 +87,7 @@ function SliderRow({ name, schema, value, onChange }: SettingProps) {
     if (change === undefined) return;
     event.preventDefault();
     event.stopPropagation();
-    const step = whole ? Math.max(Math.abs(change), 1 / (max - min)) * Math.sign(change) : change;
+    const step = whole ? Math.max(Math.abs(change), 1 / (high - low)) * Math.sign(change) : change;
     onChange(clamp(scale.from(Math.min(1, Math.max(0, share + step)))));
   };
 
@@ -126,21 +122,35 @@ function SliderRow({ name, schema, value, onChange }: SettingProps) {
       </div>
       <NumberField
         label={`${label}, value`}
-        value={now}
-        min={min}
-        max={max}
+        value={now * factor}
+        min={min * factor}
+        max={max * factor}
         format={(v) => (Number.isNaN(v) ? "auto" : setting(v))}
-        onChange={(v) => onChange(whole ? Math.round(v) : v)}
+        onChange={(v) => onChange(whole ? Math.round(v) : Number((v / factor).toPrecision(12)))}
+        onComplaint={setComplaint}
       />
       <span class="un" title={unit}>
         {unit}
       </span>
       <Reset label={label} shown={changed} onReset={() => onChange(null)} />
+      {complaint && (
+        <p class="wrong" role="alert">
+          {complaint} {unit}
+        </p>
+      )}
     </div>
   );
 }
 
-function Reset({ label, shown, onReset }: { label: string; shown: boolean; onReset: () => void }) {
+export function Reset({
+  label,
+  shown,
+  onReset,
+}: {
+  label: string;
+  shown: boolean;
+  onReset: () => void;
+}) {
   if (!shown) return <span />;
   return (
     <button
@@ -152,62 +162,5 @@ function Reset({ label, shown, onReset }: { label: string; shown: boolean; onRes
     >
       <Icon name="reset" />
     </button>
-  );
-}
-
-function ChoiceRow({ name, schema, value, onChange }: SettingProps) {
-  const label = schema.title ?? name;
-  const now = value ?? schema.default;
-  return (
-    <div class={value === undefined ? "w" : "w changed"} title={schema.description}>
-      <span class="wl">{label}</span>
-      <select
-        aria-label={label}
-        value={String(now)}
-        onChange={(event) => onChange(event.currentTarget.value)}
-      >
-        {schema.enum!.map((each) => (
-          <option key={String(each)} value={String(each)}>
-            {each}
-          </option>
-        ))}
-      </select>
-      <Reset label={label} shown={value !== undefined} onReset={() => onChange(null)} />
-    </div>
-  );
-}
-
-function SwitchRow({ name, schema, value, onChange }: SettingProps) {
-  const label = schema.title ?? name;
-  const now = Boolean(value ?? schema.default);
-  return (
-    <div class={value === undefined ? "w" : "w changed"} title={schema.description}>
-      <span class="wl">{label}</span>
-      <span class="push">
-        <Switch label={label} on={now} onChange={onChange} />
-      </span>
-      <Reset label={label} shown={value !== undefined} onReset={() => onChange(null)} />
-    </div>
-  );
-}
-
-export function Switch({
-  label,
-  on,
-  onChange,
-}: {
-  label: string;
-  on: boolean;
-  onChange: (on: boolean) => void;
-}) {
-  return (
-    <button
-      type="button"
-      class="sw"
-      role="switch"
-      aria-checked={on}
-      aria-label={label}
-      onClick={() => onChange(!on)}
-    />
   );
 }

@@ -4,7 +4,7 @@ import type { Plan } from "../api/types";
 import { fixed } from "../geometry/format";
 import { plan, stale } from "../state/planning";
 import { setTolerance, tolerance, toleranceSchema } from "../state/setup";
-import { SettingRow } from "./slider";
+import { SettingRow } from "./setting-row";
 
 const WITHIN = " within tolerance";
 

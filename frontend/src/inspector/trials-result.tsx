@@ -1,8 +1,9 @@
 /** What came of a set of trials: success rate, spread of the pitch error, the worst ones. */
 
 import type { Trial, Trials } from "../api/types";
-import { degrees, fixed, setting } from "../geometry/format";
-import { OUTCOMES } from "../results/figures";
+import { degrees, fixed } from "../geometry/format";
+import { withUnit } from "../geometry/units";
+import { OUTCOMES, verdict } from "../results/figures";
 import { canRun } from "../state/rollouts";
 import { disturbanceSchema } from "../state/setup";
 import { deviations, replay, trialsStale, worstTrials } from "../state/trials";
@@ -28,10 +29,10 @@ export function TrialsResult({ found }: { found: Trials }) {
       <Histogram found={found} />
       {suspects.length > 0 && (
         <p>
-          Larger where trials failed:{" "}
+          Larger in failed trials than in the others:{" "}
           {suspects
             .slice(0, SHOWN)
-            .map(([name, share]) => `${titleOf(name)} (in ${percent(share)} % of pairs)`)
+            .map(([name, share]) => `${titleOf(name)} (${percent(share)} % of pairs)`)
             .join(", ")}
           .
         </p>
@@ -47,14 +48,13 @@ export function TrialsResult({ found }: { found: Trials }) {
 }
 
 function Worst({ trial }: { trial: Trial }) {
-  const words = Object.entries(deviations(trial)).map(([name, value]) => {
-    const unit = disturbanceSchema.value[name]?.unit;
-    const size = typeof value === "number" ? setting(value) : String(value);
-    return `${titleOf(name)} ${size}${unit && unit !== "1" ? ` ${unit}` : ""}`;
-  });
+  const words = Object.entries(deviations(trial)).map(
+    ([name, value]) =>
+      `${titleOf(name)} ${withUnit(value as number, disturbanceSchema.value[name], true)}`,
+  );
   return (
     <li title={words.join(", ")}>
-      <span class={trial.outcome === "success" ? "" : "bad"}>{OUTCOMES[trial.outcome]}</span>
+      <span class={verdict(trial.outcome)}>{OUTCOMES[trial.outcome]}</span>
       <span title="Largest pitch error">{fixed(degrees(trial.pitch_error_max), 1)}°</span>
       <small>seed {trial.seed}</small>
       <button

@@ -19,7 +19,7 @@ import {
 import { NumberField } from "../ui/number-field";
 import { SeedRow } from "./seed";
 import { Segments } from "./segments";
-import { SettingRow } from "./slider";
+import { SettingGroups } from "./setting-groups";
 import { TrialsResult } from "./trials-result";
 
 const NONE = "none";
@@ -47,7 +47,7 @@ export function DisturbancesAndTrials() {
       )}
       {trials.value && <TrialsResult found={trials.value} />}
       <h3>
-        Disturbances of a single rollout
+        Disturbances of one rollout
         <small>{changed > 0 ? `${changed} set` : "none"}</small>
         {changed > 0 && (
           <button
@@ -57,20 +57,19 @@ export function DisturbancesAndTrials() {
               disturbance.value = {};
             }}
           >
-            Set all to 0
+            Clear
           </button>
         )}
       </h3>
-      <SeedRow />
-      {Object.entries(disturbanceSchema.value).map(([name, schema]) => (
-        <SettingRow
-          key={name}
-          name={name}
-          schema={schema}
-          value={disturbance.value[name]}
-          onChange={(value) => setDisturbance(name, value)}
+      <div class="settings-rows">
+        <SeedRow />
+        <SettingGroups
+          schemas={disturbanceSchema.value}
+          values={disturbance.value}
+          unchanged="none"
+          onChange={setDisturbance}
         />
-      ))}
+      </div>
     </section>
   );
 }

@@ -1,6 +1,8 @@
 /** The workspace Map: how far can it go? Axes and progress, the map, codes and a kept cell. */
 
 import { useEffect } from "preact/hooks";
+import { Designs } from "../designs/designs";
+import { showsDesigns } from "../designs/state";
 import { fixed } from "../geometry/format";
 import { Icon } from "../ui/icon";
 import { frictionAt } from "./cell";
@@ -15,6 +17,10 @@ import { MapTable } from "./table";
 import { asTable } from "./view";
 
 export function MapRoom() {
+  return showsDesigns.value ? <Designs /> : <Cells />;
+}
+
+function Cells() {
   useEffect(begin, []);
   return (
     <main class="map-room">

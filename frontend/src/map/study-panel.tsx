@@ -1,5 +1,6 @@
 /** What the map is asked for: axes, friction, colour, codes; and how far it is. */
 
+import { RoomTabs } from "../designs/room-tabs";
 import { fixed } from "../geometry/format";
 import { drawing } from "../state/drawing";
 import { robotName, robots } from "../state/setup";
@@ -27,7 +28,7 @@ export function StudyPanel() {
   return (
     <aside class="map-side" aria-label="Study">
       <header class="ph">
-        <h2>Study</h2>
+        <RoomTabs />
         <Presets />
       </header>
       <div class="scroll">
@@ -226,7 +227,7 @@ function Second() {
         value={form.value.second ?? ""}
         onChange={(event) => change({ second: event.currentTarget.value || null })}
       >
-        <option value="">one robot</option>
+        <option value="">no other robot</option>
         {robots.value
           .filter((each) => each.name !== robotName.value)
           .map((each) => (

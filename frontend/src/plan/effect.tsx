@@ -2,11 +2,11 @@
 
 import type { Plan } from "../api/types";
 import { fixed } from "../geometry/format";
-import { Switch } from "../inspector/slider";
 import { MARGINS, marginClass, worst } from "../profile-editor/margins";
 import { defaultPlan, ghostShown } from "../state/effect";
 import { plan, stale } from "../state/planning";
 import { changedWeights, robot, weightSchema } from "../state/setup";
+import { Switch } from "../ui/switch";
 
 interface Quantity {
   title: string;

@@ -4,6 +4,7 @@ import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Vec2 } from "../api/types";
 import { drawing } from "../state/drawing";
 import { outdated, preview } from "../state/planning";
+import { robotName } from "../state/setup";
 import { tool } from "../state/view";
 import { DimensionField } from "./dimension-field";
 import { EmptyCanvas } from "./empty";
@@ -24,6 +25,7 @@ import { Banner, FirstHint, Legend, Refusal, Veil } from "./notices";
 import { Obstruction } from "./obstruction";
 import { Current, Ghosts } from "./poses";
 import { Readout } from "./readout";
+import { RibbonPatterns, SpeedRibbon } from "./speed-ribbon";
 import { Dimensions, Ground, WheelPath } from "./terrain-layer";
 import { Toolbar } from "./toolbar";
 import { Guides, Stretches, Vertices } from "./vertices";
@@ -124,6 +126,7 @@ function Canvas() {
         >
           <rect width="1" height="8" class="ghs" />
         </pattern>
+        <RibbonPatterns />
         <linearGradient id="ground" x1="0" y1="0" x2="0" y2="1">
           <stop offset="0" class="ts0" />
           <stop offset="1" class="ts1" />
@@ -133,6 +136,7 @@ function Canvas() {
         <Grid />
         <Ground />
         <WheelPath />
+        <SpeedRibbon />
         <Ghosts />
         <Stretches />
         <Current />
@@ -158,9 +162,16 @@ export function Editor() {
       if (first || !moved.peek()) fit(drawing.peek().points);
     };
     measure();
+    // Another robot may need more room; a view that was chosen by hand stays.
+    const refit = robotName.subscribe(() => {
+      if (size.peek().width > 0 && !moved.peek()) fit(drawing.peek().points);
+    });
     const observer = new ResizeObserver(measure);
     observer.observe(element);
-    return () => observer.disconnect();
+    return () => {
+      refit();
+      observer.disconnect();
+    };
   }, []);
   return (
     <section

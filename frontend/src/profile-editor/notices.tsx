@@ -9,6 +9,7 @@ import { dismissHint, hintSeen, layers } from "../state/view";
 import { slow } from "../state/waiting";
 import { Icon } from "../ui/icon";
 import type { Rect } from "./place";
+import { ribbon } from "./speed-ribbon";
 import { canvasBox, size } from "./viewport";
 
 export function Legend() {
@@ -33,6 +34,12 @@ export function Legend() {
         <span>
           <i class="dots" />
           wheel-centre path
+        </span>
+      )}
+      {ribbon.value && (
+        <span title="As wide as the plan is fast; the pattern is the limit that holds it there">
+          <i class="ribbon" />
+          speed
         </span>
       )}
       {ghost.value && (

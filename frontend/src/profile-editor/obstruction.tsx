@@ -20,6 +20,9 @@ const angle = (radians: number) => `${fixed(degrees(radians), 1)}°`;
 const inDegrees = (sentence: string) =>
   sentence.replace(/(\d+(?:\.\d+)?) rad\b/g, (_, radians: string) => angle(Number(radians)));
 
+/** Whether the sentence says itself what is needed and what there is. */
+const told = (sentence: string) => /\d.*\bhas\b.*\d/.test(sentence);
+
 /** A limit in the problem's own unit; lengths below 1 m in mm. */
 function quantity({ limit, kind }: Problem, value: number): string {
   const unit = limit?.unit;
@@ -37,30 +40,74 @@ const problem = computed(() => (preview.value ? null : (plan.value?.problem ?? n
 
 /** Of the ring around the spot [px]. */
 const RADIUS = 13;
-/** Of the card at its fullest; narrow pages show less on it [px]. */
-const WIDE = { width: 340, height: 190 };
-const NARROW = { width: 292, height: 144 };
+/** Of the card: its width, and what stands around and below its sentence [px]. */
+const WIDE = 340;
+const NARROW = 292;
+const PADDING = 12;
+const LINE = 18;
+const BUTTONS = 36;
+const NUMBERS = 44;
+/** Of a letter of the sentence, and left of it [px]. */
+const LETTER = 7.2;
+const ICON = 24;
+/** From the canvas's rim [px]. */
+const RIM = 8;
+/** Legend of the canvas; the dimensions along its lower rim [px]. */
+const LEGEND = 36;
+const DIMENSIONS = 40;
+
+/** The robot where the plan stops, as a box on the canvas. */
+const robotBox = computed<Rect | null>(() => {
+  const pose = plan.value?.poses.at(-1);
+  if (!pose) return null;
+  const { px, py } = projection.value;
+  const points = [...pose.collision_points, ...pose.wheels];
+  const xs = points.map((p) => px(p[0]));
+  const ys = points.map((p) => py(p[1]));
+  const [left, top] = [Math.min(...xs), Math.min(...ys)];
+  return { left, top, width: Math.max(...xs) - left, height: Math.max(...ys) - top };
+});
+
+function heightOf(stop: Problem, width: number): number {
+  const letters = (width - 2 * PADDING - ICON) / LETTER;
+  const lines = Math.ceil(stop.message.length / letters);
+  const more = tight.value ? 0 : NUMBERS;
+  return 2 * PADDING + lines * LINE + more + BUTTONS;
+}
+
+/** Corners, the legend's place, and all of the lower rim. */
+function places(stop: Problem): Rect[] {
+  const { left, right, top, bottom } = canvasBox.value;
+  const width = tight.value ? NARROW : WIDE;
+  const height = heightOf(stop, width);
+  const [near, far] = [left + 2 * RIM, right - width - 2 * RIM];
+  const low = bottom - height - DIMENSIONS;
+  const across = right - left - 2 * RIM;
+  const strip = heightOf(stop, across);
+  return [
+    { left: near, top: top + LEGEND, width, height },
+    { left: far, top: top + LEGEND, width, height },
+    { left: near, top: low, width, height },
+    { left: far, top: low, width, height },
+    { left: near, top: top + RIM, width, height },
+    { left: far, top: top + RIM, width, height },
+    { left: left + RIM, top: bottom - strip - RIM, width: across, height: strip },
+  ];
+}
 
 /**
- * Where the card lies: upper left, or where it leaves the spot open. What else floats over the
- * canvas keeps off it.
+ * Where the card lies: where it leaves spot and robot open, or at least the spot. What else floats
+ * over the canvas keeps off it.
  */
 export const card = computed<Rect | null>(() => {
   const stop = problem.value;
   if (!stop) return null;
-  const { left, right, top, bottom } = canvasBox.value;
   const { px, py } = projection.value;
   const ring = around([px(stop.at[0]), py(stop.at[1])], 2 * RADIUS);
-  const extent = tight.value ? NARROW : WIDE;
-  const far = right - extent.width - 16;
-  const low = bottom - extent.height - 16;
-  const places = [
-    [left + 16, top + 36],
-    [far, top + 36],
-    [left + 16, low],
-    [far, low],
-  ].map(([x, y]) => ({ left: x!, top: y!, ...extent }));
-  return places.find((place) => !overlap(place, ring)) ?? places[0]!;
+  const robot = robotBox.value;
+  const hidden = (place: Rect) =>
+    (overlap(place, ring) ? 2 : 0) + (robot && overlap(place, robot) ? 1 : 0);
+  return places(stop).reduce((best, next) => (hidden(next) < hidden(best) ? next : best));
 });
 
 export function Obstruction() {
@@ -94,22 +141,7 @@ export function Obstruction() {
           <Icon name="warning" />
           {inDegrees(stop.message.charAt(0).toUpperCase() + stop.message.slice(1))}
         </h4>
-        <dl>
-          <dt>where</dt>
-          <dd>
-            x {fixed(stop.at[0], 2)}, z {fixed(stop.at[1], 2)} m
-          </dd>
-          <dt>progress</dt>
-          <dd>{fixed(stop.progress, 2)} m</dd>
-          {stop.limit && (
-            <>
-              <dt>needed</dt>
-              <dd>{quantity(stop, stop.limit.needed)}</dd>
-              <dt>has</dt>
-              <dd class="x">{quantity(stop, stop.limit.available)}</dd>
-            </>
-          )}
-        </dl>
+        {!(tight.value && told(stop.message)) && <Numbers stop={stop} />}
         {sentence && <p>{sentence}</p>}
         <div class="acts">
           {canUndo.value && (
@@ -123,5 +155,27 @@ export function Obstruction() {
         </div>
       </section>
     </>
+  );
+}
+
+/** Where it is, and what is needed of what there is where the sentence does not say so. */
+function Numbers({ stop }: { stop: Problem }) {
+  return (
+    <dl>
+      <dt>where</dt>
+      <dd>
+        x {fixed(stop.at[0], 2)}, z {fixed(stop.at[1], 2)} m
+      </dd>
+      <dt>progress</dt>
+      <dd>{fixed(stop.progress, 2)} m</dd>
+      {stop.limit && !told(stop.message) && (
+        <>
+          <dt>needed</dt>
+          <dd>{quantity(stop, stop.limit.needed)}</dd>
+          <dt>has</dt>
+          <dd class="x">{quantity(stop, stop.limit.available)}</dd>
+        </>
+      )}
+    </dl>
   );
 }

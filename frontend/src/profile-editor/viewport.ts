@@ -3,6 +3,7 @@
 import { computed, signal } from "@preact/signals";
 import type { Vec2 } from "../api/types";
 import { extent, type Points } from "../geometry/profile";
+import { robot } from "../state/setup";
 
 export const RULER_X = 20;
 export const RULER_Z = 36;
@@ -72,6 +73,20 @@ export function zoomAt(x: number, y: number, factor: number): void {
 const SIDE = 16;
 const BELOW = 48;
 
+/** What a robot needs before the first and after the last corner, and above the ground [m]. */
+function roomOf(): { before: number; after: number; above: number } {
+  const shape = robot.peek();
+  if (!shape) return { before: 0.75, after: 0.7, above: 0.52 };
+  const [front, rear] = shape.legs;
+  const long = 2 * (front.hip[0] - rear.hip[0]) + 2 * shape.wheel;
+  const legs = front.thigh.length + front.calf.length;
+  return {
+    before: Math.max(0.75, long),
+    after: Math.max(0.7, long),
+    above: Math.max(0.52, legs + shape.wheel + shape.trunk.height / 2),
+  };
+}
+
 /** Show the part between the long flat ends, with room for the robot above it. */
 export function fit(points: Points): void {
   const box = canvasBox.peek();
@@ -79,12 +94,13 @@ export function fit(points: Points): void {
   const height = box.bottom - box.top - BELOW;
   if (width <= 0) return;
   moved.value = false;
+  const needs = roomOf();
   const inner = points.length > 2 ? points.slice(1, -1) : points;
   const all = points.length > 1 ? extent(points) : { x: [-0.75, 1.8] as Vec2, z: [0, 0] as Vec2 };
   const mid = points.length > 2 ? extent(inner) : all;
-  const x0 = Math.max(all.x[0], mid.x[0] - 0.75);
-  const x1 = Math.min(all.x[1], mid.x[1] + 0.7);
-  const tall = all.z[1] + 0.52 - all.z[0];
+  const x0 = Math.max(all.x[0], mid.x[0] - needs.before);
+  const x1 = Math.min(all.x[1], mid.x[1] + needs.after);
+  const tall = all.z[1] + needs.above - all.z[0];
   const scale = Math.min(MOST, Math.max(LEAST, Math.min(width / (x1 - x0), height / tall)));
   fitted.value = scale;
   const spare = width / scale - (x1 - x0);

@@ -7,7 +7,7 @@ import { fixed } from "../geometry/format";
 import { failureB, progress, runB, running, runOf, runPlan, runStale } from "../state/rollouts";
 import { compare, robot } from "../state/setup";
 import { Icon } from "../ui/icon";
-import { type Figure, figures, OUTCOMES } from "./figures";
+import { type Figure, figures, OUTCOMES, verdict } from "./figures";
 
 /** What a figure cannot say: why it failed, what was known before, why B is missing. */
 export function Explanation({ result }: { result: Rollout }) {
@@ -26,7 +26,7 @@ export function Heading({ result }: { result: Rollout }) {
   // A collision is judged at the end; the sentence below says when it happened.
   const dated = !good && result.outcome !== "collided";
   return (
-    <h2 class={good ? "" : "bad"}>
+    <h2 class={verdict(result.outcome)}>
       <Icon name={good ? "check" : "warning"} />
       {OUTCOMES[result.outcome]}
       {dated && ` at ${fixed(result.metrics.duration, 1)} s`}
@@ -60,7 +60,7 @@ function useRoom() {
 export function Card({ result }: { result: Rollout }) {
   const card = useRoom();
   const other = compare.value ? runB.value : null;
-  const all = figures(other ? 2 : 1, robot.value?.limit.leg);
+  const all = figures(other ? 2 : 1, robot.value?.limit);
   const sentences = result.outcome !== "success" || runPlan.value?.certificate?.motion;
   const needed = AROUND + (sentences ? SENTENCES : 0) + (all.length + (other ? 1 : 0)) * ROW;
   const low = needed > room.value;

@@ -2,6 +2,7 @@
 
 import { hasFailed, type Metrics, type Outcome, type Rollout } from "../api/types";
 import { degrees, fixed } from "../geometry/format";
+import type { RobotShape } from "../geometry/robot";
 
 export const OUTCOMES: Record<Outcome, string> = {
   success: "Success",
@@ -12,6 +13,10 @@ export const OUTCOMES: Record<Outcome, string> = {
   timeout: "Ran out of time",
   stopped: "Stopped safely",
 };
+
+/** How it ended, as a class: a robot that stopped stands unharmed, others did not arrive. */
+export const verdict = (outcome: Outcome): "" | "caution" | "bad" =>
+  outcome === "success" ? "" : outcome === "stopped" ? "caution" : "bad";
 
 export interface Figure {
   title: string;
@@ -27,11 +32,25 @@ export interface Figure {
 /** More than this, and the robot was not tracking any more [rad]. */
 const LOST = (10 * Math.PI) / 180;
 
+type Limit = RobotShape["limit"];
+
+const ofLegs = ({ thigh, calf }: Limit) =>
+  thigh === calf ? fixed(thigh, 1) : `${fixed(thigh, 1)}, ${fixed(calf, 1)}`;
+
+/** What a motor lacks to its limit where it counts as being there [Nm]. */
+const NEAR = 0.05;
+
+/** Whether a thigh or calf gave all that its motor can; joints come as thigh, calf, wheel. */
+const atLimit = ({ series }: Rollout, { thigh, calf }: Limit): boolean =>
+  (series.torque ?? []).some((joints) =>
+    joints.some((torque, k) => k % 3 < 2 && Math.abs(torque) >= [thigh, calf][k % 3]! - NEAR),
+  );
+
 const maybe = (value: number | null | undefined, digits: number, unit = "") =>
   value === null || value === undefined ? "–" : fixed(value, digits) + unit;
 
 /** Of one rollout, or of several to compare: only then their outcomes are among the figures. */
-export function figures(count: number, legLimit: number | undefined): Figure[] {
+export function figures(count: number, limit: Limit | undefined): Figure[] {
   const outcome: Figure = {
     title: "Outcome",
     of: (_m, r) => OUTCOMES[r.outcome],
@@ -65,10 +84,10 @@ export function figures(count: number, legLimit: number | undefined): Figure[] {
     },
     {
       title: "Peak torque",
-      ...(legLimit ? { limit: `of ${fixed(legLimit, 1)}` } : {}),
+      ...(limit ? { limit: `of ${ofLegs(limit)}` } : {}),
       hint: "Largest of thighs and calves, of what their motors can give",
       of: (m) => `${fixed(m.torque_peak, 1)} Nm`,
-      bad: (m) => legLimit !== undefined && m.torque_peak >= legLimit - 0.05,
+      bad: (_m, r) => limit !== undefined && atLimit(r, limit),
     },
     { title: "Energy", of: (m) => `${fixed(m.energy, 0)} J` },
     {

@@ -35,7 +35,7 @@ export function Library() {
         {own.map((r) => (
           <Entry key={r.name} robot={r} onRemove={() => void remove(r)} verb="Delete" />
         ))}
-        {read.length > 0 && <h3>Read, not saved</h3>}
+        {read.length > 0 && <h3>Not saved</h3>}
         {read.map(({ robot }) => (
           <Entry
             key={robot.name}

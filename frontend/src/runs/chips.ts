@@ -1,8 +1,9 @@
 /** What differs from the defaults, in a few words each. */
 
 import type { Entry } from "../api/stored";
-import type { SettingSchema, SettingValue } from "../api/types";
+import type { SettingSchema, SettingValue, SettingValues } from "../api/types";
 import { fixed, setting } from "../geometry/format";
+import { withUnit } from "../geometry/units";
 import { disturbanceSchema, settings } from "../state/setup";
 
 const METHODS: Record<string, string> = {
@@ -10,34 +11,38 @@ const METHODS: Record<string, string> = {
   nominal: "no pose optimisation",
 };
 
-const plain = (value: SettingValue) =>
-  typeof value === "number" ? setting(value) : typeof value === "boolean" ? yes(value) : value;
-const yes = (value: boolean) => (value ? "on" : "off");
-
-function one(name: string, value: SettingValue, schema: SettingSchema | undefined): string {
-  const unit = schema?.unit && schema.unit !== "1" ? ` ${schema.unit}` : "";
-  const label = schema?.title ?? name.replaceAll("_", " ");
-  return `${label} ${plain(value)}${unit}`;
+/** A number for each wheel, a record field by field, and the rest as it is. */
+function words(value: SettingValue, schema: SettingSchema | undefined, signed: boolean): string {
+  if (typeof value === "number") return withUnit(value, schema, signed);
+  if (typeof value === "boolean") return value ? "on" : "off";
+  if (typeof value === "string") return value;
+  if (Array.isArray(value)) return value.map((each) => setting(each)).join(", ");
+  return group(value as SettingValues, schema?.properties, signed).join(", ");
 }
 
 function group(
   values: Record<string, SettingValue> | undefined,
   schema: Record<string, SettingSchema> | undefined,
+  signed = false,
 ): string[] {
-  return Object.entries(values ?? {}).map(([name, value]) => one(name, value, schema?.[name]));
+  return Object.entries(values ?? {}).map(([name, value]) => {
+    const label = schema?.[name]?.title ?? name.replaceAll("_", " ");
+    return `${label} ${words(value, schema?.[name], signed)}`;
+  });
 }
 
-/** Friction first, then method, weights, tolerance, controller, disturbance, seed. */
+/** Friction first, then method, timing, weights, tolerance, controller, disturbance, seed. */
 export function chips({ summary: s }: Entry): string[] {
   const known = settings.value;
   return [
     ...(s.friction === undefined ? [] : [`μ ${fixed(s.friction, 2)}`]),
     ...(s.method && METHODS[s.method] ? [METHODS[s.method]!] : []),
+    ...(s.timing === "fast" ? ["fast"] : []),
     ...(s.bundle ? [`${s.bundle} disturbances`] : []),
     ...group(s.weights, s.method && known?.weights[s.method]?.properties),
     ...group(s.tolerance, known?.tolerance.properties),
     ...group(s.controller, known?.controller.properties),
-    ...group(s.disturbance, disturbanceSchema.value),
+    ...group(s.disturbance, disturbanceSchema.value, true),
     ...(s.seed ? [`seed ${s.seed}`] : []),
   ];
 }

@@ -17,6 +17,7 @@ import {
   seed,
   settings,
   terrains,
+  timing,
   tolerance,
   toleranceSchema,
   weights,
@@ -43,6 +44,7 @@ function showPlan(plan: Plan): void {
   open({ ...terrain, friction: plan.friction }, stored);
   robotName.value = plan.robot;
   method.value = plan.method;
+  timing.value = plan.timing.rule === "fast" ? "fast" : "steady";
   const schema = settings.peek()?.weights[plan.method]?.properties;
   weights.value = { ...weights.peek(), [plan.method]: differing(plan.weights ?? {}, schema) };
   tolerance.value = differing({ ...plan.tolerance }, toleranceSchema.peek());

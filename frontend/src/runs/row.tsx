@@ -4,7 +4,7 @@ import { useRef } from "preact/hooks";
 import type { Entry } from "../api/stored";
 import { fixed } from "../geometry/format";
 import { CLASS_NAMES, MARGINS, marginClass } from "../profile-editor/margins";
-import { OUTCOMES } from "../results/figures";
+import { OUTCOMES, verdict } from "../results/figures";
 import { Icon } from "../ui/icon";
 import { Menu } from "../ui/menu";
 import { chips } from "./chips";
@@ -39,7 +39,7 @@ export function Row({ entry }: { entry: Entry }) {
         </span>
       </button>
       <Chips entry={entry} />
-      <span class={bad ? "run-out bad" : "run-out"}>
+      <span class={`run-out ${severity(entry)}`}>
         <Icon name={bad ? "warning" : "check"} />
         <b>{outcome(entry)}</b>
       </span>
@@ -52,6 +52,9 @@ export function Row({ entry }: { entry: Entry }) {
     </li>
   );
 }
+
+const severity = (entry: Entry) =>
+  entry.summary.outcome ? verdict(entry.summary.outcome) : failed(entry) ? "bad" : "";
 
 export const failed = ({ summary: s }: Entry) =>
   s.outcome

@@ -99,6 +99,16 @@ function List() {
   return (
     // biome-ignore lint/a11y/noNoninteractiveTabindex: a scrolling region must take the focus
     <div class="runs-scroll" tabIndex={0} role="region" aria-label="List of runs">
+      <div class="run-head" aria-hidden="true">
+        <span />
+        <span>terrain, robot</span>
+        <span>settings</span>
+        <span>outcome</span>
+        <span>clearance, CoM</span>
+        <span class="run-num">time</span>
+        <span class="run-num cot">CoT</span>
+        <span />
+      </div>
       <ul>
         {entries.value.map((entry) => (
           <Row key={entry.id} entry={entry} />

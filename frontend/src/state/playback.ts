@@ -79,6 +79,18 @@ export const keyTimes = computed<number[]>(() => {
   });
 });
 
+/** Less than a plan that has begun to move [m]. */
+const AT_REST = 1e-4;
+
+/** When the robot that is shown set off [s]: before that it settles, or tests its grip. */
+export const setsOff = computed<number>(() => {
+  const series = shownRun.value?.series;
+  const asked = series?.progress_desired;
+  if (!series || !asked) return 0;
+  const first = asked.findIndex((way) => way > AT_REST);
+  return series.time[first < 0 ? series.time.length - 1 : first] ?? 0;
+});
+
 export function seek(to: number): void {
   time.value = Math.min(duration.peek(), Math.max(0, to));
 }

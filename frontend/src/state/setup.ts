@@ -86,7 +86,8 @@ export const changedCount = computed(() =>
   ),
 );
 
-function withValue(
+/** With one of them set, or taken out where it is the default. */
+export function withValue(
   values: SettingValues,
   schema: SettingSchema | undefined,
   name: string,

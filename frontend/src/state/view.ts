@@ -15,6 +15,7 @@ export const LAYERS = {
   collision: "Collision points",
   wheel: "Wheel-centre path",
   com: "CoM path",
+  speed: "Speed of a fast plan",
   dimensions: "Dimensions",
 } as const;
 export type Layer = keyof typeof LAYERS;

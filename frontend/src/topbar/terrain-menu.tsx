@@ -58,11 +58,11 @@ function TerrainPanel({ close }: { close: () => void }) {
         </button>
         <button type="button" class="act" onClick={() => setGenerating(true)}>
           <Icon name="stair" />
-          Generate…
+          Generate
         </button>
         <button type="button" class="act" onClick={() => file.current?.click()}>
           <Icon name="upload" />
-          Import…
+          Import
         </button>
         <button
           type="button"
@@ -74,7 +74,7 @@ function TerrainPanel({ close }: { close: () => void }) {
           }}
         >
           <Icon name="table" />
-          Points…
+          Points
         </button>
         <input
           ref={file}

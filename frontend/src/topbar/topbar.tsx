@@ -58,7 +58,7 @@ export function TopBar() {
 function RobotMenu() {
   const button = (
     <>
-      <small class="quiet">Robot</small> <b>{robotName.value}</b>
+      <small class="quiet">Robot</small> <b title={robotName.value}>{robotName.value}</b>
       {robotEdits.value[robotName.value] && <span class="dot" title="Not saved" />}
       <Icon name="down" />
     </>

@@ -9,6 +9,7 @@ import {
   marginClass,
   worst,
 } from "../profile-editor/margins";
+import { live } from "../state/live";
 import { plan, planKept, preview } from "../state/planning";
 import { duration, hoverTime, playing, poseIndex, seek } from "../state/playback";
 import { axisKind, cursor, marks, shareOf, timeAt } from "./axis";
@@ -76,7 +77,7 @@ export function MarginRows() {
               <Beyond
                 from={stop}
                 bad={Boolean(shown?.problem && problemMargin(shown.problem) === kind.name)}
-                text={row === 2 ? (shown?.problem ? "not planned" : "not reached") : ""}
+                text={row === 2 ? beyondText(shown) : ""}
               />
             )}
           </div>
@@ -86,6 +87,11 @@ export function MarginRows() {
       <Scrub />
     </div>
   );
+}
+
+function beyondText(shown: Plan | null): string {
+  if (shown?.problem) return "not planned";
+  return live.value?.outcome === "running" ? "still to come" : "not reached";
 }
 
 /** Title, value at the cursor, and the least of the plan: most where less is better. */

@@ -2,10 +2,10 @@
 
 import { computed } from "@preact/signals";
 import { fixed } from "../geometry/format";
+import { LIMITS, limitTitle, planSpeeds, stretches } from "../geometry/speed-limits";
 import { plan, planKept } from "../state/planning";
 import { poseIndex } from "../state/playback";
 import { marks, shareOf } from "./axis";
-import { LIMITS, limitTitle, planSpeeds, stretches } from "./speed-limits";
 
 /** The drawing is stretched to the width of the axis. */
 const WIDTH = 1000;

@@ -1,6 +1,6 @@
 /** The clock as a slider, with the key poses on it. */
 
-import { hasFailed } from "../api/types";
+import { hasFailed, type Rollout } from "../api/types";
 import { fixed } from "../geometry/format";
 import {
   duration,
@@ -8,6 +8,7 @@ import {
   plannedEnd,
   playing,
   seek,
+  setsOff,
   shownRun,
   shownTime,
   time,
@@ -67,6 +68,7 @@ export function Timeline() {
       onPointerMove={(event) => event.buttons === 1 && at(event)}
       onKeyDown={onKeyDown}
     >
+      <Before />
       <s
         class={growing ? "buf" : failed ? "fell" : ""}
         style={{ width: percent(growing ? progress.value : cursor.value) }}
@@ -76,6 +78,20 @@ export function Timeline() {
       ))}
       {end > 0 && <em style={{ left: percent(cursor.value) }} />}
     </div>
+  );
+}
+
+/** The time in which the robot does not follow its plan yet. */
+function Before() {
+  const run = shownRun.value as Partial<Rollout> | null;
+  if (axisKind.value !== "time" || setsOff.value <= 0) return null;
+  const senses = run?.controller?.sensing === "robot";
+  const does = senses ? "tests its grip" : "settles on its legs";
+  return (
+    <u
+      style={{ width: `${shareOfTime(setsOff.value) * 100}%` }}
+      title={`The robot ${does} before it sets off, ${fixed(setsOff.value, 1)} s`}
+    />
   );
 }
 

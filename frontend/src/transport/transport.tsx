@@ -63,7 +63,7 @@ function Clock() {
   if (shown?.problem && shownTime.value >= duration.value - 1e-6) {
     return (
       <div class="tm">
-        <small>stops after</small> {fixed(shown.problem.progress, 2)} <small>m</small>
+        <small>stops at</small> {fixed(duration.value, 1)} <small>s</small>
       </div>
     );
   }

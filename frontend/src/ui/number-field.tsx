@@ -16,6 +16,8 @@ interface NumberFieldProps {
   /** The edit is finished: Enter, or the focus left. */
   onDone?: () => void;
   onCancel?: () => void;
+  /** What is wrong with what was typed; empty where nothing is. */
+  onComplaint?: (complaint: string) => void;
   focus?: boolean;
 }
 
@@ -35,6 +37,9 @@ export function NumberField(props: NumberFieldProps) {
   const complaint = Number.isFinite(parsed)
     ? `Between ${format(min)} and ${format(max)}`
     : `Not a number: ${format(value)} stays`;
+  const wrong = valid ? "" : complaint;
+
+  useEffect(() => props.onComplaint?.(wrong), [wrong]);
 
   useEffect(() => {
     // A value that was set elsewhere is newer than text that was left behind.
@@ -82,7 +87,7 @@ export function NumberField(props: NumberFieldProps) {
       class={`num ${props.class ?? ""}`}
       aria-label={label}
       aria-invalid={!valid}
-      title={valid ? undefined : complaint}
+      title={wrong || undefined}
       disabled={props.disabled}
       value={shown}
       autocomplete="off"

@@ -1,7 +1,7 @@
 /** How fast a plan drives at each of its poses, and which limit keeps it from being faster. */
 
 import type { Plan } from "../api/types";
-import { poseTimes } from "../geometry/frames";
+import { poseTimes } from "./frames";
 
 interface LimitKind {
   title: string;

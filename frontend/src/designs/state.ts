@@ -1,0 +1,106 @@
+/** Design searches of this service: which there are, the one that is shown, the design in view. */
+
+import { batch, computed, signal } from "@preact/signals";
+import { BASE, call } from "../api/client";
+import type { components } from "../api/schema";
+import { report } from "../state/connection";
+import { kept, readFlag } from "../state/kept";
+
+type Schemas = components["schemas"];
+export type Summary = Schemas["DesignSummary"];
+export type Search = Schemas["DesignResult"];
+export type Candidate = Schemas["Candidate"];
+export type Aim = Schemas["Aim"];
+
+/** The Map shows fronts of design searches instead of cells. */
+export const showsDesigns = kept("designs", false, readFlag);
+export const summaries = signal<Summary[]>([]);
+export const search = signal<Search | null>(null);
+export const trouble = signal<string | null>(null);
+/** The design under pointer or focus, by its number; the best of the first aim before that. */
+const pointed = signal<number | null>(null);
+/** What the axes of the drawing show, as indices of the aims. */
+export const across = signal<readonly [number, number]>([0, 1]);
+
+export const aimName = (aim: Aim): string => aim.minimise ?? aim.maximise ?? "";
+
+/** Numbers of the best designs, by their first aim. */
+export const front = computed<number[]>(() => {
+  const shown = search.value;
+  if (!shown) return [];
+  const first = aimName(shown.design.aims[0]!);
+  const best = shown.candidates.flatMap((each, i) => (each.best ? [i] : []));
+  const reached = (i: number) => shown.candidates[i]!.aims[first] ?? 0;
+  return best.sort((a, b) => reached(a) - reached(b));
+});
+
+export const inView = computed<number | null>(() => {
+  const at = pointed.value;
+  return at !== null && search.value?.candidates[at] ? at : (front.value[0] ?? null);
+});
+
+export function pointAt(candidate: number): void {
+  pointed.value = candidate;
+}
+
+function show(found: Search): void {
+  batch(() => {
+    if (search.peek()?.id !== found.id) {
+      pointed.value = null;
+      across.value = [0, 1];
+    }
+    search.value = found;
+    trouble.value = null;
+  });
+}
+
+function say(error: unknown): void {
+  report(error);
+  trouble.value = error instanceof Error ? error.message : String(error);
+}
+
+export async function openSearch(id: string): Promise<void> {
+  try {
+    const answer = await call("GET", `designs/${encodeURIComponent(id)}`);
+    show((await answer.json()) as Search);
+  } catch (error) {
+    say(error);
+  }
+}
+
+/** A result that `stairwright design -o` has written, wherever that was. */
+export async function openFile(file: File): Promise<void> {
+  try {
+    const found = JSON.parse(await file.text()) as Partial<Search>;
+    if (found.schema !== "stairwright/design-result/1") throw new TypeError();
+    show(found as Search);
+  } catch {
+    trouble.value = `${file.name} is no result of a design search (stairwright/design-result/1).`;
+  }
+}
+
+const EVERY = 3000;
+
+/** Read the list while the room is open, and the shown search while it is at work. */
+export function followSearches(): () => void {
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  let left = false;
+  const read = async () => {
+    try {
+      const answer = await fetch(`${BASE}/designs`);
+      if (answer.ok) summaries.value = (await answer.json()) as Summary[];
+      const now = search.peek();
+      const news = summaries.peek().find((each) => each.id === now?.id);
+      if (!now && summaries.peek()[0]) await openSearch(summaries.peek()[0]!.id);
+      else if (now && news && news.tried !== now.candidates.length) await openSearch(news.id);
+    } catch (error) {
+      report(error);
+    }
+    if (!left) timer = setTimeout(read, EVERY);
+  };
+  void read();
+  return () => {
+    left = true;
+    clearTimeout(timer);
+  };
+}

@@ -1,0 +1,43 @@
+/** How aims and varied numbers of a design search read. */
+
+import { setting } from "../geometry/format";
+import { AXES, axisKind, QUANTITIES } from "../map/quantities";
+
+interface Words {
+  title: string;
+  unit: string;
+  show: (value: number) => string;
+}
+
+/** "robot.thigh.mass" is "Thigh mass". */
+function plain(name: string): string {
+  const words = name.replace(/^robot\./, "").replaceAll(/[._]/g, " ");
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+export function wordsOf(name: string): Words {
+  if (name === "mass") return { title: "Mass", unit: "kg", show: (v) => v.toFixed(2) };
+  const known = AXES.some((each) => each.name === axisKind(name).name);
+  if (known) {
+    const { title, unit, digits } = axisKind(name);
+    return { title, unit, show: (v) => v.toFixed(digits) };
+  }
+  const found = QUANTITIES.find((each) => each.name === name);
+  if (!found) return { title: plain(name), unit: "", show: setting };
+  const { title, unit, digits, scale } = found;
+  return { title, unit: unit === "μ" ? "" : unit, show: (v) => (v * scale).toFixed(digits) };
+}
+
+export const withUnit = (name: string, value: number): string => {
+  const { unit, show } = wordsOf(name);
+  return `${show(value)} ${unit}`.trim();
+};
+
+/** A number of a robot's file by its path, such as `robot.calf.length`; null where there is none. */
+export function numberOf(robot: unknown, name: string): number | null {
+  let at: unknown = robot;
+  for (const part of name.replace(/^robot\./, "").split(".")) {
+    at = at && typeof at === "object" ? (at as Record<string, unknown>)[part] : undefined;
+  }
+  return typeof at === "number" ? at : null;
+}
