@@ -29,6 +29,7 @@ constexpr double kLevel = 0.95;        // cosine of the slope of a face on which
 constexpr double kMissed = 0.004;       // m put back: the face is not where the map has it
 constexpr double kSearchNoise = 0.01;   // m^2 of variance for a metre that a face is farther on
 constexpr double kTread = 0.7;          // cosine of the slope of a face that is a tread
+constexpr double kSame = 1e-6;          // m
 constexpr double kGate = 9.0;           // of a normalised innovation squared
 constexpr double kNearCorner = 0.006;   // m; which way a wheel rolls this near to a concave corner is open
 
@@ -188,7 +189,9 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const double motion = kForceAtRest + (1.0 - kForceAtRest) * std::min(1.0, speed / kForceSpeed);
     belief.force_deviation = motion * (noise_.force * weight_ + 0.15 * norm(w.felt));
     const CurveMatch on = match(path_, belief, w.s, kWindow);
-    const bool touching = std::max({dot(w.felt, on.point.normal), dot(w.felt, on.before), dot(w.felt, on.after)}) > kTouching * weight_ / 4;
+    // A leg that swings feels a little, too: of a wall it has to be more than that.
+    const auto feels = [&](Vec2 n) { return dot(w.felt, n) > std::max(kTouching * weight_ / 4, n.z < kTread ? belief.force_deviation : 0.0); };
+    const bool touching = feels(on.point.normal) || feels(on.before) || feels(on.after);
     const double before = w.s;
     w.s = on.s;
     if (!touching && on.s > before) {  // in the air no wheel gets past a corner
@@ -219,11 +222,20 @@ void Estimator::enter_face(int i, const CurveMatch& on) {
     WheelState& w = wheels_[i];
     if (on.corner || on.piece == w.face || path_.pieces()[on.piece].arc) return;
     const bool tread = on.point.normal.z > kTread, was_tread = path_.pieces()[w.face].at(0.0, path_.radius()).normal.z > kTread;
-    w.face = on.piece, w.put_back = 0.0;
-    if (tread && was_tread) return;
+    const bool known = on.piece == w.face_before;  // it comes back to it
+    w.face_before = w.face, w.face = on.piece, w.put_back = 0.0;
+    if (known || (tread && was_tread)) return;
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
     const double error = tread ? noise_.face_place : noise_.tread_height;
     covariance_.add_noise(tread ? own : own + 1, 0.5 * error * error);
+}
+
+double Estimator::nearest_corner(double s) const {
+    const auto& corners = path_.corners();
+    const std::size_t k = path_.corner_from(s);
+    if (corners.empty()) return s;
+    if (k == corners.size() || (k > 0 && s - corners[k - 1] < corners[k] - s)) return corners[k - 1];
+    return corners[k];
 }
 
 void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error) {
@@ -235,15 +247,21 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
         return h;
     };
     if (on.corner) {
+        wheels_[i].met = nearest_corner(on.s);
         covariance_.update(row(on.before), dot(on.before, off), variance, error);
         covariance_.update(row(on.after), dot(on.after, off), variance, error);
         return;
     }
     const Vec2 n = on.point.normal;
+    if (n.z < kTread) wheels_[i].met = nearest_corner(on.s);
     covariance_.update(row(n), dot(n, off), variance, error);
     if (on.beyond == 0 || !on.blocked) return;
-    // The mean alone is projected: that the face is not felt yet is the same news at every step.
     const Vec2 t = {n.z, -n.x};
+    if (std::abs(wheels_[i].met - nearest_corner(on.s)) < kSame) {  // no news of a face that it has felt
+        covariance_.update(row(t), dot(t, off), variance, error);
+        return;
+    }
+    // The mean alone is projected: that the face is not felt yet is the same news at every step.
     put_back(i, t, dot(t, off) - dot_of(row(t), error), error);
 }
 
@@ -318,7 +336,8 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
     h[kGyroBias + 1] += radius;
     // The nearer to its grip, the less a wheel's turning says.
     const double used = std::abs(w.traction) / std::max(dot(w.felt, n), 0.02 * weight_) / kGripUsed;
-    update(h, (1.0 + scale_) * rolled - dot3(t, speed), std::hypot(noise_.rolling * std::max(1.0, used * used), askew));
+    const double crept = noise_.creep * w.traction / (0.25 * weight_);
+    update(h, (1.0 + scale_) * rolled - crept - dot3(t, speed), std::hypot(noise_.rolling * std::max(1.0, used * used), askew));
     h = row(off);
     const bool round = path_.on_arc(on.s);
     if (round) {  // where it goes says how far round the edge it is: dn/ds = t / radius

@@ -38,10 +38,10 @@ void Estimator::correct_map(WheelPath path, const MapError& found) {
     for (int i = 0; i < 4; ++i) {
         WheelState& w = wheels_[i];
         w.s = path_.project(place_ + offset_[i / 2] + w.leg.wheel, 0.0, path_.length());
-        w.put_back = w.known = 0.0;
+        w.put_back = w.known = 0.0, w.met = -1e9;
         const auto& pieces = path_.pieces();
         for (std::size_t k = 0; k < pieces.size(); ++k)
-            if (!pieces[k].arc && pieces[k].s <= w.s) w.face = k;
+            if (!pieces[k].arc && pieces[k].s <= w.s) w.face = w.face_before = k;
     }
     estimate_.map_error.reset();
 }

@@ -63,6 +63,7 @@ const control::Reference& Rollout::target(const Perceived& seen, bool moving, do
     if (!grip_test_.over()) {
         adapted_ = grip_test_.step(drawn, seen.state, seen.used_grip, seen.ahead.on_tread[0] && seen.ahead.on_tread[1], dt_);
         waits_ = grip_test_.over() && grip_test_.slipped();
+        if (grip_test_.over() && grip_test_.creep()) std::get<RobotSense>(perception_).estimator().believe_creep(*grip_test_.creep());
         return adapted_;
     }
     adapted_ = plan_change_.step(drawn, dt_);
