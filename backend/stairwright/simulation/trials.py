@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import Field
 
 from stairwright.arguments import MOST_SEED, as_friction, as_model, as_whole
-from stairwright.control.settings import ControllerSettings, parse_settings
+from stairwright.control.settings import ControllerSettings, StoredSettings, parse_settings
 from stairwright.documents import Model, content_hash, parse
 from stairwright.planning.plan import Plan
 from stairwright.resources import all_cores
@@ -54,7 +54,7 @@ class Trials(Model):
     robot_hash: str
     friction: float = Field(description="nominal true friction; each trial adds its own")
     seed: int
-    controller: ControllerSettings
+    controller: StoredSettings
     ranges: Ranges
     count: int
     successes: int

@@ -9,11 +9,11 @@ namespace stairwright::control {
 namespace {
 
 constexpr double kStands = 0.3;    // s before it begins
-constexpr double kRamp = 0.6;      // 1/s, growth of the friction that is asked for
-constexpr double kRelease = 2.0;   // 1/s
-constexpr double kHold = 0.2;      // s at the full need
+constexpr double kRamp = 1.0;      // 1/s, growth of the friction that is asked for
+constexpr double kRelease = 3.0;   // 1/s
+constexpr double kHold = 0.1;      // s at the full need
 constexpr double kSmooth = 0.05;   // s
-constexpr double kLeastPull = 0.2;  // s; less says nothing of creep
+constexpr double kLeastPull = 0.05;  // s; less says nothing of creep
 constexpr double kMostCreep = 0.03; // m/s
 constexpr double kSlips = 0.045;   // m/s of rolling that gets nowhere; tyres creep by less
 

@@ -30,6 +30,8 @@ constexpr double kMissed = 0.004;       // m put back: the face is not where the
 constexpr double kSearchNoise = 0.01;   // m^2 of variance for a metre that a face is farther on
 constexpr double kTread = 0.7;          // cosine of the slope of a face that is a tread
 constexpr double kSame = 1e-6;          // m
+constexpr double kBeside = 1e-6;        // m
+constexpr double kBeyondDoubt = 3.0;    // standard deviations
 constexpr double kGate = 9.0;           // of a normalised innovation squared
 constexpr double kNearCorner = 0.006;   // m; which way a wheel rolls this near to a concave corner is open
 
@@ -94,7 +96,7 @@ Estimator::Rotation Estimator::rotation() const {
 const Estimate& Estimator::step(const Readings& readings, double dt) {
     predict(readings, dt);
     see_legs(readings, dt);
-    estimate_.hanging = false;
+    estimate_.hanging = {};
     for (WheelState& w : wheels_) w.missed = false;
     for (int i = 0; i < 4; ++i) measure(i, readings, dt);
     // One wheel that has found the face is enough: a robot that comes obliquely does not touch with both.
@@ -190,18 +192,22 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     belief.force_deviation = motion * (noise_.force * weight_ + 0.15 * norm(w.felt));
     const CurveMatch on = match(path_, belief, w.s, kWindow);
     // A leg that swings feels a little, too: of a wall it has to be more than that.
-    const auto feels = [&](Vec2 n) { return dot(w.felt, n) > std::max(kTouching * weight_ / 4, n.z < kTread ? belief.force_deviation : 0.0); };
-    const bool touching = feels(on.point.normal) || feels(on.before) || feels(on.after);
+    w.least_push = belief.force_deviation;
+    const auto feels = [&](Vec2 n) { return dot(w.felt, n) > std::max(kTouching * weight_ / 4, n.z < kTread ? w.least_push : 0.0); };
+    bool touching = feels(on.point.normal) || feels(on.before) || feels(on.after);
+    const double corner = nearest_corner(on.s);
+    if (std::abs(corner - on.s) < kNearCorner) touching = touching || feels(path_.normal(corner - kBeside)) || feels(path_.normal(corner + kBeside));
     const double before = w.s;
     w.s = on.s;
-    if (!touching && on.s > before) {  // in the air no wheel gets past a corner
-        const std::size_t corner = path_.corner_from(before - kNearCorner);
-        if (corner < path_.corners().size() && path_.corners()[corner] < on.s) {
-            w.s = std::max(before, path_.corners()[corner]);
-            estimate_.hanging = true;
+    if (!touching && on.s > before) {  // in the air no wheel gets past a corner, unless that is sure
+        const std::size_t passed = path_.corner_from(before - kNearCorner);
+        const double sure = kBeyondDoubt * std::sqrt(std::max(belief.spread.xx, belief.spread.zz));
+        if (passed < path_.corners().size() && path_.corners()[passed] < on.s && on.s < path_.corners()[passed] + sure) {
+            w.s = std::max(before, path_.corners()[passed]);
+            estimate_.hanging[i / 2] = true;
         }
     }
-    enter_face(i, on);
+    const bool entered = enter_face(i, on);
     const std::size_t next = path_.corner_from(on.s);
     const double room = next < path_.corners().size() ? path_.corners()[next] - on.s : kRoom;
     estimate_.on_tread[i / 2] = !on.corner && on.point.normal.z > kTread && room >= kRoom;
@@ -210,6 +216,7 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     w.at_corner = on.corner ? w.at_corner + dt : 0.0;
     estimate_.touching[i] = touching;
     estimate_.used_grip[i] = std::abs(w.traction) / std::max(dot(w.felt, on.point.normal), 0.02 * weight_);
+    if (entered && i / 2 == 1) recall(on.piece);
     if (!estimate_.touching[i]) return;
     Error error{};
     if (!on.corner || w.at_corner > kSure) measure_place(i, on, along_x, along_z, centre, dt, error);
@@ -218,16 +225,18 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
 }
 
 // Every face lies and every tread is as high as the map says only more or less: what is ahead is anew unsure.
-void Estimator::enter_face(int i, const CurveMatch& on) {
+// Returns whether it is another one than before.
+bool Estimator::enter_face(int i, const CurveMatch& on) {
     WheelState& w = wheels_[i];
-    if (on.corner || on.piece == w.face || path_.pieces()[on.piece].arc) return;
+    if (on.corner || on.piece == w.face || path_.pieces()[on.piece].arc) return false;
     const bool tread = on.point.normal.z > kTread, was_tread = path_.pieces()[w.face].at(0.0, path_.radius()).normal.z > kTread;
     const bool known = on.piece == w.face_before;  // it comes back to it
     w.face_before = w.face, w.face = on.piece, w.put_back = 0.0;
-    if (known || (tread && was_tread)) return;
+    if (known || (tread && was_tread)) return true;
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
     const double error = tread ? noise_.face_place : noise_.tread_height;
     covariance_.add_noise(tread ? own : own + 1, 0.5 * error * error);
+    return true;
 }
 
 double Estimator::nearest_corner(double s) const {
@@ -253,7 +262,10 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
         return;
     }
     const Vec2 n = on.point.normal;
-    if (n.z < kTread) wheels_[i].met = nearest_corner(on.s);
+    if (n.z < kTread) {
+        if (dot(wheels_[i].felt, n) < wheels_[i].least_push) return;  // it only seems to be there
+        wheels_[i].met = nearest_corner(on.s);
+    }
     covariance_.update(row(n), dot(n, off), variance, error);
     if (on.beyond == 0 || !on.blocked) return;
     const Vec2 t = {n.z, -n.x};

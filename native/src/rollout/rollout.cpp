@@ -13,6 +13,7 @@ namespace stairwright::rollout {
 namespace {
 
 constexpr double kBeyond = 1e6;  // m, m/s, rad or rad/s, summed up: no robot gets there
+constexpr double kCarries = 0.1;  // of the weight, on a pair of wheels that is to be on the ground
 constexpr double kSamePlace = 0.15;  // m; an error of the map that was let pass is not told again so near
 constexpr int kAllContacts = 16;  // the sensor that counts every contact; before it 4 numbers a wheel
 
@@ -58,7 +59,10 @@ const control::Reference& Rollout::target(const Perceived& seen, bool moving, do
     if (moving && seen.map_error && !map_error_ && std::abs(seen.map_error->s - ignored_) > kSamePlace) map_error_ = seen.map_error, waits_ = true;
     moving = moving && !waits_ && plan_change_.over();
     const bool searching = moving && seen.ahead.any();
-    const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt_, seen.ahead.hanging);
+    bool hanging = false;
+    for (int pair = 0; pair < 2; ++pair)  // not where the plan itself hardly loads the wheels
+        hanging = hanging || (seen.ahead.hanging[pair] && norm(follower_.target().forces[pair]) > kCarries * controller_.robot().mass() * kGravity);
+    const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt_, hanging);
     if (!seen.places) return drawn;
     if (!grip_test_.over()) {
         adapted_ = grip_test_.step(drawn, seen.state, seen.used_grip, seen.ahead.on_tread[0] && seen.ahead.on_tread[1], dt_);
@@ -92,9 +96,7 @@ void Rollout::adopt(control::PlanFollower follower, double friction) {
 void Rollout::correct_map(const WheelPath& path) {
     auto* sense = std::get_if<RobotSense>(&perception_);
     if (sense == nullptr || !map_error_) throw std::invalid_argument("there is no error of the map to correct");
-    sense->estimator().correct_map(path, *map_error_);
-    // Of the robot's place on the map, each pair's offset counts half.
-    const Vec2 shift = map_error_->face ? Vec2{-0.5 * map_error_->off.x, 0.0} : Vec2{0.0, -0.5 * map_error_->off.z};
+    const Vec2 shift = sense->estimator().correct_map(path, *map_error_);
     adapted_.value.com += shift, adapted_.value.trunk += shift;
     controller_.believe(path);
     leg_fit_.reset();

@@ -18,6 +18,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "stairwright/control/controller.hpp"
 #include "stairwright/estimation/curve_match.hpp"
@@ -73,7 +74,7 @@ struct Estimate {
     std::array<Vec2, 2> ground{};
     std::array<bool, 2> on_tread{};   // of each pair: it can roll on for a while
     std::array<double, 4> used_grip{};  // tangential force over normal force of each wheel, as the legs feel them
-    bool hanging = false;             // a wheel is in the air where the map has it pass a corner
+    std::array<bool, 2> hanging{};    // a wheel of the pair is in the air where the map has it pass a corner
     std::optional<MapError> map_error;
     std::array<bool, 2> searching{};  // the map has a face where the pair is, and it feels none
 };
@@ -87,8 +88,9 @@ class Estimator {
 
     // How much slower than they roll the wheels move, see Noise [m/s].
     void believe_creep(double creep) { noise_.creep = creep; }
-    // Another map from now on, on which the face or tread of `found` is where it was found.
-    void correct_map(WheelPath path, const MapError& found);
+    // Another map from now on, on which the face or tread of `found` is where it was found. Returns by how much the robot's
+    // place on the map is another one by that [m].
+    Vec2 correct_map(WheelPath path, const MapError& found);
 
     const Estimate& estimate() const { return estimate_; }
     const Covariance& covariance() const { return covariance_; }
@@ -117,6 +119,7 @@ class Estimator {
         double cruise = 0.0;      // speed that it rolls at, smoothed [m/s]
         bool on_face = false;     // a steep one, or in a corner before one
         double known = 0.0;       // for how long it has been there, or on a tread [s]
+        double least_push = 0.0;  // of a wall that counts as felt [N]
         double met = -1e9;        // the last corner of which it has felt the wall [m]
         double at_corner = 0.0;   // for how long it has felt both faces of a corner [s]
     };
@@ -130,7 +133,12 @@ class Estimator {
     void put_back(int wheel, Vec2 along, double excess, Error& error);
     void compare_with_map(int wheel, const CurveMatch& on, double dt);
     void find_map_error();
-    void enter_face(int wheel, const CurveMatch& on);
+    bool enter_face(int wheel, const CurveMatch& on);
+    // What front wheels find of a face or tread the rear wheels know when they get there.
+    void remember(double s, bool face, double off);
+    void recall(std::size_t piece);
+    std::size_t straight_piece(double s, bool face) const;
+    bool is_face(std::size_t piece) const;
     double nearest_corner(double s) const;  // along the curve, to the place `s` on it [m]
     void measure_place(int wheel, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error);
     void measure_rolling(int wheel, const CurveMatch& on, const Readings& readings, const Error& along_x, const Error& along_z, double dt, Error& error);
@@ -149,6 +157,7 @@ class Estimator {
     bool started_ = false;
     Covariance covariance_;
     std::array<WheelState, 4> wheels_;
+    std::vector<std::optional<double>> found_;  // of each piece, by front wheels: offset along of a face, up of a tread [m]
     Estimate estimate_;
 };
 
