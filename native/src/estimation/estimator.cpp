@@ -99,6 +99,7 @@ const Estimate& Estimator::step(const Readings& readings, double dt) {
     estimate_.hanging = {};
     for (WheelState& w : wheels_) w.missed = false;
     for (int i = 0; i < 4; ++i) measure(i, readings, dt);
+    for (int i = 2; i < 4; ++i) recall(wheels_[i]);
     // One wheel that has found the face is enough: a robot that comes obliquely does not touch with both.
     for (int pair = 0; pair < 2; ++pair) estimate_.searching[pair] = wheels_[2 * pair].missed && wheels_[2 * pair + 1].missed;
     started_ = true;
@@ -207,7 +208,7 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
             estimate_.hanging[i / 2] = true;
         }
     }
-    const bool entered = enter_face(i, on);
+    enter_face(i, on);
     const std::size_t next = path_.corner_from(on.s);
     const double room = next < path_.corners().size() ? path_.corners()[next] - on.s : kRoom;
     estimate_.on_tread[i / 2] = !on.corner && on.point.normal.z > kTread && room >= kRoom;
@@ -216,7 +217,6 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     w.at_corner = on.corner ? w.at_corner + dt : 0.0;
     estimate_.touching[i] = touching;
     estimate_.used_grip[i] = std::abs(w.traction) / std::max(dot(w.felt, on.point.normal), 0.02 * weight_);
-    if (entered && i / 2 == 1) recall(on.piece);
     if (!estimate_.touching[i]) return;
     Error error{};
     if (!on.corner || w.at_corner > kSure) measure_place(i, on, along_x, along_z, centre, dt, error);
@@ -225,18 +225,16 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
 }
 
 // Every face lies and every tread is as high as the map says only more or less: what is ahead is anew unsure.
-// Returns whether it is another one than before.
-bool Estimator::enter_face(int i, const CurveMatch& on) {
+void Estimator::enter_face(int i, const CurveMatch& on) {
     WheelState& w = wheels_[i];
-    if (on.corner || on.piece == w.face || path_.pieces()[on.piece].arc) return false;
+    if (on.corner || on.piece == w.face || path_.pieces()[on.piece].arc) return;
     const bool tread = on.point.normal.z > kTread, was_tread = path_.pieces()[w.face].at(0.0, path_.radius()).normal.z > kTread;
     const bool known = on.piece == w.face_before;  // it comes back to it
     w.face_before = w.face, w.face = on.piece, w.put_back = 0.0;
-    if (known || (tread && was_tread)) return true;
+    if (known || (tread && was_tread)) return;
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
     const double error = tread ? noise_.face_place : noise_.tread_height;
     covariance_.add_noise(tread ? own : own + 1, 0.5 * error * error);
-    return true;
 }
 
 double Estimator::nearest_corner(double s) const {

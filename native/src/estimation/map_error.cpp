@@ -12,6 +12,7 @@ namespace {
 constexpr double kSteep = 0.7;      // cosine of the slope below which a face is no tread
 constexpr double kSettled = 0.12;   // s that wheels must be on a face before its place counts as found
 constexpr double kRecalled = 0.006;  // m; how well rear wheels know what front wheels found
+constexpr double kInto = 0.02;  // m that a wheel must be on a face or tread
 constexpr double kSameGround = 1e-3;  // m
 constexpr double kLeastFace = 0.008, kLeastTread = 0.006;  // m; less is not worth another plan
 
@@ -56,11 +57,14 @@ void Estimator::remember(double s, bool face, double off) {
     if (k < found_.size()) found_[k] = off;
 }
 
-// Of the piece that rear wheels have come to and of the next straight one.
-void Estimator::recall(std::size_t piece) {
+// Of the piece that a rear wheel is on and of the next straight one; not while it may still lean on the one before.
+void Estimator::recall(WheelState& rear) {
+    const Piece& now = path_.pieces()[rear.face];
+    if (rear.face == rear.recalled || rear.s < now.s + kInto || rear.s > now.s + now.length) return;
+    rear.recalled = rear.face;
     Error error{};
     int straight = 0;
-    for (std::size_t k = piece; k < found_.size() && straight < 2; ++k) {
+    for (std::size_t k = rear.face; k < found_.size() && straight < 2; ++k) {
         if (path_.pieces()[k].arc) continue;
         ++straight;
         if (!found_[k]) continue;
@@ -86,7 +90,7 @@ Vec2 Estimator::correct_map(WheelPath path, const MapError& found) {
     for (int i = 0; i < 4; ++i) {
         WheelState& w = wheels_[i];
         w.s = path_.project(place_ + offset_[i / 2] + w.leg.wheel, 0.0, path_.length());
-        w.put_back = w.known = 0.0, w.met = -1e9;
+        w.put_back = w.known = 0.0, w.met = -1e9, w.recalled = 0;
         const auto& pieces = path_.pieces();
         for (std::size_t k = 0; k < pieces.size(); ++k)
             if (!pieces[k].arc && pieces[k].s <= w.s) w.face = w.face_before = k;

@@ -111,6 +111,7 @@ class Estimator {
         Vec2 felt;                // the force, smoothed [N]
         double traction = 0.0;    // smoothed [N]
         double s;                 // place on the curve [m]
+        std::size_t recalled = 0;  // the last piece of which it knows what front wheels found
         std::size_t face = 0, face_before = 0;  // pieces of the curve, the last straight ones
         bool missed = false;      // it is put back now
         double put_back = 0.0;    // how far it has been put back on that piece, see Estimator::put_back [m]
@@ -133,10 +134,10 @@ class Estimator {
     void put_back(int wheel, Vec2 along, double excess, Error& error);
     void compare_with_map(int wheel, const CurveMatch& on, double dt);
     void find_map_error();
-    bool enter_face(int wheel, const CurveMatch& on);
+    void enter_face(int wheel, const CurveMatch& on);
     // What front wheels find of a face or tread the rear wheels know when they get there.
     void remember(double s, bool face, double off);
-    void recall(std::size_t piece);
+    void recall(WheelState& rear);
     std::size_t straight_piece(double s, bool face) const;
     bool is_face(std::size_t piece) const;
     double nearest_corner(double s) const;  // along the curve, to the place `s` on it [m]
