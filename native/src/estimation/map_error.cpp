@@ -12,6 +12,7 @@ namespace {
 constexpr double kSteep = 0.7;      // cosine of the slope below which a face is no tread
 constexpr double kSettled = 0.12;   // s that wheels must be on a face before its place counts as found
 constexpr double kRecalled = 0.006;  // m; how well rear wheels know what front wheels found
+constexpr double kReach = 0.5;  // m along the curve that a face or tread is looked for
 constexpr double kInto = 0.02;  // m that a wheel must be on a face or tread
 constexpr double kSameGround = 1e-3;  // m
 constexpr double kLeastFace = 0.008, kLeastTread = 0.006;  // m; less is not worth another plan
@@ -44,7 +45,8 @@ std::size_t Estimator::straight_piece(double s, bool face) const {
     std::size_t best = pieces.size();
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < pieces.size(); ++k) {
-        if (pieces[k].arc || is_face(k) != face) continue;
+        if (pieces[k].s > s + kReach) break;
+        if (pieces[k].arc || pieces[k].s + pieces[k].length < s - kReach || is_face(k) != face) continue;
         const double away = std::max({pieces[k].s - s, s - pieces[k].s - pieces[k].length, 0.0});
         if (away < nearest) nearest = away, best = k;
     }
