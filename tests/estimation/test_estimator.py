@@ -72,7 +72,8 @@ def test_legs_reach_for_ground_that_is_not_as_drawn(plan: Plan) -> None:
 
 
 def test_ideal_knowledge_of_a_wrong_place_does_not_climb(plan: Plan) -> None:
-    assert rollout(plan, disturbance={"x_offset": 0.03}).outcome != "success"
+    run = rollout(plan, controller={"sensing": "ideal"}, disturbance={"x_offset": 0.03})
+    assert run.outcome != "success"
 
 
 def test_the_filter_is_honest(plan: Plan) -> None:
@@ -103,6 +104,18 @@ def test_robot_sensing_needs_the_native_loop() -> None:
     with pytest.raises(InputError) as caught:
         parse_settings({"sensing": "robot", "form": "paper"})
     assert caught.value.field == ("controller", "sensing")
+
+
+def test_a_robot_senses_by_itself_unless_its_controller_has_no_estimator() -> None:
+    assert parse_settings(None).sensing == "robot"
+    assert parse_settings({"form": "paper"}).sensing == "ideal"
+    assert parse_settings({"solver": "clarabel"}).sensing == "ideal"
+
+
+def test_a_stored_run_that_tells_no_sensing_was_ideal(plan: Plan) -> None:
+    document = rollout(plan, controller={"sensing": "ideal"}).model_dump(mode="json")
+    del document["controller"]["sensing"]
+    assert Rollout.model_validate(document).controller.sensing == "ideal"
 
 
 def path() -> _core.WheelPath:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from stairwright.arguments import as_model
 from stairwright.documents import Model
@@ -74,11 +74,12 @@ class ControllerSettings(Model):
         "clarabel, through qpsolvers, is the reference",
     )
     sensing: Sensing = Field(
-        "ideal",
+        "robot",
         title="Sensing",
-        description="What the controller knows of its state. ideal: all of it, as the simulation "
-        "has it. robot: what encoders, motor currents and an inertial sensor tell, by an estimator "
-        "that knows the map (form contact, native solver)",
+        description="What the controller knows of its state. robot: what encoders, motor currents "
+        "and an inertial sensor tell, by an estimator that knows the map (form contact, native "
+        "solver). ideal: all of it, as the simulation has it; the default of form paper and of "
+        "the clarabel solver, which have no estimator",
     )
     speed: float | None = _number(
         None, 0.02, 1.0, "m/s", "Speed", "Along the course; the plan's own timing if empty", "log"
@@ -198,11 +199,30 @@ class ControllerSettings(Model):
             return {"maximum_lead" if key == "leash" else key: data[key] for key in data}
         return data
 
+    @model_validator(mode="before")
+    @classmethod
+    def _sensing_follows(cls, data: Any) -> Any:
+        """Only form contact with the native solver has an estimator."""
+        if not isinstance(data, Mapping) or "sensing" in data:
+            return data
+        own = data.get("form", "contact") == "contact" and data.get("solver", "native") == "native"
+        return data if own else {**data, "sensing": "ideal"}
+
     @model_validator(mode="after")
     def _check_sensing(self) -> ControllerSettings:
         if self.sensing == "robot" and (self.form != "contact" or self.solver != "native"):
             raise InputError("robot needs form contact and the native solver", ("sensing",))
         return self
+
+
+def _as_stored(data: Any) -> Any:
+    """Runs that were stored before there was a choice knew all of their state."""
+    old = isinstance(data, Mapping) and "sensing" not in data
+    return {**data, "sensing": "ideal"} if old else data
+
+
+# Settings within a document of a run, which holds all of them.
+StoredSettings = Annotated[ControllerSettings, BeforeValidator(_as_stored)]
 
 
 def parse_settings(settings: Mapping[str, Any] | ControllerSettings | None) -> ControllerSettings:

@@ -71,7 +71,7 @@ def drive(
         friction: Coulomb friction of the ground.
         settings: Of the controller; form `contact` or `paper`.
     """
-    settings = settings or ControllerSettings()
+    settings = settings or ControllerSettings(sensing="ideal")
     ground = Terrain(points=[(-HALF_SIZE, 0.0), (HALF_SIZE, 0.0)], friction=friction)
     model = build_spec(robot, ground, friction, half_width=HALF_SIZE, visual=False).compile()
     data = mujoco.MjData(model)

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from stairwright.control.settings import ControllerSettings
+from stairwright.control.settings import StoredSettings
 from stairwright.documents import Model
 
 
@@ -18,7 +18,7 @@ class RobustMargins(Model):
     plan_id: str
     terrain_hash: str
     robot_hash: str
-    controller: ControllerSettings
+    controller: StoredSettings
     seed: int
     delay: float | None = Field(
         description="of the loop, up to which it succeeds; none if not even without [s]"

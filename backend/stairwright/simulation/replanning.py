@@ -19,6 +19,12 @@ LEAST = 0.2  # friction on which no robot is sent: what is known of it is too ro
 USABLE = 0.95  # of the friction that was found
 
 
+def tested_friction(line: Track, plan: Plan) -> float:
+    """The friction to test the ground for before the start; 0 where there is nothing to fear."""
+    needed = TESTED * needed_friction(line, plan)
+    return needed if needed >= LEAST else 0.0
+
+
 def needed_friction(line: Track, plan: Plan) -> float:
     """The friction that the plan needs: that of its static forces, and some for the motion."""
     return min(1.0, MOTION * float(line.rows[:, SHARE].max())) * plan.friction

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, ConfigDict, Field, PlainSerializer, WithJsonSchema
 from pydantic import model_validator as check
 
-from stairwright.control.settings import ControllerSettings
+from stairwright.control.settings import StoredSettings
 from stairwright.documents import Model
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
@@ -147,7 +147,7 @@ class Rollout(Model):
     )
     friction: float
     seed: int
-    controller: ControllerSettings
+    controller: StoredSettings
     disturbance: dict[str, Any] = Field({}, description="what deviated, see Disturbance")
     outcome: Outcome
     reason: str = Field(description="one sentence: what happened, where and when")

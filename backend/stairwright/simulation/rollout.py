@@ -44,7 +44,7 @@ def rollout(
         observe: Called as often as `progress` with the record so far.
         model: The robot's own MJCF or URDF file (or its text), simulated in the place of our model
             of it; see `original` for what of it is kept and how joints are mapped. The loop is not
-            the native one: about twice as fast as real time.
+            the native one: about twice as fast as real time, with sensing ideal.
 
     Raises:
         InputError: If an argument is bad or the plan has no poses.
@@ -65,5 +65,8 @@ def rollout(
     else:
         from .original_run import OriginalRun
 
+        if isinstance(controller, Mapping) and controller.get("sensing") == "robot":
+            raise InputError("is for our own model of the robot", ("controller", "sensing"))
+        settings = settings.model_copy(update={"sensing": "ideal"})
         run = OriginalRun(plan, truth, settings, deviations, seed, record_hz, model)
     return run.result(run.simulate(progress, observe), keep_plan)

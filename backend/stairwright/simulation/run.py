@@ -34,7 +34,7 @@ from .measured import SETTLE, measured
 from .outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
 from .perception import perception
 from .record import Recorder
-from .replanning import TESTED, after_slip, needed_friction, plan_anew
+from .replanning import after_slip, needed_friction, plan_anew, tested_friction
 from .result import Rollout
 from .sensors import Sensors
 from .world import build_world, real_terrain
@@ -48,6 +48,7 @@ STOPS = {  # why it gives up, see control/safe_stop.hpp
     1: "the wheels did not follow the plan for 3 s",
     2: "the trunk leant too far from the plan",
 }
+SAME_GROUND = 1e-3  # m between wheels that are on one face or tread
 CHUNK = 125  # control steps between reports of progress
 _DIVERGED = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
@@ -129,7 +130,7 @@ class Run:
             self.plan, self.path, self.settings, self.disturbance, late, self.seed
         )
         own = self.settings.sensing == "robot"
-        need = TESTED * needed_friction(self.track, self.plan) if own else 0.0
+        need = tested_friction(self.track, self.plan) if own else 0.0
         scale = 1.0 + self.disturbance.torque_scale
         return _core.Rollout(
             model, data, controller, line, perceived, bandwidth, scale, every, CONTROL_STEPS, need
@@ -251,7 +252,10 @@ class Run:
         face, s, *by = found
         off = np.array(by) * ([1.0, 0.0] if face else [0.0, 1.0])
         front, rear = np.reshape(native.places, (2, 2)).mean(axis=1)
-        centres = self.path.centres(np.array([front, rear])) - [off, [0.0, 0.0]]
+        centres = self.path.centres(np.array([front, rear]))
+        across = 0 if face else 1
+        both = abs(np.diff(centres[:, across])[0]) < SAME_GROUND
+        centres -= [off, off if both else np.zeros(2)]
         known = corrected(self.known, self.path, s, face=face, off=off)
         plan = plan_anew(self.followed, known, self.followed.friction)
         if plan is None or self.followed.timing.rule == "fast":

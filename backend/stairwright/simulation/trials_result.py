@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from stairwright.control.settings import ControllerSettings
+from stairwright.control.settings import StoredSettings
 from stairwright.documents import Model
 
 from .disturbance import Disturbance
@@ -37,7 +37,7 @@ class Trials(Model):
     robot_hash: str
     friction: float = Field(description="nominal true friction; each trial adds its own")
     seed: int
-    controller: ControllerSettings
+    controller: StoredSettings
     ranges: Ranges
     count: int
     successes: int

@@ -1355,8 +1355,8 @@ export interface components {
             solver: "native" | "clarabel";
             /**
              * Sensing
-             * @description What the controller knows of its state. ideal: all of it, as the simulation has it. robot: what encoders, motor currents and an inertial sensor tell, by an estimator that knows the map (form contact, native solver)
-             * @default ideal
+             * @description What the controller knows of its state. robot: what encoders, motor currents and an inertial sensor tell, by an estimator that knows the map (form contact, native solver). ideal: all of it, as the simulation has it; the default of form paper and of the clarabel solver, which have no estimator
+             * @default robot
              * @enum {string}
              */
             sensing: "ideal" | "robot";

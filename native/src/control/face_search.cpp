@@ -7,8 +7,8 @@ namespace stairwright::control {
 namespace {
 
 constexpr double kSpeed = 0.04;     // m/s
-constexpr double kMostLead = 0.03;  // m ahead of the wheels, which makes them push
-constexpr double kLeadTime = 0.5;   // s until it is reached
+constexpr double kMostLead = 0.12;  // m ahead of the wheels, which makes them push
+constexpr double kLeadTime = 2.0;   // s until it is reached
 
 }  // namespace
 

@@ -9,10 +9,12 @@ namespace stairwright::control {
 namespace {
 
 constexpr double kStands = 0.3;    // s before it begins
-constexpr double kRamp = 0.6;      // 1/s, growth of the friction that is asked for
-constexpr double kRelease = 2.0;   // 1/s
-constexpr double kHold = 0.2;      // s at the full need
+constexpr double kRamp = 1.0;      // 1/s, growth of the friction that is asked for
+constexpr double kRelease = 3.0;   // 1/s
+constexpr double kHold = 0.1;      // s at the full need
 constexpr double kSmooth = 0.05;   // s
+constexpr double kLeastPull = 0.05;  // s; less says nothing of creep
+constexpr double kMostCreep = 0.03; // m/s
 constexpr double kSlips = 0.045;   // m/s of rolling that gets nowhere; tyres creep by less
 
 }  // namespace
@@ -30,6 +32,16 @@ std::array<double, 4> GripTest::rolled(const RobotState& state) const {
     return out;
 }
 
+// Rear wheels roll forward under the traction by which front wheels are pushed back; the trunk's motion is the same for both.
+void GripTest::watch_creep(const Reference& planned, const std::array<double, 4>& now, double dt) {
+    const double apart = 0.5 * (now[2] + now[3] - now[0] - now[1]);
+    if (steps_ > 1) crept_ += apart - apart_;
+    apart_ = apart;
+    const double front = planned.forces[0].z, rear = planned.forces[1].z, quarter = (front + rear) / 4;
+    const double pull = 0.25 * ((used_[0] + used_[1]) * front + (used_[2] + used_[3]) * rear);
+    pulled_ += dt * pull / std::max(quarter, 1e-9);
+}
+
 Reference GripTest::step(const Reference& planned, const RobotState& state, const std::array<double, 4>& used, bool level, double dt) {
     if (over_) return planned;
     time_ += dt;
@@ -38,10 +50,12 @@ Reference GripTest::step(const Reference& planned, const RobotState& state, cons
     if (!begun_) before_.fill(now), begun_ = true;
     for (std::size_t i = 0; i < 4; ++i) used_[i] += dt / (kSmooth + dt) * (used[i] - used_[i]);
     const std::array<double, 4> then = std::exchange(before_[steps_++ % before_.size()], now);
+    watch_creep(planned, now, dt);
     if (!level) over_ = true;
     if (releasing_) {
         push_ = std::max(0.0, push_ - kRelease * dt);
         over_ = over_ || push_ == 0.0;
+        if (over_ && !slipped_ && pulled_ > kLeastPull) creep_ = std::clamp(crept_ / pulled_, 0.0, kMostCreep);
     } else {
         push_ = std::min(need_, push_ + kRamp * dt);
         releasing_ = time_ > kStands + need_ / kRamp + kHold;

@@ -29,6 +29,9 @@ constexpr double kLevel = 0.95;        // cosine of the slope of a face on which
 constexpr double kMissed = 0.004;       // m put back: the face is not where the map has it
 constexpr double kSearchNoise = 0.01;   // m^2 of variance for a metre that a face is farther on
 constexpr double kTread = 0.7;          // cosine of the slope of a face that is a tread
+constexpr double kSame = 1e-6;          // m
+constexpr double kBeside = 1e-6;        // m
+constexpr double kBeyondDoubt = 3.0;    // standard deviations
 constexpr double kGate = 9.0;           // of a normalised innovation squared
 constexpr double kNearCorner = 0.006;   // m; which way a wheel rolls this near to a concave corner is open
 
@@ -93,9 +96,10 @@ Estimator::Rotation Estimator::rotation() const {
 const Estimate& Estimator::step(const Readings& readings, double dt) {
     predict(readings, dt);
     see_legs(readings, dt);
-    estimate_.hanging = false;
+    estimate_.hanging = {};
     for (WheelState& w : wheels_) w.missed = false;
     for (int i = 0; i < 4; ++i) measure(i, readings, dt);
+    for (int i = 2; i < 4; ++i) recall(wheels_[i]);
     // One wheel that has found the face is enough: a robot that comes obliquely does not touch with both.
     for (int pair = 0; pair < 2; ++pair) estimate_.searching[pair] = wheels_[2 * pair].missed && wheels_[2 * pair + 1].missed;
     started_ = true;
@@ -188,14 +192,20 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const double motion = kForceAtRest + (1.0 - kForceAtRest) * std::min(1.0, speed / kForceSpeed);
     belief.force_deviation = motion * (noise_.force * weight_ + 0.15 * norm(w.felt));
     const CurveMatch on = match(path_, belief, w.s, kWindow);
-    const bool touching = std::max({dot(w.felt, on.point.normal), dot(w.felt, on.before), dot(w.felt, on.after)}) > kTouching * weight_ / 4;
+    // A leg that swings feels a little, too: of a wall it has to be more than that.
+    w.least_push = belief.force_deviation;
+    const auto feels = [&](Vec2 n) { return dot(w.felt, n) > std::max(kTouching * weight_ / 4, n.z < kTread ? w.least_push : 0.0); };
+    bool touching = feels(on.point.normal) || feels(on.before) || feels(on.after);
+    const double corner = nearest_corner(on.s);
+    if (std::abs(corner - on.s) < kNearCorner) touching = touching || feels(path_.normal(corner - kBeside)) || feels(path_.normal(corner + kBeside));
     const double before = w.s;
     w.s = on.s;
-    if (!touching && on.s > before) {  // in the air no wheel gets past a corner
-        const std::size_t corner = path_.corner_from(before - kNearCorner);
-        if (corner < path_.corners().size() && path_.corners()[corner] < on.s) {
-            w.s = std::max(before, path_.corners()[corner]);
-            estimate_.hanging = true;
+    if (!touching && on.s > before) {  // in the air no wheel gets past a corner, unless that is sure
+        const std::size_t passed = path_.corner_from(before - kNearCorner);
+        const double sure = kBeyondDoubt * std::sqrt(std::max(belief.spread.xx, belief.spread.zz));
+        if (passed < path_.corners().size() && path_.corners()[passed] < on.s && on.s < path_.corners()[passed] + sure) {
+            w.s = std::max(before, path_.corners()[passed]);
+            estimate_.hanging[i / 2] = true;
         }
     }
     enter_face(i, on);
@@ -219,11 +229,20 @@ void Estimator::enter_face(int i, const CurveMatch& on) {
     WheelState& w = wheels_[i];
     if (on.corner || on.piece == w.face || path_.pieces()[on.piece].arc) return;
     const bool tread = on.point.normal.z > kTread, was_tread = path_.pieces()[w.face].at(0.0, path_.radius()).normal.z > kTread;
-    w.face = on.piece, w.put_back = 0.0;
-    if (tread && was_tread) return;
+    const bool known = on.piece == w.face_before;  // it comes back to it
+    w.face_before = w.face, w.face = on.piece, w.put_back = 0.0;
+    if (known || (tread && was_tread)) return;
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
     const double error = tread ? noise_.face_place : noise_.tread_height;
     covariance_.add_noise(tread ? own : own + 1, 0.5 * error * error);
+}
+
+double Estimator::nearest_corner(double s) const {
+    const auto& corners = path_.corners();
+    const std::size_t k = path_.corner_from(s);
+    if (corners.empty()) return s;
+    if (k == corners.size() || (k > 0 && s - corners[k - 1] < corners[k] - s)) return corners[k - 1];
+    return corners[k];
 }
 
 void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error) {
@@ -235,15 +254,24 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
         return h;
     };
     if (on.corner) {
+        wheels_[i].met = nearest_corner(on.s);
         covariance_.update(row(on.before), dot(on.before, off), variance, error);
         covariance_.update(row(on.after), dot(on.after, off), variance, error);
         return;
     }
     const Vec2 n = on.point.normal;
+    if (n.z < kTread) {
+        if (dot(wheels_[i].felt, n) < wheels_[i].least_push) return;  // it only seems to be there
+        wheels_[i].met = nearest_corner(on.s);
+    }
     covariance_.update(row(n), dot(n, off), variance, error);
     if (on.beyond == 0 || !on.blocked) return;
-    // The mean alone is projected: that the face is not felt yet is the same news at every step.
     const Vec2 t = {n.z, -n.x};
+    if (std::abs(wheels_[i].met - nearest_corner(on.s)) < kSame) {  // no news of a face that it has felt
+        covariance_.update(row(t), dot(t, off), variance, error);
+        return;
+    }
+    // The mean alone is projected: that the face is not felt yet is the same news at every step.
     put_back(i, t, dot(t, off) - dot_of(row(t), error), error);
 }
 
@@ -318,7 +346,8 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
     h[kGyroBias + 1] += radius;
     // The nearer to its grip, the less a wheel's turning says.
     const double used = std::abs(w.traction) / std::max(dot(w.felt, n), 0.02 * weight_) / kGripUsed;
-    update(h, (1.0 + scale_) * rolled - dot3(t, speed), std::hypot(noise_.rolling * std::max(1.0, used * used), askew));
+    const double crept = noise_.creep * w.traction / (0.25 * weight_);
+    update(h, (1.0 + scale_) * rolled - crept - dot3(t, speed), std::hypot(noise_.rolling * std::max(1.0, used * used), askew));
     h = row(off);
     const bool round = path_.on_arc(on.s);
     if (round) {  // where it goes says how far round the edge it is: dn/ds = t / radius

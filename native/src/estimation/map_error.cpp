@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace stairwright::estimation {
 
@@ -10,6 +11,10 @@ namespace {
 
 constexpr double kSteep = 0.7;      // cosine of the slope below which a face is no tread
 constexpr double kSettled = 0.12;   // s that wheels must be on a face before its place counts as found
+constexpr double kRecalled = 0.006;  // m; how well rear wheels know what front wheels found
+constexpr double kReach = 0.5;  // m along the curve that a face or tread is looked for
+constexpr double kInto = 0.02;  // m that a wheel must be on a face or tread
+constexpr double kSameGround = 1e-3;  // m
 constexpr double kLeastFace = 0.008, kLeastTread = 0.006;  // m; less is not worth another plan
 
 }  // namespace
@@ -27,23 +32,73 @@ void Estimator::find_map_error() {
     estimate_.map_error.reset();
     const WheelState &left = wheels_[0], &right = wheels_[1];
     if (std::min(left.known, right.known) < kSettled || left.on_face != right.on_face || left.missed || right.missed) return;
-    const double off = left.on_face ? offset_[0].x : offset_[0].z;
+    const double off = left.on_face ? offset_[0].x : offset_[0].z, s = 0.5 * (left.s + right.s);
+    remember(s, left.on_face, off);
     if (std::abs(off) < (left.on_face ? kLeastFace : kLeastTread)) return;
-    estimate_.map_error = MapError{left.on_face, 0.5 * (left.s + right.s), offset_[0]};
+    estimate_.map_error = MapError{left.on_face, s, offset_[0]};
 }
 
-void Estimator::correct_map(WheelPath path, const MapError& found) {
+bool Estimator::is_face(std::size_t piece) const { return path_.pieces()[piece].at(0.0, path_.radius()).normal.z < kSteep; }
+
+std::size_t Estimator::straight_piece(double s, bool face) const {
+    const auto& pieces = path_.pieces();
+    std::size_t best = pieces.size();
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+        if (pieces[k].s > s + kReach) break;
+        if (pieces[k].arc || pieces[k].s + pieces[k].length < s - kReach || is_face(k) != face) continue;
+        const double away = std::max({pieces[k].s - s, s - pieces[k].s - pieces[k].length, 0.0});
+        if (away < nearest) nearest = away, best = k;
+    }
+    return best;
+}
+
+void Estimator::remember(double s, bool face, double off) {
+    found_.resize(path_.pieces().size());
+    const std::size_t k = straight_piece(s, face);
+    if (k < found_.size()) found_[k] = off;
+}
+
+// Of the piece that a rear wheel is on and of the next straight one; not while it may still lean on the one before.
+void Estimator::recall(WheelState& rear) {
+    const Piece& now = path_.pieces()[rear.face];
+    if (rear.face == rear.recalled || rear.s < now.s + kInto || rear.s > now.s + now.length) return;
+    rear.recalled = rear.face;
+    Error error{};
+    int straight = 0;
+    for (std::size_t k = rear.face; k < found_.size() && straight < 2; ++k) {
+        if (path_.pieces()[k].arc) continue;
+        ++straight;
+        if (!found_[k]) continue;
+        Error row{};
+        row[is_face(k) ? kRearOffset : kRearOffset + 1] = 1.0;
+        covariance_.update(row, *found_[k] - (is_face(k) ? offset_[1].x : offset_[1].z), kRecalled * kRecalled, error);
+    }
+    correct(error);
+}
+
+Vec2 Estimator::correct_map(WheelPath path, const MapError& found) {
+    const Vec2 front = path_.at(found.s).centre, rear = path_.at(0.5 * (wheels_[2].s + wheels_[3].s)).centre;
+    const bool both = std::abs(found.face ? front.x - rear.x : front.z - rear.z) < kSameGround;
+    const Vec2 by = found.face ? Vec2{found.off.x, 0.0} : Vec2{0.0, found.off.z};
+    // A face is moved by itself, with a tread all that is behind it.
+    const std::size_t first = straight_piece(found.s, found.face);
+    if (path.pieces().size() != found_.size()) found_.clear();
+    for (std::size_t k = first; k < found_.size(); ++k)
+        if (found_[k] && is_face(k) == found.face && (k == first || !found.face)) *found_[k] -= found.face ? by.x : by.z;
     path_ = std::move(path);
-    (found.face ? offset_[0].x : offset_[0].z) -= found.face ? found.off.x : found.off.z;
+    offset_[0] = offset_[0] - by;
+    if (both) offset_[1] = offset_[1] - by;
     for (int i = 0; i < 4; ++i) {
         WheelState& w = wheels_[i];
         w.s = path_.project(place_ + offset_[i / 2] + w.leg.wheel, 0.0, path_.length());
-        w.put_back = w.known = 0.0;
+        w.put_back = w.known = 0.0, w.met = -1e9, w.recalled = 0;
         const auto& pieces = path_.pieces();
         for (std::size_t k = 0; k < pieces.size(); ++k)
-            if (!pieces[k].arc && pieces[k].s <= w.s) w.face = k;
+            if (!pieces[k].arc && pieces[k].s <= w.s) w.face = w.face_before = k;
     }
     estimate_.map_error.reset();
+    return (both ? -1.0 : -0.5) * by;
 }
 
 }  // namespace stairwright::estimation

@@ -9,6 +9,7 @@ namespace stairwright::execution {
 
 namespace {
 
+constexpr double kCarries = 0.1;  // of the weight, on a pair of wheels that is to be on the ground
 constexpr double kSamePlace = 0.15;  // m; an error of the map that was let pass is not told again so near
 
 }  // namespace
@@ -17,17 +18,24 @@ PlanExecutor::PlanExecutor(control::Controller controller, control::PlanFollower
     : controller_(std::move(controller)), follower_(std::move(follower)), grip_test_(controller_.robot(), grip_need),
       leg_fit_(controller_.robot()) {}
 
+bool PlanExecutor::hangs(const control::Ahead& ahead) const {
+    const auto& forces = follower_.target().forces;
+    const auto loaded = [&](int pair) { return norm(forces[pair]) > kCarries * controller_.robot().mass() * kGravity; };
+    return (ahead.hanging[kFront] && loaded(kFront)) || (ahead.hanging[kRear] && loaded(kRear));
+}
+
 const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool moving, double time, double dt) {
     if (safe_stop_.why() != control::Stop::none) return stand_;
     moving = moving && grip_test_.over() && !waits_;
     if (moving && seen.map_error && !map_error_ && std::abs(seen.map_error->s - ignored_) > kSamePlace) map_error_ = seen.map_error, waits_ = true;
     moving = moving && !waits_ && plan_change_.over();
     const bool searching = moving && seen.ahead.any();
-    const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt, seen.ahead.hanging);
+    const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt, hangs(seen.ahead));
     if (!seen.places) return drawn;
     if (!grip_test_.over() && plan_change_.over()) {
         adapted_ = grip_test_.step(drawn, seen.state, seen.used_grip, seen.ahead.on_tread[0] && seen.ahead.on_tread[1], dt);
         waits_ = grip_test_.over() && grip_test_.slipped();
+        if (grip_test_.over()) creep_ = grip_test_.creep();
         return adapted_;
     }
     adapted_ = plan_change_.step(drawn, dt);
@@ -63,10 +71,8 @@ void PlanExecutor::adopt(control::PlanFollower follower, double friction) {
     waits_ = false;
 }
 
-void PlanExecutor::correct_map(const WheelPath& path) {
+void PlanExecutor::correct_map(const WheelPath& path, Vec2 shift) {
     if (!map_error_) throw std::invalid_argument("there is no error of the map to correct");
-    // Of the robot's place on the map, each pair's offset counts half.
-    const Vec2 shift = map_error_->face ? Vec2{-0.5 * map_error_->off.x, 0.0} : Vec2{0.0, -0.5 * map_error_->off.z};
     adapted_.value.com += shift, adapted_.value.trunk += shift;
     controller_.believe(path);
     leg_fit_.reset();

@@ -197,6 +197,7 @@ const LowCommand& Player::step(const LowState& state) {
     if (phase_ == Phase::waiting) executor_.begin_from(seen), phase_ = Phase::settling;
     const bool moving = !paused_ && state.time - begun_ >= file_.settle && phase_ != Phase::gave_up;
     const control::Command command = executor_.step(seen, moving, state.time, dt);
+    if (const auto creep = executor_.take_creep()) estimator_->believe_creep(*creep);
     if (const std::string why = beyond_limits(now); !why.empty()) return damp(why), command_;
     tell(command, now);
     if (phase_ == Phase::settling && executor_.follower().way() > file_.way) phase_ = Phase::driving;

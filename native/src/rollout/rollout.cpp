@@ -54,13 +54,13 @@ Perceived Rollout::perceive(std::span<const double> noise) {
 void Rollout::correct_map(const WheelPath& path) {
     auto* sense = std::get_if<RobotSense>(&perception_);
     if (sense == nullptr || !executor_.map_error()) throw std::invalid_argument("there is no error of the map to correct");
-    sense->estimator().correct_map(path, *executor_.map_error());
-    executor_.correct_map(path);
+    executor_.correct_map(path, sense->estimator().correct_map(path, *executor_.map_error()));
 }
 
 void Rollout::control(const Perceived& seen, bool moving, double time) {
     const RobotState state = truth();
     const control::Command command = executor_.step(seen, moving, time, dt_);
+    if (const auto creep = executor_.take_creep()) std::get<RobotSense>(perception_).estimator().believe_creep(*creep);
     const control::Reference& target = executor_.asked();
     const control::Torques wanted = control::drive(command, seen.joints, seen.joint_rates);
     for (std::size_t i = 0; i < torques_.size(); ++i) torques_[i] += lag_ * (scale_ * wanted[i] - torques_[i]);

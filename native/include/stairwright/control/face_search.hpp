@@ -9,7 +9,7 @@ namespace stairwright::control {
 struct Ahead {
     std::array<bool, 2> searching{};  // a face should be here, and is not felt
     std::array<bool, 2> on_tread{};   // can roll on
-    bool hanging = false;             // wheels hang in the air before a face
+    std::array<bool, 2> hanging{};    // hang in the air before a face
 
     bool any() const { return searching[0] || searching[1]; }
 };

@@ -24,12 +24,17 @@ class GripTest {
     Reference step(const Reference& planned, const RobotState& state, const std::array<double, 4>& used, bool level, double dt);
 
     bool over() const { return over_; }
+    // How much slower wheels move than they roll under a traction of a quarter of the weight [m/s], once the test is over
+    // and if none slipped.
+    const std::optional<double>& creep() const { return creep_; }
     // What was found, if wheels slipped.
     const std::optional<Grip>& slipped() const { return slipped_; }
 
   private:
     // How far each wheel has rolled less how far it has moved against the trunk [m].
     std::array<double, 4> rolled(const RobotState& state) const;
+
+    void watch_creep(const Reference& planned, const std::array<double, 4>& now, double dt);
 
     Robot robot_;
     double need_;
@@ -39,6 +44,8 @@ class GripTest {
     std::array<double, 4> used_{};  // smoothed
     std::size_t steps_ = 0;
     std::optional<Grip> slipped_;
+    double pulled_ = 0.0, crept_ = 0.0, apart_ = 0.0;  // s and m, of rear wheels against front ones
+    std::optional<double> creep_;
 };
 
 }  // namespace stairwright::control

@@ -18,6 +18,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "stairwright/control/controller.hpp"
 #include "stairwright/estimation/curve_match.hpp"
@@ -42,6 +43,9 @@ struct Noise {
     double place = 0.002, rolling = 0.03, aside = 0.03, off_face = 0.02;
     // A loaded tyre rolls on a radius that is smaller by this [m].
     double deflection = 0.0004;
+    // A wheel creeps: under a traction of a quarter of the weight it moves slower than it rolls by this, until a test of
+    // the grip tells better [m/s].
+    double creep = 0.014;
     // How long an error of these lasts [s].
     double place_lasts = 0.06, rolling_lasts = 0.02;
     // Of the force that a leg feels, in robot weights.
@@ -70,7 +74,7 @@ struct Estimate {
     std::array<Vec2, 2> ground{};
     std::array<bool, 2> on_tread{};   // of each pair: it can roll on for a while
     std::array<double, 4> used_grip{};  // tangential force over normal force of each wheel, as the legs feel them
-    bool hanging = false;             // a wheel is in the air where the map has it pass a corner
+    std::array<bool, 2> hanging{};    // a wheel of the pair is in the air where the map has it pass a corner
     std::optional<MapError> map_error;
     std::array<bool, 2> searching{};  // the map has a face where the pair is, and it feels none
 };
@@ -82,8 +86,11 @@ class Estimator {
     // One step of time `dt` on; returns the estimate after it.
     const Estimate& step(const Readings& readings, double dt);
 
-    // Another map from now on, on which the face or tread of `found` is where it was found.
-    void correct_map(WheelPath path, const MapError& found);
+    // How much slower than they roll the wheels move, see Noise [m/s].
+    void believe_creep(double creep) { noise_.creep = creep; }
+    // Another map from now on, on which the face or tread of `found` is where it was found. Returns by how much the robot's
+    // place on the map is another one by that [m].
+    Vec2 correct_map(WheelPath path, const MapError& found);
 
     const Estimate& estimate() const { return estimate_; }
     const Covariance& covariance() const { return covariance_; }
@@ -104,7 +111,8 @@ class Estimator {
         Vec2 felt;                // the force, smoothed [N]
         double traction = 0.0;    // smoothed [N]
         double s;                 // place on the curve [m]
-        std::size_t face = 0;     // piece of the curve, the last straight one
+        std::size_t recalled = 0;  // the last piece of which it knows what front wheels found
+        std::size_t face = 0, face_before = 0;  // pieces of the curve, the last straight ones
         bool missed = false;      // it is put back now
         double put_back = 0.0;    // how far it has been put back on that piece, see Estimator::put_back [m]
         double rolled = 0.0;      // by the last step [m]
@@ -112,6 +120,8 @@ class Estimator {
         double cruise = 0.0;      // speed that it rolls at, smoothed [m/s]
         bool on_face = false;     // a steep one, or in a corner before one
         double known = 0.0;       // for how long it has been there, or on a tread [s]
+        double least_push = 0.0;  // of a wall that counts as felt [N]
+        double met = -1e9;        // the last corner of which it has felt the wall [m]
         double at_corner = 0.0;   // for how long it has felt both faces of a corner [s]
     };
     using Vec3 = std::array<double, 3>;
@@ -125,6 +135,12 @@ class Estimator {
     void compare_with_map(int wheel, const CurveMatch& on, double dt);
     void find_map_error();
     void enter_face(int wheel, const CurveMatch& on);
+    // What front wheels find of a face or tread the rear wheels know when they get there.
+    void remember(double s, bool face, double off);
+    void recall(WheelState& rear);
+    std::size_t straight_piece(double s, bool face) const;
+    bool is_face(std::size_t piece) const;
+    double nearest_corner(double s) const;  // along the curve, to the place `s` on it [m]
     void measure_place(int wheel, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error);
     void measure_rolling(int wheel, const CurveMatch& on, const Readings& readings, const Error& along_x, const Error& along_z, double dt, Error& error);
     void correct(const Error& error);
@@ -142,6 +158,7 @@ class Estimator {
     bool started_ = false;
     Covariance covariance_;
     std::array<WheelState, 4> wheels_;
+    std::vector<std::optional<double>> found_;  // of each piece, by front wheels: offset along of a face, up of a tread [m]
     Estimate estimate_;
 };
 

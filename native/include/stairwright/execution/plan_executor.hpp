@@ -3,6 +3,9 @@
 // the same one.
 #pragma once
 
+#include <optional>
+#include <utility>
+
 #include "stairwright/control/grip_test.hpp"
 #include "stairwright/control/leg_fit.hpp"
 #include "stairwright/control/plan_change.hpp"
@@ -33,8 +36,10 @@ class PlanExecutor {
     const std::optional<control::Grip>& slipped() const { return grip_test_.slipped(); }
     // The map's error that the robot waits for somebody to decide on.
     const std::optional<estimation::MapError>& map_error() const { return map_error_; }
-    // A map without that error from now on; another plan has to follow.
-    void correct_map(const WheelPath& path);
+    // A map without that error from now on, on which the robot's place is shifted [m]; another plan has to follow.
+    void correct_map(const WheelPath& path, Vec2 shift);
+    // How wheels creep under traction [m/s], once after the test of the grip has found it: the estimator is to know.
+    std::optional<double> take_creep() { return std::exchange(creep_, std::nullopt); }
 
     // Why the robot has given up, and since when [s]; only one that senses by itself does.
     control::Stop stop() const { return safe_stop_.why(); }
@@ -50,6 +55,8 @@ class PlanExecutor {
     const control::Reference& asked() const { return asked_; }
 
   private:
+    // Whether wheels hang in the air that are to carry weight: not where the plan itself hardly loads them.
+    bool hangs(const control::Ahead& ahead) const;
     const control::Reference& next_target(const Perceived& seen, bool moving, double time, double dt);
 
     control::Controller controller_;
@@ -60,6 +67,7 @@ class PlanExecutor {
     control::LegFit leg_fit_;
     control::FaceSearch face_search_;
     std::optional<estimation::MapError> map_error_;
+    std::optional<double> creep_;   // found and not taken yet
     double ignored_ = -1e9;         // where an error of the map was let pass [m]
     bool waits_ = false;            // for somebody to decide
     control::Reference adapted_{};  // what is asked for, with legs that fit the ground as it is
