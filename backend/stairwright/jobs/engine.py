@@ -11,7 +11,7 @@ from stairwright import _core
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 _PLANNING = ("terrain", "robot", "planning")
-_LIBRARIES = ("numpy", "casadi", "mujoco", "scipy")
+_LIBRARIES = ("numpy", "casadi", "mujoco", "scipy", "shapely")
 
 
 @cache
