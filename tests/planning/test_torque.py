@@ -60,7 +60,7 @@ def test_the_torque_that_is_named_is_enough_and_little_less_is_not(motor, part):
 
 
 def test_a_search_within_torques_leads_where_motors_have_most_to_spare():
-    """Of many paths that 9 Nm legs hold, few are smoothed into one held with a reserve."""
+    """Few of the paths that 9 Nm legs hold are smoothed into one that leaves them a reserve."""
     data = sw.load_robot("a1_wheeled").model_dump()
     data["actuators"]["leg"]["torque"] = 9.0
     plan = sw.plan("single-stair-036", data)
