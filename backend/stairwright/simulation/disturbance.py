@@ -109,7 +109,7 @@ class Disturbance(Model):
             "scale": "linear",
             "minimum": 0.0,
             "maximum": 100.0,
-            "slider": (0.0, 10.0),
+            "slider": [0.0, 10.0],
         },
     )
     com_x: float = _field(-0.2, 0.2, "m", "CoM forward", "the robot's CoM moves forward [m]")
