@@ -1001,6 +1001,8 @@ export interface components {
             weights: {
                 [key: string]: boolean | number;
             };
+            /** @description that plans of the method path shall stand; axes may vary it */
+            tolerance?: components["schemas"]["Tolerance"] | null;
             /**
              * Axes
              * @default []
@@ -2230,7 +2232,7 @@ export interface components {
             speed_mean: number;
             /**
              * Speed Stairs
-             * @description along x, from the first contact with the first face to all wheels on the landing [m/s]; null where the ground is level or the robot does not get there
+             * @description along the course, from the first contact with the first face to all wheels on the landing [m/s]; null where the ground is level or the robot does not get there
              */
             speed_stairs?: number | null;
             /**
