@@ -111,7 +111,7 @@ def test_who_cancels_stops_the_workers(dask_cluster: LocalCluster, tmp_path: Pat
             with pytest.raises(asyncio.CancelledError):
                 await work
             with Client(dask_cluster, set_as_default=False) as client:
-                while any(await asyncio.to_thread(client.run, _at_work)):
+                while any((await asyncio.to_thread(client.run, _at_work)).values()):
                     await asyncio.sleep(0.05)
 
     tell(dask_cluster.scheduler_address, tmp_path, story)
