@@ -45,7 +45,7 @@ Floats = NDArray[np.float64]
 
 STIFFNESS = 3e5  # N/m of a point contact: a wheel sinks in by less than 1 mm
 DISSIPATION = 10.0  # s/m, Hunt and Crossley
-PLATE = 0.02  # m thick: what a slope is made of; thicker ones would show beyond steep drops
+PLATE = 0.005  # m thick: what a slope is made of; thicker ones show beyond its upper end
 _STILL = 0.1  # rad/s from which on a bearing's drag is full
 
 
@@ -87,7 +87,7 @@ class World:
         )
 
     def _add_terrain(self, terrain: Terrain) -> None:
-        """Boxes: a column under each stretch, and a plate on it where it slopes.
+        """Boxes: a column under each stretch; where it slopes a plate and the face at its end.
 
         A sphere touches a box exactly, a convex hull only to the tolerance of GJK.
         """
@@ -104,6 +104,12 @@ class World:
             middle += PLATE / 2 * np.array([np.sin(angle), 0.0, -np.cos(angle)])
             slope = RigidTransform(RotationMatrix.MakeYRotation(-angle), middle)
             self._add_ground(f"slope_{k}", Box(length, width, PLATE), slope)
+            # The face below its higher end, which a neighbour may leave open.
+            rise = abs(z1 - z0) - PLATE * abs(np.tan(angle))
+            if rise > 0.0:
+                x = x1 - PLATE / 2 if z1 > z0 else x0 + PLATE / 2
+                face = RigidTransform([x, 0.0, top + rise / 2])
+                self._add_ground(f"face_{k}", Box(PLATE, width, rise), face)
 
     def _add_ground(self, name: str, shape: Box, place: RigidTransform) -> None:
         world = self.plant.world_body()
