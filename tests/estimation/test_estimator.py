@@ -71,6 +71,22 @@ def test_legs_reach_for_ground_that_is_not_as_drawn(plan: Plan) -> None:
     assert run.metrics.pitch_error_max < np.radians(5.0)
 
 
+def test_rear_wheels_know_what_front_wheels_found() -> None:
+    """Climbing an edge that is not where it was drawn they would slide off it."""
+    flight = sw.plan("stairs-industrial", "a1_wheeled", 0.6)
+    run, judged = sensed(flight, step_height_error=[-0.02, 0.02, 0.02, 0.02, -0.02])
+    assert run.outcome == "success", run.reason
+    assert np.abs(judged[:, 8]).max() < 0.02
+
+
+def test_wheels_that_stand_at_a_wall_stay_there_on_the_map() -> None:
+    """Rear wheels lean on the riser with a push that is hardly felt, while the front ones roll."""
+    ledge = {"points": [(-1.3, 0), (0, 0), (0, 0.17), (0.1, 0.17), (0.1, 0), (1.4, 0)]}
+    run, judged = sensed(sw.plan(ledge, "b2w", 0.6))
+    assert run.outcome == "success", run.reason
+    assert np.abs(judged[:, 7]).max() < 0.025
+
+
 def test_ideal_knowledge_of_a_wrong_place_does_not_climb(plan: Plan) -> None:
     run = rollout(plan, controller={"sensing": "ideal"}, disturbance={"x_offset": 0.03})
     assert run.outcome != "success"
