@@ -62,8 +62,8 @@ KINDS: Mapping[int, tuple[str, ...]] = {
     500: ("bug",),
     501: ("missing",),
     503: (
-        "deadline", "failed", "interrupted", "memory", "no-scene", "starting", "unavailable",
-        "worker-died",
+        "deadline", "failed", "interrupted", "memory", "no-scene", "other-version", "starting",
+        "unavailable", "unreachable", "worker-died",
     ),
 }  # fmt: skip
 URN = "urn:stairwright:problem:"

@@ -37,7 +37,7 @@ class Panel:
         self._updated = 0.0
         self._seconds = 0.0
         self._weights: dict[str, Any] = {}
-        self._method: str | None = None
+        self._shown: tuple[str, str] | None = None  # method and timing of the sliders
         self._build_playback()
         self._build_layers()
         self._weights_folder = self._gui.add_folder("Weights", expand_by_default=False)
@@ -61,7 +61,8 @@ class Panel:
         self._tracking.visible = rollout is not None
         self._plots.show(rollout, motion, colours)
         if plan is not None and self._replan is not None:
-            self._build_weights(plan["method"], plan.get("weights", {}))
+            rule = "fast" if plan.get("timing", {}).get("rule") == "fast" else "steady"
+            self._build_weights(plan["method"], rule, plan.get("weights", {}))
 
     def tick(self, time: float) -> None:
         """Follow the clock, a few times a second."""
@@ -120,17 +121,18 @@ class Panel:
 
         return change
 
-    def _build_weights(self, method: str, values: Mapping[str, float]) -> None:
-        """Sliders from the schema, logarithmic where it says so; made anew for another method."""
-        if method != self._method:
-            self._method = method
+    def _build_weights(self, method: str, timing: str, values: Mapping[str, float]) -> None:
+        """Sliders from the schema of what counts with this timing; made anew for another method."""
+        if (method, timing) != self._shown:
+            self._shown = (method, timing)
             for slider in self._weights.values():
                 slider.remove()
             self._weights = {}
             schema = MODELS[method].model_json_schema()["properties"]  # type: ignore[index]
             with self._weights_folder:
                 for name, about in schema.items():
-                    if "timing" not in about:  # it belongs to the timing, not to the path
+                    linear = about.get("scale") == "linear"  # a share, not a weight
+                    if about.get("timing", timing) == timing and not linear:
                         self._weights[name] = self._weight(about)
             self._weights_folder.visible = bool(self._weights)
         for name, value in values.items():
