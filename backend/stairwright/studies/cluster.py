@@ -149,6 +149,8 @@ class _Run:
         self._study = study
         self._todo = deque(cells)
         self._split: deque[list[int]] = deque()  # batches that killed their workers, in halves
+        self._suspects: deque[int] = deque()  # cells that may have, or were only beside one
+        self._alone: int | None = None  # the suspect that is tried with nothing beside it
         self._sizes = sizes
         self._flying: dict[Any, list[int]] = {}
         self._landed: queue.SimpleQueue[Any] = queue.SimpleQueue()
@@ -157,7 +159,7 @@ class _Run:
     def finished(self, stopped: Stopped) -> Iterator[Finished]:
         """Batches as they are done."""
         try:
-            while self._flying or self._todo or self._split:
+            while self._flying or self._todo or self._split or self._suspects:
                 if stopped():
                     return
                 self._refill()
@@ -172,6 +174,8 @@ class _Run:
                     self._client.cancel(list(self._flying), force=True)
 
     def _refill(self) -> None:
+        if self._alone is not None:
+            return
         room = IN_FLIGHT * self._workers() - len(self._flying)
         for _ in range(room):
             if self._split:
@@ -180,12 +184,15 @@ class _Run:
                 size = self._sizes.next(len(self._todo), self._count)
                 cells = [self._todo.popleft() for _ in range(min(size, len(self._todo)))]
             else:
-                return
+                break
             self._submit(cells)
+        if self._suspects and not self._flying:
+            self._alone = self._suspects.popleft()
+            self._submit([self._alone], "alone-")
 
-    def _submit(self, cells: list[int]) -> None:
+    def _submit(self, cells: list[int], kind: str = "cells-") -> None:
         places = [point(self._study, cell) for cell in cells]
-        key = "cells-" + content_hash([self._family, self._engine, places])[7:]
+        key = kind + content_hash([self._family, self._engine, places])[7:]
         future = self._client.submit(
             evaluate_batch, self._document, self._engine, cells, key=key, retries=0
         )
@@ -218,17 +225,27 @@ class _Run:
                     "the scheduler is gone: what was done is kept, ask again to go on"
                 ) from error
             return self._failed(cells, f"{kind}: {error}")
+        self._alone = None
         self._sizes.learn(len(cells), batch.seconds)
         return batch.records
 
     def _failed(self, cells: list[int], why: str) -> Finished:
-        """A batch that killed its worker is tried in halves, until it is one cell."""
+        """A batch that killed its worker is tried in halves, until it is one cell.
+
+        Dask blames all that a worker had when it died, so one cell is tried once more with nothing
+        beside it.
+        """
         if len(cells) > 1:
             half = len(cells) // 2
             self._split.extend((cells[:half], cells[half:]))
             return {}
         shown = " ".join(why.split())
-        if shown.startswith("KilledWorker"):
+        killed = shown.startswith("KilledWorker")
+        if killed and cells[0] != self._alone:
+            self._suspects.append(cells[0])
+            return {}
+        self._alone = None
+        if killed:
             shown = "its worker died or took too long, more than once"
         return {cells[0]: complete({"state": FAILED, "reason": "lost", "message": shown})}
 
