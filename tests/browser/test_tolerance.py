@@ -16,7 +16,7 @@ def test_a_tolerance_is_asked_seen_and_shared(shared: Product) -> None:
     page = product.page
     group = page.get_by_role("region", name="Tolerance")
     kept = group.get_by_label("Least margins within tolerance")
-    slider = group.get_by_role("slider", name="Height off")
+    slider = group.get_by_role("slider", name="Step height ±")
     slider.press("ArrowRight")
     slider.press("ArrowRight")
     product.planned()
@@ -33,6 +33,6 @@ def test_a_tolerance_is_asked_seen_and_shared(shared: Product) -> None:
     page.evaluate("hash => { location.hash = hash; }", address)
     kept.wait_for()
     assert slider.get_attribute("aria-valuenow") == "0.001"
-    group.get_by_role("button", name=re.compile("Reset Height")).click()
+    group.get_by_role("button", name=re.compile("Reset Step height")).click()
     product.planned()
     assert kept.count() == 0

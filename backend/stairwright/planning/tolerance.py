@@ -26,13 +26,16 @@ class Tolerance(Model):
     """
 
     height: float = _tolerance(
-        0.05, "m", "Height off", "each tread lies up to this much higher or lower than drawn [m]"
+        0.05, "m", "Step height ±", "each step is up to this much taller or lower than drawn [m]"
     )
     place: float = _tolerance(
-        0.06, "m", "Place off", "each face stands up to this much nearer or farther than drawn [m]"
+        0.06,
+        "m",
+        "Face place ±",
+        "each face is up to this much nearer or farther than drawn [m]",
     )
     friction: float = _tolerance(
-        0.5, "1", "Friction lower", "friction is up to this much lower than planned"
+        0.5, "1", "Friction loss", "friction is up to this much lower than planned"
     )
 
     @property

@@ -3701,19 +3701,19 @@ export interface components {
          */
         Tolerance: {
             /**
-             * Height off
-             * @description each tread lies up to this much higher or lower than drawn [m]
+             * Step height ±
+             * @description each step is up to this much taller or lower than drawn [m]
              * @default 0
              */
             height: number;
             /**
-             * Place off
-             * @description each face stands up to this much nearer or farther than drawn [m]
+             * Face place ±
+             * @description each face is up to this much nearer or farther than drawn [m]
              * @default 0
              */
             place: number;
             /**
-             * Friction lower
+             * Friction loss
              * @description friction is up to this much lower than planned
              * @default 0
              */
@@ -4134,7 +4134,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -4354,7 +4354,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -4458,7 +4458,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -4817,7 +4817,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -5050,7 +5050,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -5130,7 +5130,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -5578,7 +5578,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -5930,7 +5930,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -6132,7 +6132,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -6481,7 +6481,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -6683,7 +6683,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -7128,7 +7128,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -7901,7 +7901,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -8304,7 +8304,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -8402,7 +8402,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -8507,7 +8507,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -8850,7 +8850,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `starting`, `unavailable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
