@@ -125,7 +125,7 @@ double friction_needed(std::span<const Contact> contacts, double com_x) {
         side = now;
         const double share = -lacking / (spare - lacking), ahead = share * static_cast<double>(enough - below);
         k = lacking <= kNothingHolds || !(share > 0.0) ? (below + enough) / 2 : below + static_cast<std::int64_t>(std::ceil(ahead));
-        k = std::clamp(k, below + 1, enough - 1);
+        k = std::min(std::max(k, below + 1), enough - 1);  // nothing is between them in the end
     }
     return low + unit * static_cast<double>(enough);
 }

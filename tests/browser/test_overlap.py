@@ -154,8 +154,6 @@ def test_settings_with_a_bad_value_have_no_overlaps(product: Product) -> None:
 
 def test_a_robot_that_stopped_and_its_disturbances_have_no_overlaps(product: Product) -> None:
     page = product.page
-    page.get_by_role("radio", name="Controller").click()
-    page.get_by_label("Sensing").select_option("robot")
     page.get_by_role("radio", name="Trials").click()
     friction = page.get_by_label("Friction, value", exact=True).last
     friction.fill("-0.45")
@@ -164,7 +162,6 @@ def test_a_robot_that_stopped_and_its_disturbances_have_no_overlaps(product: Pro
     page.get_by_role("heading", name="Stopped safely").wait_for()
     assert _everywhere(product) == []
     page.get_by_role("button", name="Clear", exact=True).click()
-    page.get_by_role("button", name="Reset all").click()
     page.get_by_role("radio", name="Plan", exact=True).click()
 
 

@@ -30,6 +30,7 @@ def test_a_tolerance_is_asked_seen_and_shared(shared: Product) -> None:
     page.keyboard.press("Control+z")
     product.planned()
     assert kept.count() == 0
+    page.wait_for_function("then => location.hash !== then", arg=address)
     page.evaluate("hash => { location.hash = hash; }", address)
     kept.wait_for()
     assert slider.get_attribute("aria-valuenow") == "0.001"

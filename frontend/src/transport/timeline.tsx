@@ -96,7 +96,7 @@ function Before() {
 }
 
 /** A number further to the right stands left of its mark. */
-const LAST = 0.9;
+const LAST = 0.85;
 
 /** Numbers under the timeline: seconds or metres. */
 export function Ticks() {
