@@ -13,7 +13,6 @@ named below it.
 from __future__ import annotations
 
 import argparse
-import math
 import statistics
 import sys
 from collections.abc import Iterator
@@ -76,12 +75,8 @@ class EngineRun(Run):
         return []
 
     def _place(self) -> None:
-        pose, world = self.plan.poses[0], self.world
-        front, rear = list(pose.q[:2]), list(pose.q[2:])
-        world.qpos[:3] = pose.x_c, 0.0, pose.z_c
-        world.qpos[3:7] = math.cos(pose.pitch / 2), 0.0, math.sin(pose.pitch / 2), 0.0
-        world.qpos[7:] = [*front, 0.0, *front, 0.0, *rear, 0.0, *rear, 0.0]
-        world.place()
+        self.world.qpos[:] = self._first_positions()
+        self.world.place()
 
     def _plain_steps(self, moving: bool) -> None:
         world = self.world

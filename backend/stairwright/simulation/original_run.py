@@ -125,11 +125,8 @@ class OriginalRun(Run):
 
     def _place(self) -> None:
         """Put the robot into the plan's first pose, standing on the terrain."""
-        pose, mirror = self.plan.poses[0], self.data
-        front, rear = list(pose.q[:2]), list(pose.q[2:])
-        mirror.qpos[:3] = pose.x_c, 0.0, pose.z_c
-        mirror.qpos[3:7] = math.cos(pose.pitch / 2), 0.0, math.sin(pose.pitch / 2), 0.0
-        mirror.qpos[7:] = [*front, 0.0, *front, 0.0, *rear, 0.0, *rear, 0.0]
+        mirror = self.data
+        mirror.qpos[:] = self._first_positions()
         mirror.place()
         lift = max((-float(d) for d in mirror.data.contact.dist), default=0.0)
         if lift > 1e-3:

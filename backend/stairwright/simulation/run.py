@@ -138,18 +138,22 @@ class Run:
 
     def _place(self) -> None:
         """Put the robot into the plan's first pose."""
-        pose = self.plan.poses[0]
-        front, rear = list(pose.q[:2]), list(pose.q[2:])
         qpos = self.data.qpos
-        qpos[:3] = pose.x_c - self.disturbance.x_offset, 0.0, pose.z_c
-        qpos[3:7] = math.cos(pose.pitch / 2), 0.0, math.sin(pose.pitch / 2), 0.0
-        qpos[7:] = [*front, 0.0, *front, 0.0, *rear, 0.0, *rear, 0.0]
+        qpos[:] = self._first_positions()
+        qpos[0] -= self.disturbance.x_offset
         mujoco.mj_forward(self.model, self.data)
         # A terrain other than planned may reach above or below the wheels: stand on it.
         lift = max((-float(d) for d in self.data.contact.dist), default=0.0)
         if lift > 1e-3:
             qpos[2] += lift
             mujoco.mj_forward(self.model, self.data)
+
+    def _first_positions(self) -> Floats:
+        """Place, quaternion and joints (19,) of the plan's first pose."""
+        pose = self.plan.poses[0]
+        front, rear = (*pose.q[:2], 0.0), (*pose.q[2:], 0.0)
+        turn = math.cos(pose.pitch / 2), 0.0, math.sin(pose.pitch / 2), 0.0
+        return np.array([pose.x_c, 0.0, pose.z_c, *turn, *front, *front, *rear, *rear])
 
     def simulate(
         self,
