@@ -23,7 +23,12 @@ from stairwright.jobs.cluster import simulators, tasks
 from stairwright.jobs.cluster.simulators import DaskSimulators
 from stairwright.jobs.cluster.worker import OtherVersion
 from stairwright.jobs.failures import GivenUp, Unreachable, WorkerDied
-from stairwright.jobs.questions import PlanQuestion, RolloutQuestion, TrialsQuestion
+from stairwright.jobs.questions import (
+    MarginsQuestion,
+    PlanQuestion,
+    RolloutQuestion,
+    TrialsQuestion,
+)
 from stairwright.jobs.run import Run
 from stairwright.simulation.rollout import rollout
 from stairwright.storage.artefacts import Artefacts
@@ -99,6 +104,21 @@ def test_documents_are_those_of_this_process(dask_cluster: LocalCluster, tmp_pat
         assert many.gauge.progress > 0.1
         chunks, _ = one.live.after(0)
         assert orjson.loads(chunks[0])["from"] == 0
+
+    tell(dask_cluster.scheduler_address, tmp_path, story)
+
+
+def test_margins_are_found_there_too(dask_cluster: LocalCluster, tmp_path: Path) -> None:
+    plan = sw.plan(CURB)
+    kept = Artefacts(tmp_path)
+    digest = kept.put(plan.model_dump_json().encode())
+
+    async def story(found: DaskSimulators) -> None:
+        run = Run(MarginsQuestion(digest, None, {}, 3), "me")
+        product = await found.carry_out(run)
+        expected = sw.robust_margins(plan, seed=3)
+        assert product.id == expected.id
+        assert sw.RobustMargins.model_validate_json(kept.content(product.digest)) == expected
 
     tell(dask_cluster.scheduler_address, tmp_path, story)
 
