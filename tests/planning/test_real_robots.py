@@ -5,7 +5,9 @@ from __future__ import annotations
 import pytest
 
 import stairwright as sw
+from stairwright.errors import InputError
 from stairwright.planning.knees import configurations
+from stairwright.planning.plan import Knees
 
 # What is tested is the plan. By its own sensors ANYmal's rear wheels hop at the riser now and then,
 # and its legs are planned 5 mm apart.
@@ -54,6 +56,21 @@ def test_configurations_are_all_ways_the_knees_bend():
     assert found == {(a, b) for a in (-1.0, 1.0) for b in (-1.0, 1.0)}
     a1 = sw.load_robot("a1_wheeled")
     assert list(configurations(a1)) == [a1]
+
+
+def test_a_knee_that_straightens_and_no_more_bends_one_way():
+    data = sw.load_robot("go2w").model_dump()
+    data["joints"]["rear"]["calf"] = (-2.7, 0.012)
+    robot = sw.Robot.model_validate(data)
+    (only,) = configurations(robot)
+    assert only.joints.rear.calf == (-2.7, -0.05)
+    assert only.joints.front == robot.joints.front
+    plan = sw.plan("curb-015", robot)
+    assert plan.feasible
+    assert plan.knees == Knees(front="back", rear="back")
+    data["joints"]["rear"]["calf"] = (-0.03, 0.04)
+    with pytest.raises(InputError, match="knee must bend"):
+        sw.load_robot(data)
 
 
 @pytest.mark.parametrize("method", ["path", "critical", "nominal"])

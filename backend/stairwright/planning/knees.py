@@ -17,18 +17,14 @@ _ORDER = ((-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (1.0, 1.0))
 
 
 def configurations(robot: Robot) -> Iterator[Robot]:
-    """The robot with its knees bent every way they can; the robot itself where there is one."""
+    """The robot with its knees bent every way they can; the robot itself if none straightens."""
     front, rear = robot.joints.front, robot.joints.rear
-    if not (front.both_ways or rear.both_ways):
+    if not (front.straightens or rear.straightens):
         yield robot
         return
-    for ways in _ORDER:
-        fixed = ((leg.knee, way) for leg, way in zip((front, rear), ways, strict=True))
-        if all(
-            leg.both_ways or knee == way
-            for leg, (knee, way) in zip((front, rear), fixed, strict=True)
-        ):
-            yield robot.with_knees(*ways)
+    for one, other in _ORDER:
+        if one in front.ways and other in rear.ways:
+            yield robot.with_knees(one, other)
 
 
 def knees_of(robot: Robot) -> Knees:

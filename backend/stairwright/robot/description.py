@@ -24,6 +24,7 @@ from stairwright.errors import InputError
 from .defaults import standard_points, suitable_gains
 from .legs import Body, Leg, body_of, legs_of
 from .parts import (
+    BENT,
     Actuator,
     Actuators,
     CollisionPoints,
@@ -44,7 +45,6 @@ from .parts import (
 LEGS = ("FL", "FR", "RL", "RR")
 JOINTS = tuple(f"{leg}_{part}" for leg in LEGS for part in ("thigh", "calf", "wheel"))
 _ROS_NAME = re.compile(r"[A-Za-z][\w/.-]{0,99}", re.ASCII)
-BENT = 0.05  # rad; a knee that bends both ways keeps this far from straight, on its side
 FOLDED = 3.1  # rad; a calf lies on its thigh at pi
 # Fields that documents of the first schema do not have.
 _NEW_IN_2: tuple[tuple[str, ...], ...] = (
@@ -141,7 +141,7 @@ class Robot(Model):
         if self.actuators.leg is None:
             raise InputError("Field required", ("actuators", "leg"))
         for name, pair in self.joints:
-            if pair.both_ways:
+            if pair.straightens:
                 raise InputError(
                     "the range must not contain 0 (a straight leg): the knee bends one way; "
                     "it may in stairwright/robot/2",
@@ -271,10 +271,10 @@ class Robot(Model):
         limits: dict[str, Any] = {}
         for name, knee in (("front", front), ("rear", rear)):
             pair: LegLimits = getattr(self.joints, name)
+            if knee not in pair.ways:
+                raise InputError("the knee does not bend that way", ("joints", name, "calf"))
             low, high = pair.calf
             low, high = (max(low, BENT), high) if knee > 0 else (low, min(high, -BENT))
             low, high = max(low, -FOLDED), min(high, FOLDED)
-            if low >= high:
-                raise InputError("the knee does not bend that way", ("joints", name, "calf"))
             limits[name] = pair.model_copy(update={"calf": (low, high)})
         return self.model_copy(update={"joints": Joints(**limits)})

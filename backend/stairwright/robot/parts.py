@@ -10,6 +10,8 @@ from pydantic import AfterValidator, Field, model_validator
 from stairwright.documents import Model
 from stairwright.errors import InputError
 
+BENT = 0.05  # rad; a knee whose range contains a straight leg keeps this far from it in plans
+
 Positive = Annotated[float, Field(gt=0.0, le=1000.0)]
 # The least are far below any robot's and far above what the simulator takes for nothing.
 Mass = Annotated[float, Field(ge=1e-6, le=1000.0)]
@@ -152,10 +154,29 @@ class LegLimits(Model):
                 )
         return self
 
+    @model_validator(mode="after")
+    def _check_bend(self) -> LegLimits:
+        if not self.ways:
+            raise InputError(f"a knee must bend by more than {BENT:g} rad", ("calf",))
+        return self
+
+    @property
+    def straightens(self) -> bool:
+        """Whether the range contains a straight leg, so that plans keep to one side of it."""
+        return self.calf[0] < 0.0 < self.calf[1]
+
+    @property
+    def ways(self) -> tuple[float, ...]:
+        """The ways the knee can bend: -1 backward, +1 forward."""
+        if not self.straightens:
+            return (self.knee,)
+        backward, forward = self.calf[0] < -BENT, self.calf[1] > BENT
+        return (*((-1.0,) if backward else ()), *((1.0,) if forward else ()))
+
     @property
     def both_ways(self) -> bool:
-        """Whether the knee bends forward and backward: the range contains a straight leg."""
-        return self.calf[0] < 0.0 < self.calf[1]
+        """Whether the knee bends forward and backward."""
+        return len(self.ways) == 2
 
     @property
     def knee(self) -> float:
