@@ -144,6 +144,17 @@ def test_legs_that_differ_left_and_right() -> None:
     assert "'FL_calf_joint' and 'FR_calf_joint' have no angle in common" in unlike
 
 
+def test_knees_that_hardly_bend() -> None:
+    # The file counts its knees from 0.2054 rad.
+    stiff = re.sub(
+        r'(name="R[LR]_calf_joint".*?)lower="[^"]+" upper="[^"]+"',
+        r'\1lower="0.18" upper="0.24"',
+        URDF,
+        flags=re.DOTALL,
+    )
+    assert "'RL_calf_joint' and 'RR_calf_joint' bend by no more than 0.05 rad" in refused(stiff)
+
+
 def test_wheels_of_two_sizes() -> None:
     text = URDF
     for leg in ("RL", "RR"):

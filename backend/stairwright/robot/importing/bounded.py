@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 import pickle
 import subprocess
@@ -16,6 +17,7 @@ from stairwright.robot.description import Robot
 from .report import Imported
 
 DEADLINE = 30.0  # s
+logger = logging.getLogger(__name__)
 _START = "import sys, pickle; sys.path[:] = {path!r}; from {module} import main; main()"
 
 
@@ -48,6 +50,7 @@ def import_bounded(
     try:
         answer = json.loads(done.stdout)
     except ValueError:
+        logger.warning("reading a robot ended with %s: %s", done.returncode, done.stderr[-2000:])
         raise InputError("takes too much time or memory to read", ("file",)) from None
     if "error" in answer:
         raise InputError(answer["error"], tuple(answer["field"]))

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.errors import InputError
+from stairwright.robot.parts import BENT
 
 from .capsules import Disc2, limited, merged
 from .links import LinkPart, Measured, Moments, WheelPart, possible
@@ -153,6 +154,8 @@ def _limits(left: Measured, right: Measured, k: int, notes: Notes) -> tuple[floa
     names = f"{left.side.maps[k].name!r} and {right.side.maps[k].name!r}"
     if low >= high:
         raise InputError(f"{names} have no angle in common: they bend unlike ways", ("file",))
+    if k == 1 and -BENT <= low < 0.0 < high <= BENT:
+        raise InputError(f"{names} bend by no more than {BENT:g} rad: a knee must", ("file",))
     if max(abs(a - c), abs(b - d)) > 1e-3:
         notes.warn(
             f"{names} range over {a:.4g}..{b:.4g} and {c:.4g}..{d:.4g} rad; what both have taken"
