@@ -118,7 +118,7 @@ def one(seed: int) -> dict[str, Any]:
     run = sw.rollout(plan)
     return row | {
         "certified": sw.certify(plan).passed, "outcome": run.outcome,
-        "message": run.failure.message if getattr(run, "failure", None) else "",
+        "message": "" if run.outcome == "success" else run.reason,
         "contacts": run.metrics.link_contacts,
     }  # fmt: skip
 
