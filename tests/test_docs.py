@@ -34,3 +34,11 @@ def test_equations_stand_where_the_method_says() -> None:
         text = "".join(source.read_text() for source in sources)
         for name in re.findall(r"`(\w+)(?:\([^`]*)?`", functions):
             assert f"def {name}(" in text, row
+
+
+@pytest.mark.parametrize("document", ["README.md", "docs/architecture.md"])
+def test_layers_exist(document: str) -> None:
+    (chain,) = re.findall(r"terrain`? (?:→|->) .*cli", (ROOT / document).read_text())
+    for name in re.findall(r"[a-z]+", chain):
+        inside = ROOT / "backend/stairwright" / name
+        assert inside.is_dir() or inside.with_suffix(".py").is_file(), name
