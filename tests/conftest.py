@@ -64,7 +64,11 @@ def pytest_configure() -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Quick tests first, then the slow ones, then the browser's."""
+    """Quick tests first, then the slow ones, then the browser's.
+
+    Processes that share the work take a module's tests of one kind at a time. The browser's come
+    last in each: Playwright leaves an event loop behind that others would stumble over.
+    """
 
     def rank(item: pytest.Item) -> int:
         if item.get_closest_marker("browser"):
@@ -72,6 +76,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         return 1 if item.get_closest_marker("slow") else 0
 
     items.sort(key=rank)
+    for item in items:
+        item.add_marker(pytest.mark.xdist_group(f"{rank(item)} {item.nodeid.split('::')[0]}"))
 
 
 @dataclass(frozen=True)
