@@ -49,6 +49,15 @@ TAB: dict[str, Any] = {
 }
 
 
+processes: list[int] = []  # that share the tests of this one
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodeready(node: Any) -> None:
+    """Another process has begun to take part."""
+    processes.append(node.workerinfo["pid"])
+
+
 def pytest_configure() -> None:
     """A run that is told to end takes its servers along, as Ctrl-C does."""
 
@@ -56,6 +65,9 @@ def pytest_configure() -> None:
 
     def interrupt(number: int, _frame: object) -> None:
         if os.getpid() == runner:
+            for process in processes:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(process, number)
             raise KeyboardInterrupt
         signal.signal(number, signal.SIG_DFL)  # a forked worker ends as it would without us
         os.kill(os.getpid(), number)
@@ -63,6 +75,7 @@ def pytest_configure() -> None:
     signal.signal(signal.SIGTERM, interrupt)
 
 
+@pytest.hookimpl(tryfirst=True)  # before the groups are read
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Quick tests first, then the slow ones, then the browser's.
 

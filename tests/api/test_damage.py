@@ -50,6 +50,7 @@ def done(api: httpx.Client, body: dict[str, Any]) -> str:
     return str(job["result"]).removeprefix("/api/v1")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", ["bit", "zeros", "short"])
 @pytest.mark.parametrize("encoding", [UNPACKED, PACKED], ids=["plain", "gzip"])
 def test_a_damaged_plan_is_missing_and_then_made_anew(

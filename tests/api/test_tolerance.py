@@ -61,6 +61,7 @@ def test_settings_tell_what_can_be_asked(api: httpx.Client) -> None:
     assert told["height"]["minimum"] == 0.0
 
 
+@pytest.mark.slow
 def test_margins_are_those_of_python(server: Server, api: httpx.Client) -> None:
     told: list[float] = []
     with sw.Client(server.url) as service:

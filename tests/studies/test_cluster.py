@@ -50,6 +50,7 @@ def serial(tmp_path_factory: pytest.TempPathFactory) -> ResultStore:
     return store
 
 
+@pytest.mark.slow
 def test_a_cluster_gives_the_same_dataset_bit_by_bit(
     serial: ResultStore, cluster: ClusterEngine, tmp_path: Path
 ) -> None:
