@@ -55,7 +55,7 @@ processes: list[int] = []  # that share the tests of this one
 @pytest.hookimpl(optionalhook=True)
 def pytest_testnodeready(node: Any) -> None:
     """Another process has begun to take part."""
-    processes.append(node.workerinfo["pid"])
+    processes.append(node.gateway._io.popen.pid)
 
 
 def pytest_configure() -> None:
