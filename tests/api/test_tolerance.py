@@ -91,6 +91,7 @@ def test_a_question_for_margins_survives_a_restart() -> None:
     assert asked.runs == 1 + len(DELAYS) + len(FRICTIONS)
 
 
+@pytest.mark.slow
 def test_the_command_line_asks_too(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

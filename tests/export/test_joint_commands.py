@@ -89,6 +89,7 @@ def test_limits_hold_between_the_points(name, degree) -> None:
     assert np.abs(sampled(legs, degree, 3)).max() <= LEG_JERK * (1 + 1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PLANS)
 def test_the_acceleration_has_no_steps(name) -> None:
     legs = commands(name)["/joint_trajectory"]
@@ -96,6 +97,7 @@ def test_the_acceleration_has_no_steps(name) -> None:
     assert np.abs(samples[1:, 0] - samples[:-1, 1]).max() < 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PLANS)
 def test_wheels_stay_within_their_motors(name) -> None:
     wheels, motor = commands(name)["/wheel_trajectory"], planned(name).robot_description.actuators
