@@ -75,12 +75,10 @@ def pytest_configure() -> None:
     signal.signal(signal.SIGTERM, interrupt)
 
 
-@pytest.hookimpl(tryfirst=True)  # before the groups are read
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Quick tests first, then the slow ones, then the browser's.
 
-    Processes that share the work take a module's tests of one kind at a time. The browser's come
-    last in each: Playwright leaves an event loop behind that others would stumble over.
+    Playwright leaves an event loop behind that others would stumble over.
     """
 
     def rank(item: pytest.Item) -> int:
@@ -89,8 +87,36 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         return 1 if item.get_closest_marker("slow") else 0
 
     items.sort(key=rank)
-    for item in items:
-        item.add_marker(pytest.mark.xdist_group(f"{rank(item)} {item.nodeid.split('::')[0]}"))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Processes that share the work take a module's tests of one kind at a time, in this order.
+
+    What a module starts or builds is then made once. `--dist loadgroup` would say the same with
+    marks, but xdist 3.8 writes them where pytest 9.2 no longer looks.
+    """
+    from itertools import groupby
+
+    from xdist.scheduler import LoadScopeScheduling
+
+    class ModuleScheduling(LoadScopeScheduling):
+        units: dict[str, str]  # of each test
+
+        def schedule(self) -> None:
+            if self.collection is None:
+                tests = next(iter(self.registered_collections.values()))
+                modules = groupby(tests, key=lambda test: test.split("::")[0])
+                self.units = {
+                    test: f"{k} {name}" for k, (name, group) in enumerate(modules) for test in group
+                }
+            super().schedule()
+
+        def _split_scope(self, test: str) -> str:
+            return self.units[test]
+
+    config.option.loadscopereorder = False
+    return ModuleScheduling(config, log)
 
 
 @dataclass(frozen=True)
