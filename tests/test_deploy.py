@@ -83,6 +83,7 @@ def shell(script: str, data: Path, backup: Path) -> None:
     subprocess.run(["sh", "-eu", "-c", script], check=True, capture_output=True, text=True)
 
 
+@pytest.mark.slow
 def test_a_backup_of_a_running_service_is_restored(start_server: Start, tmp_path: Path) -> None:
     data, backup = tmp_path / "data", tmp_path / "backup"
     with start_server() as server:

@@ -44,6 +44,7 @@ def test_a_service_without_a_home_says_what_to_set() -> None:
     assert "no such home" in tilde.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("variable", ["STAIRWRIGHT_DATA", "STATE_DIRECTORY"])
 def test_a_service_without_a_home_works(start_server: Any, tmp_path: Path, variable: str) -> None:
     data = tmp_path / "state"

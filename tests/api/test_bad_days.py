@@ -14,6 +14,8 @@ import pytest
 
 from tests.conftest import Server
 
+pytestmark = pytest.mark.slow  # servers of its own
+
 Start = Callable[..., contextlib.AbstractContextManager[Server]]
 
 STAIR = {"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}

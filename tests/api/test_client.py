@@ -68,6 +68,7 @@ def test_it_comes_back_when_told() -> None:
     assert time.monotonic() - start >= 1.0  # no sooner
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("answer", "patience"),
     [

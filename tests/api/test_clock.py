@@ -9,8 +9,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import httpx
+import pytest
 
 from tests.conftest import Server
+
+pytestmark = pytest.mark.slow  # servers of its own
 
 Start = Callable[..., contextlib.AbstractContextManager[Server]]
 

@@ -76,6 +76,7 @@ def asked(api: str, body: dict[str, Any], answers: list[httpx.Response]) -> thre
     return thread
 
 
+@pytest.mark.slow
 def test_the_web_process_computes_nothing() -> None:
     heavy = ("mujoco", "casadi", "scipy", "trimesh", "viser", "xarray", "distributed")
     ours = ("stairwright.planning.planner", "stairwright.simulation.rollout")
@@ -128,6 +129,7 @@ def wait_for_health(api: str, status: int, text: str) -> None:
                 return
 
 
+@pytest.mark.slow
 def test_a_service_that_cannot_plan_is_not_ready(tmp_path: Path) -> None:
     broken = tmp_path / "broken"
     broken.touch()

@@ -50,6 +50,7 @@ def done(api: httpx.Client, body: dict[str, Any]) -> str:
     return str(job["result"]).removeprefix("/api/v1")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", ["bit", "zeros", "short"])
 @pytest.mark.parametrize("encoding", [UNPACKED, PACKED], ids=["plain", "gzip"])
 def test_a_damaged_plan_is_missing_and_then_made_anew(
@@ -70,6 +71,7 @@ def test_a_damaged_plan_is_missing_and_then_made_anew(
         assert api.get(path).json() == again.json()
 
 
+@pytest.mark.slow
 def test_a_damaged_answer_is_not_an_answer(server: Server) -> None:
     with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api:
         plan = {"terrain": STAIR, "friction": 0.55}

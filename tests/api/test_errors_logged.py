@@ -12,8 +12,11 @@ from collections.abc import Callable
 from typing import Any
 
 import httpx
+import pytest
 
 from tests.conftest import Server
+
+pytestmark = pytest.mark.slow  # servers of its own
 
 Start = Callable[..., contextlib.AbstractContextManager[Server]]
 
@@ -66,4 +69,6 @@ def test_what_fails_again_and_again_is_told_once(start_server: Start) -> None:
         while not lines(server, "compressing new results works again"):
             assert time.monotonic() < give_up
             time.sleep(0.2)
-        assert len([line for line in lines(server, "compress") if line["level"] == "error"]) == 1
+        failed = [line for line in lines(server, "compress") if line["level"] == "error"]
+        works = lines(server, "compressing new results works again")
+        assert len(failed) == len(works)  # a failure is told once, however often it is tried again

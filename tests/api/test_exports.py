@@ -66,6 +66,7 @@ def test_robots_as_files(api: httpx.Client, name: str) -> None:
     assert ET.fromstring(api.get(f"/robots/{name}/export").content).tag == "robot"  # urdf
 
 
+@pytest.mark.slow
 def test_a_plans_commands_at_the_rate_that_is_asked_for(api: httpx.Client, plan: str) -> None:
     etags = set()
     for rate in (None, 50.0, 200.0):

@@ -61,6 +61,7 @@ def test_settings_tell_what_can_be_asked(api: httpx.Client) -> None:
     assert told["height"]["minimum"] == 0.0
 
 
+@pytest.mark.slow
 def test_margins_are_those_of_python(server: Server, api: httpx.Client) -> None:
     told: list[float] = []
     with sw.Client(server.url) as service:
@@ -90,6 +91,7 @@ def test_a_question_for_margins_survives_a_restart() -> None:
     assert asked.runs == 1 + len(DELAYS) + len(FRICTIONS)
 
 
+@pytest.mark.slow
 def test_the_command_line_asks_too(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

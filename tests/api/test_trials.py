@@ -19,6 +19,7 @@ def api(server: Server) -> Iterator[httpx.Client]:
         yield client
 
 
+@pytest.mark.slow
 def test_trials_are_those_of_python(server: Server, api: httpx.Client) -> None:
     told: list[float] = []
     with sw.Client(server.url) as service:

@@ -21,6 +21,7 @@ def maker(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_file_is_imported(maker: Path, tmp_path: Path) -> None:
     out = tmp_path / "robot.yaml"
     said = run("robot", "import", maker, "-o", out)
@@ -34,6 +35,7 @@ def test_a_file_is_imported(maker: Path, tmp_path: Path) -> None:
     assert robot == sw.import_robot(maker).robot
 
 
+@pytest.mark.slow
 def test_without_an_output_the_robot_is_printed(maker: Path, tmp_path: Path) -> None:
     printed = tmp_path / "printed.yaml"
     printed.write_text(run("robot", "import", maker))

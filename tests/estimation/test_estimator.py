@@ -39,6 +39,7 @@ def sensed(plan: Plan, seed: int = 0, **deviation: Any) -> tuple[Rollout, np.nda
     return result, np.asarray(run.native.judged)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start", [0.0, 0.03, -0.03])
 def test_climbs_by_its_own_sensors(plan: Plan, start: float) -> None:
     run, judged = sensed(plan, x_offset=start)
@@ -48,6 +49,7 @@ def test_climbs_by_its_own_sensors(plan: Plan, start: float) -> None:
     assert np.abs(judged[:, 2]).max() < 0.03
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "deviation",
     [
@@ -92,6 +94,7 @@ def test_ideal_knowledge_of_a_wrong_place_does_not_climb(plan: Plan) -> None:
     assert run.outcome != "success"
 
 
+@pytest.mark.slow
 def test_the_filter_is_honest(plan: Plan) -> None:
     inside = [np.mean(sensed(plan, seed)[1][:, 9] < NEES_95) for seed in range(2)]
     assert np.mean(inside) > 0.9
@@ -103,6 +106,7 @@ def test_a_wrong_measure_of_length_is_learnt(plan: Plan) -> None:
     assert abs(judged[-1, 10]) < 0.04
 
 
+@pytest.mark.slow
 def test_the_same_seed_is_the_same_run(plan: Plan) -> None:
     one, again, other = sensed(plan, 7)[1], sensed(plan, 7)[1], sensed(plan, 8)[1]
     np.testing.assert_array_equal(one, again)

@@ -22,6 +22,7 @@ STIFFNESS, DAMPING = 200.0, 4.0  # of the leg joints, Nm/rad and Nm s/rad
 WHEEL_GAIN, WHEEL_INTEGRAL = 2.0, 40.0  # of the wheels' speed loops, Nm s/rad and Nm/rad
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("robot", ["a1_wheeled", "a1_wheeled_x"])
 def test_the_commands_alone_take_the_robot_up_a_ramp(robot: str) -> None:
     """Thirty degrees steep; steps need a balance controller, which shares out the wheels' pull."""

@@ -50,6 +50,7 @@ def commands(name: str, rate: float = 100.0) -> dict:
     return {topic: topics[topic][0][1] for topic in wanted}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PLANS)
 def test_a_trajectory_controller_takes_them(name) -> None:
     made = commands(name)
@@ -66,6 +67,7 @@ def test_a_trajectory_controller_takes_them(name) -> None:
     assert legs.header.stamp.sec == legs.header.stamp.nanosec == 0  # "start now"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PLANS)
 def test_both_ends_rest(name) -> None:
     made = commands(name)
@@ -75,6 +77,7 @@ def test_both_ends_rest(name) -> None:
         assert not field(made["/wheel_trajectory"], "velocities")[end].any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("degree", [3, 5])
 @pytest.mark.parametrize("name", PLANS)
 def test_limits_hold_between_the_points(name, degree) -> None:
@@ -86,6 +89,7 @@ def test_limits_hold_between_the_points(name, degree) -> None:
     assert np.abs(sampled(legs, degree, 3)).max() <= LEG_JERK * (1 + 1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PLANS)
 def test_the_acceleration_has_no_steps(name) -> None:
     legs = commands(name)["/joint_trajectory"]
@@ -93,6 +97,7 @@ def test_the_acceleration_has_no_steps(name) -> None:
     assert np.abs(samples[1:, 0] - samples[:-1, 1]).max() < 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PLANS)
 def test_wheels_stay_within_their_motors(name) -> None:
     wheels, motor = commands(name)["/wheel_trajectory"], planned(name).robot_description.actuators
@@ -103,6 +108,7 @@ def test_wheels_stay_within_their_motors(name) -> None:
     assert np.abs(np.diff(gain, axis=0)).max() * 100.0 <= WHEEL_JERK * (1 + 1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("degree", [3, 5])
 @pytest.mark.parametrize("name", PLANS)
 def test_the_plan_is_followed(name, degree) -> None:
@@ -142,6 +148,7 @@ def test_efforts_hold_the_pose(name) -> None:
     assert np.abs(effort).max(axis=0).min() > 0.5  # Nm: none is left at nothing
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [10.0, 30.0, 50.0, 250.0])
 def test_the_rate_is_ones_choice(rate) -> None:
     legs = commands("stair", rate)["/joint_trajectory"]
@@ -163,6 +170,7 @@ def test_other_rates_are_refused(rate) -> None:
         PLAN_FORMATS["csv"].write(example_plan(count=5), 50.0)
 
 
+@pytest.mark.slow
 def test_slow_motors_are_not_outrun() -> None:
     plan = planned("stair")
     robot = plan.robot_description

@@ -31,6 +31,7 @@ def counted(frames: object) -> Robot:
     return parse(Robot, {**document, "joint_frames": frames})
 
 
+@pytest.mark.slow
 def test_the_urdf_reads_back_with_the_same_frames(tmp_path: Path) -> None:
     robot, path = counted(FRAMES), tmp_path / "own.urdf"
     save_robot(robot, str(path))
@@ -49,6 +50,7 @@ def test_the_urdf_reads_back_with_the_same_frames(tmp_path: Path) -> None:
         assert mine.offset == pytest.approx(read.joints[joint].offset, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_ros_messages_are_in_its_angles_and_documents_in_ours() -> None:
     plain, own = (sw.plan(TERRAIN, counted(frames)) for frames in ({}, FRAMES))
     assert [p.q for p in plain.poses] == [p.q for p in own.poses]

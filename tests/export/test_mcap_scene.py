@@ -51,6 +51,7 @@ def test_late_subscribers_get_what_does_not_change(content, tmp_path) -> None:
             assert kept == (connection.topic in KEPT), connection.topic
 
 
+@pytest.mark.slow
 def test_every_link_of_the_robot_has_its_frame(topics) -> None:
     """One tree from the world on, each frame with one parent, and the URDF's joints in it."""
     root = ET.fromstring(topics["/robot_description"][0][1].data)
@@ -71,6 +72,7 @@ def test_every_link_of_the_robot_has_its_frame(topics) -> None:
     assert named == set(JOINTS) == set(topics["/joint_states"][0][1].name)
 
 
+@pytest.mark.slow
 def test_wheels_stand_on_the_terrain_that_is_shown(topics) -> None:
     """The wheels' lowest points, from the transforms, lie on the marker's surface."""
     (_, marker), radius = topics["/terrain"][0], PLAN.robot_description.wheel.radius

@@ -31,6 +31,7 @@ KINDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", FILES)
 def test_messages_keep_to_their_schemas(kind: str) -> None:
     """Decoded and encoded again by a second implementation, from the file's own schema."""

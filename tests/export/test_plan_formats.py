@@ -74,6 +74,7 @@ def test_mcap_tells_where_it_comes_from(plan):
     assert json.loads(about["joint_order"]) == list(JOINTS)
 
 
+@pytest.mark.slow
 def test_mcap_goes_from_the_first_pose_to_the_last(plan):
     topics = messages(PLAN_FORMATS["mcap"].write(plan))
     for index in (0, -1):

@@ -245,6 +245,7 @@ def resident() -> int:
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="others keep nothing")
 def test_a_worker_without_work_gives_memory_back() -> None:
     async def story(pool: WorkerPool) -> None:

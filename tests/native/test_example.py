@@ -11,6 +11,7 @@ import pytest
 NATIVE = Path(__file__).parents[2] / "native"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     not all(map(shutil.which, ("cmake", "c++"))), reason="needs CMake and a C++ compiler"
 )

@@ -271,6 +271,7 @@ def test_same_question_same_answer():
     assert first.poses == second.poses
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("robot", ROBOTS)
 @pytest.mark.parametrize(("motor", "share"), [("leg", 0.8), ("leg", 0.05), ("wheel", 0.02)])
 def test_a_weak_motor_is_named_with_the_torque_that_is_enough(motor, share, robot):

@@ -58,6 +58,7 @@ def test_friction_alone_is_planned_for() -> None:
     assert least + 0.2 > min(pose.margins.friction for pose in usual.poses)
 
 
+@pytest.mark.slow
 def test_too_much_is_told() -> None:
     plan = sw.plan(STAIRS, "a1_wheeled", tolerance={"height": 0.05, "place": 0.06})
     assert plan.status == "infeasible"
@@ -71,6 +72,7 @@ def test_too_much_is_told() -> None:
     assert sw.plan(STAIRS, "a1_wheeled").feasible
 
 
+@pytest.mark.slow
 def test_friction_that_is_too_low_is_told_as_ever() -> None:
     plan = sw.plan(STAIRS, "a1_wheeled", tolerance={"friction": 0.5})
     assert plan.problem is not None

@@ -38,6 +38,7 @@ def test_a_path_under_a_looser_limit_is_not_lost_under_a_tighter_one_that_it_kee
     assert feasible == [True] * 4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("motor", "part"), [("leg", "calf"), ("wheel", "wheel")])
 def test_the_torque_that_is_named_is_enough_and_little_less_is_not(motor, part):
     data = sw.load_robot("b2w").model_dump()

@@ -50,6 +50,7 @@ def holds(term, seeds):
     return worse, moved
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("term", TERMS)
 def test_a_weight_makes_its_quantity_small(term):
     worse, moved = holds(term, range(300, 306))

@@ -77,6 +77,7 @@ def test_every_field_is_tried() -> None:
     assert set(VALUES) == set(Disturbance.model_fields)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", VALUES)
 def test_each_deviation_is_felt(plan: Plan, undisturbed: np.ndarray, name: str) -> None:
     if name in OF_THE_SENSORS:
@@ -86,6 +87,7 @@ def test_each_deviation_is_felt(plan: Plan, undisturbed: np.ndarray, name: str) 
     assert differs(ending(plan, **{name: VALUES[name]}), undisturbed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["step_height_error", "face_place_error", "noise"])
 def test_each_seed_draws_its_own(plan: Plan, name: str) -> None:
     one, again = (ending(plan, seed=3, **{name: VALUES[name]}) for _ in range(2))

@@ -256,6 +256,7 @@ def test_workers_change_nothing(solver: str) -> None:
     assert alone.trials == shared.trials
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["contact", "paper"])
 @pytest.mark.parametrize("name", A1S)
 def test_drive_tracks_speed_and_yaw_rate(name: str, form: str) -> None:

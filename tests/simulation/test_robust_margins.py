@@ -13,6 +13,7 @@ from stairwright.simulation.rollout import rollout
 STEP = {"name": "step", "points": [[-0.9, 0.0], [0.0, 0.0], [0.0, 0.06], [0.9, 0.06]]}
 
 
+@pytest.mark.slow
 def test_margins_are_where_rollouts_begin_to_fail(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "DELAYS", (0.004, 0.03))
     monkeypatch.setattr(module, "FRICTIONS", (0.1, 0.3))

@@ -102,6 +102,7 @@ def test_plan_as_document_and_record_rate(flat: Plan) -> None:
     assert run.plan_id == flat.id
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["contact", "paper"])
 @pytest.mark.parametrize("solver", ["clarabel"])
 def test_forms_and_solvers_drive_on_flat_ground(flat: Plan, form: str, solver: str) -> None:
@@ -113,6 +114,7 @@ def test_forms_and_solvers_drive_on_flat_ground(flat: Plan, form: str, solver: s
         assert np.abs(native.series.pitch[:n] - run.series.pitch[:n]).max() < 1e-3
 
 
+@pytest.mark.slow
 def test_noise_and_delay_are_the_same_for_the_compiled_and_the_plain_loop(flat: Plan) -> None:
     world = {"noise": 1.0, "delay": 0.004}
     by_clarabel = {"solver": "clarabel", "speed": 0.3}

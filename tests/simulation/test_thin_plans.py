@@ -27,6 +27,7 @@ FLIGHTS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("height", "tread", "count", "friction"), FLIGHTS)
 def test_a_plan_that_is_called_feasible_succeeds(height, tread, count, friction):
     plan = sw.plan(stair(height, tread, count, direction="down"), "a1_wheeled", friction)
@@ -55,6 +56,7 @@ STEADY = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("direction", "height", "tread", "count", "friction", "robot"), STEADY)
 def test_a_wheel_in_a_corner_or_on_an_edge_tips_no_robot(
     direction, height, tread, count, friction, robot

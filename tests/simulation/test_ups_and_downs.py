@@ -18,6 +18,7 @@ FLIGHTS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("friction", "rises", "treads"), FLIGHTS)
 def test_ups_and_downs_are_driven_at_high_friction(friction, rises, treads):
     points, x, z = [(-1.5, 0.0)], 0.0, 0.0

@@ -179,6 +179,7 @@ def test_stopped_and_gone_on_with_it_is_the_same(tmp_path: Path) -> None:
     assert identical(border_dataset(whole), border_dataset(parts))
 
 
+@pytest.mark.slow
 def test_the_border_is_that_of_the_grid(tmp_path: Path) -> None:
     grid = {"name": "friction", "values": [0.3, 0.6]}
     edges = {"name": "step.height", "boundary": [0.3, 1.2], "tolerance": 0.15}

@@ -96,6 +96,7 @@ def test_a_bug_is_recorded_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> N
     assert record["message"] == "ZeroDivisionError: by zero"
 
 
+@pytest.mark.slow
 def test_rollouts_and_trials(tmp_path: Path) -> None:
     low = {"name": "step.height", "values": [0.04]}
     run = sw.study(study(low, compute="rollout"), workers=1, store=tmp_path / "r.zarr").dataset

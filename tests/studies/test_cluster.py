@@ -50,6 +50,7 @@ def serial(tmp_path_factory: pytest.TempPathFactory) -> ResultStore:
     return store
 
 
+@pytest.mark.slow
 def test_a_cluster_gives_the_same_dataset_bit_by_bit(
     serial: ResultStore, cluster: ClusterEngine, tmp_path: Path
 ) -> None:
@@ -74,6 +75,7 @@ def test_a_scheduler_that_is_not_there(tmp_path: Path) -> None:
         sw.study(STEP, scheduler="tcp://127.0.0.1:9", store=tmp_path / "n.zarr")
 
 
+@pytest.mark.slow
 def test_stopping_keeps_what_is_done(cluster: ClusterEngine, tmp_path: Path) -> None:
     store = _store(MAP, tmp_path / "c.zarr")
     seen: list[int] = []
@@ -86,6 +88,7 @@ def test_stopping_keeps_what_is_done(cluster: ClusterEngine, tmp_path: Path) -> 
     assert store.counts()["done"] == 20
 
 
+@pytest.mark.slow
 def test_a_cell_that_kills_its_worker_is_found_and_recorded(
     cluster: ClusterEngine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

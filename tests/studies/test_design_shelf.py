@@ -49,6 +49,7 @@ def test_what_is_no_result_is_left_out(tmp_path: Path, monkeypatch: pytest.Monke
     assert read_result(studies, "d-0") is None
 
 
+@pytest.mark.slow
 def test_rest_lists_searches_and_gives_the_best_with_their_robots(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, start_server: Callable[..., Any]
 ) -> None:

@@ -167,6 +167,7 @@ def test_the_least_cells_that_are_too_many_are_refused_in_words(api: httpx.Clien
     assert answer.status_code in (400, 422)
 
 
+@pytest.mark.slow
 def test_cancelled_and_gone_on_with(api: httpx.Client) -> None:
     name = api.post("/studies", json=LONG).json()["id"]
     while api.get(f"/studies/{name}").json()["done"] < 5:

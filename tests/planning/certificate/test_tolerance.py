@@ -53,6 +53,7 @@ def errors(random: np.random.Generator) -> tuple[Floats, Floats]:
     return TOLERANCE.height * drawn[0], TOLERANCE.place * drawn[1]
 
 
+@pytest.mark.slow
 def test_no_terrain_of_the_set_leaves_less_than_the_bounds(plan: Plan) -> None:
     check = checked(plan)
     samples, stands = check.samples, check.stands
@@ -95,6 +96,7 @@ def test_no_terrain_of_the_set_leaves_less_than_the_bounds(plan: Plan) -> None:
     assert max(nearest.values()) < 0.01, nearest
 
 
+@pytest.mark.slow
 def test_forces_balance_the_robot_on_every_terrain_of_the_set(plan: Plan) -> None:
     check = checked(plan)
     stands, contacts = check.stands, check.holding.firm

@@ -81,6 +81,7 @@ def test_pieces_that_overlap_are_one_and_most_of_a_course_is_all_of_it():
     assert pieces(question, []) == [Piece(begin.wheels[1], end.wheels[0], False, False)]
 
 
+@pytest.mark.slow
 def test_two_obstructions_are_answered_with_what_opens_both():
     terrain = Terrain(name="walls", points=walls(0.97, 1.0))
     infeasible = plan(terrain, "a1_wheeled_x", 0.6)
@@ -97,6 +98,7 @@ def test_two_obstructions_are_answered_with_what_opens_both():
     assert certify(longer).passed
 
 
+@pytest.mark.slow
 def test_a_way_to_an_obstruction_does_not_change_its_verdict():
     """The same wall on a short course, and as the second obstacle of a long one."""
     short = [(-1.2, 0.0), (0.0, 0.0), (0.0, 1.0), (0.6, 1.0), (0.6, 0.0), (2.4, 0.0)]

@@ -58,6 +58,7 @@ def test_points_are_those_of_the_pose():
     assert robot.thigh.length * np.cos(thigh) <= 0.1 + 1e-5
 
 
+@pytest.mark.slow
 def test_what_cannot_be_kept_is_infeasible():
     plan = sw.plan(STAIR, method="critical", extra_constraints=lambda pose: -1 - pose.pitch**2)
     assert not plan.feasible

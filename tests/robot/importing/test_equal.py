@@ -118,6 +118,7 @@ def test_a_robot_as_makers_write_them(write):
     assert robot.ros_joints[0] == "FL_thigh_joint"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(12))
 def test_whatever_the_names_signs_and_zero_angles(seed):
     design = scrambled(seed)

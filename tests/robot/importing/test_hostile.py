@@ -77,6 +77,7 @@ def test_what_only_shows_or_tunes_is_left_out() -> None:
     assert read(Upload("a.xml", text.encode()), {}).robot.mass == pytest.approx(17.8, abs=0.1)
 
 
+@pytest.mark.slow
 def test_meshes_outside_are_not_read(tmp_path: Path) -> None:
     """Files that exist, in a folder above and at an absolute path, have no effect."""
     inner = tmp_path / "inner"
@@ -98,6 +99,7 @@ def test_meshes_outside_are_not_read(tmp_path: Path) -> None:
         assert max(z for piece in made.robot.trunk.outline for _, z in piece.points) < 0.2
 
 
+@pytest.mark.slow
 def test_a_mesh_that_was_sent_is_read(tmp_path: Path) -> None:
     trunk = '<geom class="touch" type="box"'
     text = MJCF.replace("<asset>", '<asset><mesh name="fin" file="a/b/fin.obj"/>')
@@ -166,6 +168,7 @@ def test_memory_is_bounded(tmp_path: Path) -> None:
         sw.import_robot(file)
 
 
+@pytest.mark.slow
 def test_the_reader_can_open_nothing_and_start_nothing() -> None:
     code = """
 import os, socket

@@ -49,6 +49,7 @@ def test_a_capsule_holds_all_points(cloud: np.ndarray) -> None:
     assert capsule.radius <= 1.5 * width  # no wider than the cloud is long
 
 
+@pytest.mark.slow
 @given(st.lists(points, min_size=3, max_size=6))
 def test_what_is_one_capsule_too_many_is_held_by_another(clouds: list[np.ndarray]) -> None:
     capsules = [around(cloud) for cloud in clouds]
