@@ -131,13 +131,13 @@ void bind_rollout(nb::module_& m) {
     nb::class_<Rollout>(m, "Rollout", "The closed loop in MuJoCo; keep model and data alive as long as it.")
         .def("__init__", [](Rollout* self, std::uintptr_t model, std::uintptr_t data, const Controller& controller,
                             const PlanFollower& follower, const Perception& perception, double motor_bandwidth,
-                            double torque_scale, std::size_t log_every, int substeps, double grip_need) {
+                            double torque_scale, std::size_t log_every, int substeps, double grip_need, bool mends_map) {
             if (model == 0 || data == 0) throw std::invalid_argument("model and data must be addresses");
             new (self) Rollout(reinterpret_cast<const mjModel_*>(model), reinterpret_cast<mjData_*>(data), controller, follower,
-                               perception, {motor_bandwidth, torque_scale}, log_every, substeps, grip_need);
+                               perception, {motor_bandwidth, torque_scale}, log_every, substeps, grip_need, mends_map);
         }, nb::arg("model"), nb::arg("data"), nb::arg("controller"), nb::arg("follower"), nb::arg("perception"),
            nb::arg("motor_bandwidth"), nb::arg("torque_scale"), nb::arg("log_every"), nb::arg("substeps"),
-           nb::arg("grip_need") = 0.0)
+           nb::arg("grip_need") = 0.0, nb::arg("mends_map") = false)
         .def("run", [](Rollout& self, int first, int last, bool looked, bool loaded, bool moving, double begun, const Noise& noise) {
             nb::gil_scoped_release release;
             return self.run({std::max(first, 0), last, looked, loaded, moving, begun}, {noise.data(), noise.size()});

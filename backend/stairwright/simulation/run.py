@@ -133,8 +133,9 @@ class Run:
         need = tested_friction(self.track, self.plan) if own else 0.0
         scale = 1.0 + self.disturbance.torque_scale
         return _core.Rollout(
-            model, data, controller, line, perceived, bandwidth, scale, every, CONTROL_STEPS, need
-        )
+            model, data, controller, line, perceived, bandwidth, scale, every, CONTROL_STEPS,
+            grip_need=need, mends_map=self.plan.timing.rule != "fast",
+        )  # fmt: skip
 
     def _place(self) -> None:
         """Put the robot into the plan's first pose."""
@@ -262,7 +263,7 @@ class Run:
         centres -= [off, off if both else np.zeros(2)]
         known = corrected(self.known, self.path, s, face=face, off=off)
         plan = plan_anew(self.followed, known, self.followed.friction)
-        if plan is None or self.followed.timing.rule == "fast":
+        if plan is None:
             native.go_on()
             return
         path = wheel_path(known, self.robot.wheel.radius)

@@ -18,6 +18,7 @@ constexpr double kCruiseTime = 0.1;
 constexpr double kForceAtRest = 0.3;    // of a force's uncertainty in motion
 constexpr double kForceSpeed = 0.15;    // m/s of the wheel's centre from which on it is that in motion
 constexpr double kRoom = 0.10;          // m to the next face that a pair needs to roll on freely
+constexpr double kHop = 0.1;           // s in the air that are no more than a hop, as after a riser is met fast
 constexpr double kSure = 0.02;         // s that both faces of a corner must be felt before that counts
 constexpr double kMostScale = 0.025;   // of the wheels: more is slip
 constexpr double kGripUsed = 0.25;     // share of the normal force from which on traction makes slip likely
@@ -200,15 +201,17 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     if (std::abs(corner - on.s) < kNearCorner) touching = touching || feels(path_.normal(corner - kBeside)) || feels(path_.normal(corner + kBeside));
     const double before = w.s;
     w.s = on.s;
+    w.aloft = touching ? 0.0 : w.aloft + dt;
     if (!touching && on.s > before) {  // in the air no wheel gets past a corner, unless that is sure
         const std::size_t passed = path_.corner_from(before - kNearCorner);
-        const double sure = kBeyondDoubt * std::sqrt(std::max(belief.spread.xx, belief.spread.zz));
+        // What counts is how far it seems to be along the face after the corner.
+        const double sure = kBeyondDoubt * std::sqrt(belief.spread.along({on.point.normal.z, -on.point.normal.x}));
         if (passed < path_.corners().size() && path_.corners()[passed] < on.s && on.s < path_.corners()[passed] + sure) {
             w.s = std::max(before, path_.corners()[passed]);
-            estimate_.hanging[i / 2] = true;
+            estimate_.hanging[i / 2] = estimate_.hanging[i / 2] || w.aloft > kHop;
         }
     }
-    enter_face(i, on);
+    if (touching) enter_face(i, on);
     const std::size_t next = path_.corner_from(on.s);
     const double room = next < path_.corners().size() ? path_.corners()[next] - on.s : kRoom;
     estimate_.on_tread[i / 2] = !on.corner && on.point.normal.z > kTread && room >= kRoom;

@@ -14,9 +14,9 @@ constexpr double kSamePlace = 0.15;  // m; an error of the map that was let pass
 
 }  // namespace
 
-PlanExecutor::PlanExecutor(control::Controller controller, control::PlanFollower follower, double grip_need)
+PlanExecutor::PlanExecutor(control::Controller controller, control::PlanFollower follower, double grip_need, bool mends_map)
     : controller_(std::move(controller)), follower_(std::move(follower)), grip_test_(controller_.robot(), grip_need),
-      leg_fit_(controller_.robot()) {}
+      leg_fit_(controller_.robot()), mends_map_(mends_map) {}
 
 bool PlanExecutor::hangs(const control::Ahead& ahead) const {
     const auto& forces = follower_.target().forces;
@@ -27,7 +27,8 @@ bool PlanExecutor::hangs(const control::Ahead& ahead) const {
 const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool moving, double time, double dt) {
     if (safe_stop_.why() != control::Stop::none) return stand_;
     moving = moving && grip_test_.over() && !waits_;
-    if (moving && seen.map_error && !map_error_ && std::abs(seen.map_error->s - ignored_) > kSamePlace) map_error_ = seen.map_error, waits_ = true;
+    if (mends_map_ && moving && seen.map_error && !map_error_ && std::abs(seen.map_error->s - ignored_) > kSamePlace)
+        map_error_ = seen.map_error, waits_ = true;
     moving = moving && !waits_ && plan_change_.over();
     const bool searching = moving && seen.ahead.any();
     const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt, hangs(seen.ahead));

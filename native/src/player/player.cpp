@@ -61,7 +61,7 @@ const char* name(Phase phase) {
 Player::Player(PlanFile file, const Limits& limits)
     : file_(std::move(file)), limits_(limits), path_(file_.terrain, file_.robot.legs[0].wheel.radius),
       executor_({file_.robot, path_, file_.friction, file_.gains}, {file_.way, file_.step, file_.rows, file_.speeds, file_.lead},
-                file_.grip_need),
+                file_.grip_need, false),
       command_(damping(file_)), damped_(command_) {}
 
 double Player::done() const {
@@ -151,7 +151,7 @@ void Player::decide() {
         return;
     }
     if (!executor_.waits()) return;
-    if (executor_.map_error() || !executor_.slipped() || executor_.slipped()->found >= file_.grip_enough) return executor_.go_on();
+    if (!executor_.slipped() || executor_.slipped()->found >= file_.grip_enough) return executor_.go_on();
     phase_ = Phase::gave_up;
     reason_ = said("the %s wheels slipped at a friction of %.2f; the plan needs %.2f", executor_.slipped()->front ? "front" : "rear",
                    executor_.slipped()->found, file_.grip_need);

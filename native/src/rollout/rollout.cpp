@@ -18,8 +18,8 @@ constexpr int kAllContacts = 16;  // the sensor that counts every contact; befor
 }  // namespace
 
 Rollout::Rollout(const mjModel* model, mjData* data, control::Controller controller, control::PlanFollower follower,
-                 Perception perception, const Motors& motors, std::size_t log_every, int substeps, double grip_need)
-    : model_(model), data_(data), executor_(std::move(controller), std::move(follower), grip_need),
+                 Perception perception, const Motors& motors, std::size_t log_every, int substeps, double grip_need, bool mends_map)
+    : model_(model), data_(data), executor_(std::move(controller), std::move(follower), grip_need, mends_map),
       perception_(std::move(perception)), scale_(motors.scale), log_(log_every), substeps_(substeps),
       dt_(substeps * model->opt.timestep) {
     if (model->nq != control::kPositions || model->nv != control::kVelocities || model->nu != 12 ||

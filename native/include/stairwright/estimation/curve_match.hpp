@@ -16,6 +16,8 @@ namespace stairwright::estimation {
 struct Spread {
     double xx = 0.0, xz = 0.0, zz = 0.0;
 
+    // Variance along a unit vector.
+    double along(Vec2 d) const { return d.x * d.x * xx + 2.0 * d.x * d.z * xz + d.z * d.z * zz; }
     // v' S^-1 v
     double distance(Vec2 v) const { return (zz * v.x * v.x - 2.0 * xz * v.x * v.z + xx * v.z * v.z) / (xx * zz - xz * xz); }
 };

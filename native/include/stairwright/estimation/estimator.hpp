@@ -74,7 +74,7 @@ struct Estimate {
     std::array<Vec2, 2> ground{};
     std::array<bool, 2> on_tread{};   // of each pair: it can roll on for a while
     std::array<double, 4> used_grip{};  // tangential force over normal force of each wheel, as the legs feel them
-    std::array<bool, 2> hanging{};    // a wheel of the pair is in the air where the map has it pass a corner
+    std::array<bool, 2> hanging{};    // a wheel of the pair stays in the air where the map has it pass a corner
     std::optional<MapError> map_error;
     std::array<bool, 2> searching{};  // the map has a face where the pair is, and it feels none
 };
@@ -122,6 +122,7 @@ class Estimator {
         double known = 0.0;       // for how long it has been there, or on a tread [s]
         double least_push = 0.0;  // of a wall that counts as felt [N]
         double met = -1e9;        // the last corner of which it has felt the wall [m]
+        double aloft = 0.0;       // for how long it has been in the air [s]
         double at_corner = 0.0;   // for how long it has felt both faces of a corner [s]
     };
     using Vec3 = std::array<double, 3>;

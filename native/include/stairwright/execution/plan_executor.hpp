@@ -17,8 +17,9 @@ namespace stairwright::execution {
 
 class PlanExecutor {
   public:
-    // `grip_need` is the friction that the ground is tested for before the start, 0 for no test [1].
-    PlanExecutor(control::Controller controller, control::PlanFollower follower, double grip_need);
+    // `grip_need` is the friction that the ground is tested for before the start, 0 for no test [1]. `mends_map`: whether
+    // the robot stands and waits where it finds an error of the map. A plan that moves fast must not stop just anywhere.
+    PlanExecutor(control::Controller controller, control::PlanFollower follower, double grip_need, bool mends_map);
 
     // What to do now. `moving`: whether the plan may advance; `time` and the time step `dt` [s]. What only a robot
     // that senses by itself does, it does where `seen.places` are known.
@@ -69,6 +70,7 @@ class PlanExecutor {
     std::optional<estimation::MapError> map_error_;
     std::optional<double> creep_;   // found and not taken yet
     double ignored_ = -1e9;         // where an error of the map was let pass [m]
+    bool mends_map_;
     bool waits_ = false;            // for somebody to decide
     control::Reference adapted_{};  // what is asked for, with legs that fit the ground as it is
     control::Reference stand_{};    // what is asked for after the stop

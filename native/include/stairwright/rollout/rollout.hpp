@@ -39,7 +39,7 @@ class Rollout {
   public:
     // Throws std::invalid_argument if the model is not one of the robot. Model and data are borrowed.
     Rollout(const mjModel_* model, mjData_* data, control::Controller controller, control::PlanFollower follower,
-            Perception perception, const Motors& motors, std::size_t log_every, int substeps, double grip_need = 0.0);
+            Perception perception, const Motors& motors, std::size_t log_every, int substeps, double grip_need = 0.0, bool mends_map = false);
 
     // A map without the error that the robot waits for somebody to decide on. Another plan has to follow.
     void correct_map(const WheelPath& path);

@@ -1,0 +1,38 @@
+"""Fast plans, carried out by a robot that has only its own sensors."""
+
+import pytest
+
+import stairwright as sw
+from stairwright.simulation.ranges import BUNDLES, draw
+
+
+def flight(*, down: bool) -> sw.Terrain:
+    """Five stairs, 0.18 m by 0.28 m."""
+    points = [(-1.0, 0.0), (0.0, 0.0)]
+    for k in range(5):
+        points += [(0.28 * k, 0.18 * (k + 1)), (0.28 * (k + 1), 0.18 * (k + 1))]
+    points[-1] = (points[-1][0] + 0.9, points[-1][1])
+    if down:
+        points = [(-x, z - points[-1][1]) for x, z in reversed(points)]
+    return sw.Terrain(points=points)
+
+
+@pytest.fixture(scope="module", params=[False, True], ids=["up", "down"])
+def plan(request: pytest.FixtureRequest) -> sw.Plan:
+    """The mass centre has 7 to 14 mm of margin there."""
+    return sw.plan(flight(down=request.param), "a1_wheeled", 0.6, timing="fast")
+
+
+def test_wheels_that_hop_off_a_riser_do_not_stop_it(plan: sw.Plan) -> None:
+    """Nothing deviates; a wheel that meets a riser at 0.4 m/s is in the air for a moment."""
+    run = sw.rollout(plan, controller={"sensing": "robot"})
+    assert run.outcome == "success", run.reason
+    ideal = sw.rollout(plan, controller={"sensing": "ideal"})
+    assert run.metrics.speed_stairs > 0.9 * ideal.metrics.speed_stairs
+
+
+def test_steps_that_are_off_do_not_stop_it_in_the_middle(plan: sw.Plan) -> None:
+    """It finds treads 6 to 15 mm off and goes on, for a plan in motion cannot stand anywhere."""
+    deviation = draw(BUNDLES["laboratory"], 1, 2)[0]
+    run = sw.rollout(plan, controller={"sensing": "robot"}, disturbance=deviation, seed=2)
+    assert run.outcome == "success", run.reason
