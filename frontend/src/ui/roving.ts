@@ -9,7 +9,8 @@ const BUTTONS = "button:not([disabled]), a[href]";
 
 const items = (bar: Item, of: string) =>
   [...bar.querySelectorAll<Item>(of)].filter(
-    (each) => !each.closest(".panel") && each.getClientRects().length > 0,
+    // What is drawn at all: asking where would lay out the page again, at each move of a drag.
+    (each) => !each.closest(".panel") && each.checkVisibility(),
   );
 
 function tend(bar: Item, of: string): void {
