@@ -1,16 +1,16 @@
 /** A toolbar is one stop of the Tab key; arrows walk its buttons. */
 
 import type { RefObject } from "preact";
-import { useLayoutEffect } from "preact/hooks";
+import { useLayoutEffect, useRef } from "preact/hooks";
 
 type Item = HTMLElement | SVGElement;
 
+const SETTLED = 100; // ms; who is drawn makes the browser lay out the page: not at each move of a drag
 const BUTTONS = "button:not([disabled]), a[href]";
 
 const items = (bar: Item, of: string) =>
   [...bar.querySelectorAll<Item>(of)].filter(
-    // What is drawn at all: asking where would lay out the page again, at each move of a drag.
-    (each) => !each.closest(".panel") && each.checkVisibility(),
+    (each) => !each.closest(".panel") && each.getClientRects().length > 0,
   );
 
 function tend(bar: Item, of: string): void {
@@ -21,11 +21,14 @@ function tend(bar: Item, of: string): void {
 }
 
 export function useRoving(root: RefObject<Item | null>, of = BUTTONS): void {
+  const tended = useRef<Item | null>(null);
   // After each render: what can be pressed may be another.
   useLayoutEffect(() => {
     const bar = root.current;
     if (!bar) return;
-    tend(bar, of);
+    const later = tended.current === bar ? setTimeout(() => tend(bar, of), SETTLED) : undefined;
+    if (later === undefined) tend(bar, of);
+    tended.current = bar;
     const onFocus = () => tend(bar, of);
     const onKey = (raw: Event) => {
       const event = raw as KeyboardEvent;
@@ -40,6 +43,7 @@ export function useRoving(root: RefObject<Item | null>, of = BUTTONS): void {
     bar.addEventListener("focusin", onFocus);
     bar.addEventListener("keydown", onKey);
     return () => {
+      clearTimeout(later);
       bar.removeEventListener("focusin", onFocus);
       bar.removeEventListener("keydown", onKey);
     };
