@@ -18,7 +18,8 @@ constexpr double kCruiseTime = 0.1;
 constexpr double kForceAtRest = 0.3;    // of a force's uncertainty in motion
 constexpr double kForceSpeed = 0.15;    // m/s of the wheel's centre from which on it is that in motion
 constexpr double kRoom = 0.10;          // m to the next face that a pair needs to roll on freely
-constexpr double kHop = 0.1;           // s in the air that are no more than a hop, as after a riser is met fast
+constexpr double kHop = 0.1;            // s in the air that are no more than a hop, as after a riser is met fast
+constexpr double kHopSpeed = 0.2;       // m/s of the trunk from which on a riser is met so
 constexpr double kSure = 0.02;         // s that both faces of a corner must be felt before that counts
 constexpr double kMostScale = 0.025;   // of the wheels: more is slip
 constexpr double kGripUsed = 0.25;     // share of the normal force from which on traction makes slip likely
@@ -208,7 +209,8 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
         const double sure = kBeyondDoubt * std::sqrt(belief.spread.along({on.point.normal.z, -on.point.normal.x}));
         if (passed < path_.corners().size() && path_.corners()[passed] < on.s && on.s < path_.corners()[passed] + sure) {
             w.s = std::max(before, path_.corners()[passed]);
-            estimate_.hanging[i / 2] = estimate_.hanging[i / 2] || w.aloft > kHop;
+            const bool hop = std::hypot(velocity_[0], velocity_[2]) > kHopSpeed && w.aloft < kHop;
+            estimate_.hanging[i / 2] = estimate_.hanging[i / 2] || !hop;
         }
     }
     if (touching) enter_face(i, on);
