@@ -9,9 +9,6 @@ from stairwright.errors import InputError
 from stairwright.planning.knees import configurations
 from stairwright.planning.plan import Knees
 
-# What is tested is the plan. By its own sensors ANYmal's rear wheels hop at the riser now and then,
-# and its legs are planned 5 mm apart.
-KNOWING = {"sensing": "ideal"}
 REAL = ("go2w", "b2w", "m20", "d1", "anymal_wheels")
 
 
@@ -20,7 +17,7 @@ def test_a_stair_is_climbed(robot):
     plan = sw.plan("single-stair-030", robot)
     assert plan.feasible
     assert plan.certificate.passed
-    run = sw.rollout(plan, controller=KNOWING)
+    run = sw.rollout(plan)
     assert run.outcome == "success"
     assert run.metrics.link_contacts == 0
 
@@ -31,7 +28,7 @@ def test_a_stair_is_climbed(robot):
 def test_every_preset_is_planned_or_refused_with_a_reason(terrain, robot):
     plan = sw.plan(terrain, robot)
     if plan.feasible:
-        assert sw.rollout(plan, controller=KNOWING).outcome == "success"
+        assert sw.rollout(plan).outcome == "success"
     else:
         assert plan.problem.limit is not None
 
