@@ -107,6 +107,10 @@ class Blocked:
     share: float = math.inf
 
 
+# What came of attempts, by them and whether they were made within torques.
+Tried = dict[tuple[Attempt, bool], Solved | Blocked]
+
+
 def path_planner(
     terrain: Terrain, robot: Robot, friction: float, weights: PathWeights
 ) -> PathPlanner:
@@ -126,8 +130,7 @@ class PathPlanner(PathProblem):
     """A problem and the ways to its answer."""
 
     searches: Searches = field(default_factory=dict)
-    # What came of attempts, by them and whether they were made within torques.
-    tried: dict[tuple[Attempt, bool], Solved | Blocked] = field(default_factory=dict, init=False)
+    tried: Tried = field(default_factory=dict, init=False)
 
     def find(
         self,

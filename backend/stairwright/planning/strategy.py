@@ -40,22 +40,24 @@ FINEST = Attempt(1.0, LOOSE)
 Tried = dict[Attempt, Solved | Blocked]
 
 
-def solve(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
+def solve(planner: PathPlanner, pool: Executor, any_path: bool = False) -> Solved | Blocked:
     """The first path that passes the certificate and is not needlessly thin, or what blocks it.
 
     Args:
         planner: The problem.
         pool: Who makes the attempts of one step.
+        any_path: Whether a thin or heavy path will do, with which none is compared: there is one
+            just where there is one without.
     """
-    found = _search(planner, pool)
+    found = _search(planner, pool, any_path)
     if isinstance(found, Solved):
-        return _lighter(planner, found, pool)
+        return found if any_path else _lighter(planner, found, pool)
     if found.weak and not planner.torques:
-        held = solve(planner.within_torques, pool)
+        held = solve(planner.within_torques, pool, any_path)
         if isinstance(held, Solved):
             return held
         return replace(held, weak=held.weak or found.weak, share=min(held.share, found.share))
-    return solve(planner.unweighted, pool) if planner.unweighted else found
+    return solve(planner.unweighted, pool, any_path) if planner.unweighted else found
 
 
 def _lighter(planner: PathPlanner, found: Solved, pool: Executor) -> Solved:
@@ -104,12 +106,13 @@ def roomy(planner: PathPlanner) -> Solved | Blocked:
     return found
 
 
-def _search(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
+def _search(planner: PathPlanner, pool: Executor, any_path: bool = False) -> Solved | Blocked:
     """The three steps."""
     tried: Tried = {}
     _make(planner, pool, [AT_ONCE], tried)
     best = _best(tried)
-    if best is not None and (_sound(best) or (best.margin > THIN and not planner.torques)):
+    enough = any_path or (best and (_sound(best) or (best.margin > THIN and not planner.torques)))
+    if best is not None and enough:
         return best  # what is heavy is searched for anew within torques
     if best is None:
         at_once = tried[AT_ONCE]
@@ -123,7 +126,7 @@ def _search(planner: PathPlanner, pool: Executor) -> Solved | Blocked:
     else:
         obstructions = ()
 
-    _make(planner, pool, [FORGIVING] if best else [FORGIVING, POSSIBLE], tried)
+    _make(planner, pool, [FORGIVING] if best else [FORGIVING, POSSIBLE], tried, first=any_path)
     best = _best(tried)
     if best is not None:
         return best

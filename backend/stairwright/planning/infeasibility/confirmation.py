@@ -30,7 +30,7 @@ _MORE = (0, 2, 6, 14, 26, 46, 70)
 _BETWEEN = 2  # of them is left out where not even a search that forgives nothing finds a way
 _RIVALS = 2  # candidates for which planning is tried
 _RISES = 6  # times that motors are made stronger, by as much as the path lacks that came of it
-_LOOKS = 7  # times that all of planning is asked, so that an answer comes in time
+_LOOKS = 10  # times that all of planning is asked, so that an answer comes in time
 
 
 @dataclass(frozen=True)
@@ -137,24 +137,33 @@ def _settled(
 
     low, high = _bisected(quick, low, high)
     known = {0: False}  # what all of planning says, which may differ from quick attempts
-    for look in range(1, _LOOKS + 1):
-        more = min(high + 1, most)
-        new = sorted({low, high, more} - known.keys())
+    stride = 1
+    for _ in range(_LOOKS):
+        middle, more = (low + high) // 2, min(high + 1, most)
+        close = high - low == 1
+        asked = (low, high, more) if close else (low, high)
+        new = [step for step in dict.fromkeys(asked) if step not in known]
+        if not (close or new):
+            new = [middle]
         with race(pool, fully, new) as answers:
-            known.update(zip(new, answers, strict=True))
+            for step, feasible in zip(new, answers, strict=False):
+                known[step] = feasible
+                if feasible == (step == low):
+                    break  # it lies elsewhere
         if known[low]:
-            low, high = max(0, low - 2**look), low
-        elif not known[more]:
-            low, high = more, min(more + 2**look, most)
-            if low == high:
+            failed = max(step for step, feasible in known.items() if step < low and not feasible)
+            low, high = max(failed, low - stride), low
+            stride *= 2
+        elif not known[high] or (close and not known[more]):
+            low = more if known[high] else high
+            if low == most:
                 return None
-        elif not known[high]:
-            low, high = high, more
-        elif high - low > 1:
-            middle = (low + high) // 2
-            known[middle] = fully(middle)
+            solved = (step for step, feasible in known.items() if step > low and feasible)
+            high = min(*solved, low + stride, most)
+            stride *= 2
+        elif middle in known and not close:
             low, high = (low, middle) if known[middle] else (middle, high)
-        else:
+        elif close:
             return Cause(candidate, _ratio(candidate, low), _ratio(candidate, high))
     # There was not the time to ask on.
     high = min((step for step, feasible in known.items() if feasible), default=0)

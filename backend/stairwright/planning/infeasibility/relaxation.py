@@ -11,7 +11,7 @@ import numpy as np
 from stairwright.planning.lattice.body_lattice import LOOSE, Bounds
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
-from stairwright.planning.path_planner import Blocked, PathPlanner, Solved, path_planner
+from stairwright.planning.path_planner import Blocked, PathPlanner, Solved, Tried, path_planner
 from stairwright.planning.smoothing.node_margins import JOINTS, Motor
 from stairwright.planning.standing import NoStandingPose
 from stairwright.planning.strategy import quick, solve
@@ -41,8 +41,10 @@ class Candidate:
     limit: float
     change: Callable[[PathPlanner, float], PathPlanner]
     given: str = ""  # what else the change needs
-    # Questions asked last, by their factor: what is tried anew has its tables and its first tries.
+    # Questions asked last, by their factor: what is tried anew has its tables.
     changed: dict[float, PathPlanner] = field(default_factory=dict, compare=False, repr=False)
+    # What came of attempts at all of them.
+    tried: dict[float, Tried] = field(default_factory=dict, compare=False, repr=False)
 
     def at(self, ratio: float) -> float:
         """The value that differs from what there is by the factor `ratio` > 1."""
@@ -78,7 +80,7 @@ class Candidate:
         """Whether all of planning, asked anew with the quantity changed so, has a plan."""
 
         def ask(changed: PathPlanner) -> Solved | Blocked:
-            return solve(changed.regardless, in_this_thread())
+            return solve(changed.regardless, in_this_thread(), any_path=True)
 
         return isinstance(self._planned(planner, ratio, ask), Solved)
 
@@ -96,6 +98,7 @@ class Candidate:
                 return Blocked(None, False)
             for old in list(self.changed)[: 1 - _KEPT]:
                 self.changed.pop(old, None)
+            changed.tried = self.tried.setdefault(ratio, changed.tried)
             self.changed[ratio] = changed
         return how(changed)
 
