@@ -1,0 +1,70 @@
+"""Named amounts are settled by all of planning, asked about every amount once."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+
+import pytest
+
+from stairwright.planning.infeasibility.confirmation import _settled
+from stairwright.planning.path_planner import Solved
+from stairwright.planning.strategy import AT_ONCE, solve
+from stairwright.planning.threads import in_this_thread
+
+
+@dataclass
+class Asked:
+    """A quantity of which planning makes do with some numbers of steps of 2 %."""
+
+    enough: set[int]
+    most: float = 1.02**60
+    steps: list[int] = field(default_factory=list)
+
+    def solves(self, _planner, ratio):
+        return round(math.log(ratio, 1.02)) >= 24
+
+    def feasible(self, _planner, ratio):
+        self.steps.append(round(math.log(ratio, 1.02)))
+        return self.steps[-1] in self.enough
+
+
+@pytest.mark.parametrize(
+    "enough",
+    [
+        {*range(24, 61)},
+        {*range(12, 61)},  # less than quick attempts take
+        {*range(31, 61)},  # more
+        {*range(14, 61)} - {18},  # with a gap
+    ],
+)
+def test_no_amount_is_asked_about_twice(enough):
+    quantity = Asked(enough)
+    cause = _settled(None, quantity, 20, 30, in_this_thread())
+    low, high = (round(math.log(ratio, 1.02)) for ratio in (cause.lower, cause.upper))
+    assert high == low + 1
+    assert low not in enough
+    assert {high, high + 1} <= enough
+    assert len(quantity.steps) == len(set(quantity.steps))
+
+
+@pytest.mark.parametrize(("margin", "compared"), [(0.005, 2), (0.5, 1)])
+def test_where_any_path_will_do_a_thin_one_is_not_compared(margin, compared):
+    def asked(**how):
+        made = []
+
+        def attempt(which):
+            made.append(which)
+            return Solved(SimpleNamespace(), SimpleNamespace())
+
+        planner = SimpleNamespace(attempt=attempt, torques=False)
+        return solve(planner, in_this_thread(), **how), made
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Solved, "margin", margin)
+        patch.setattr(Solved, "torque_share", 0.5)
+        found, made = asked(any_path=True)
+        assert isinstance(found, Solved)
+        assert made == [AT_ONCE]
+        assert len(asked()[1]) == compared
