@@ -96,6 +96,22 @@ def test_a_bug_is_recorded_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> N
     assert record["message"] == "ZeroDivisionError: by zero"
 
 
+def test_fast_plans_take_less_time(tmp_path: Path) -> None:
+    low = {"name": "step.height", "values": [0.1]}
+    slow, fast = (study(low, timing=timing) for timing in ("steady", "fast"))
+    steady, quick = (
+        sw.study(one, workers=1, store=tmp_path / f"{k}.zarr").dataset
+        for k, one in enumerate((slow, fast))
+    )
+    assert float(quick.duration[0]) < 0.5 * float(steady.duration[0])
+    assert float(quick.speed[0]) > 2.0 * float(steady.speed[0])
+    plan = sw.plan(stairs.stair(0.1), "a1_wheeled", timing="fast")
+    assert str(quick.plan_id.values[0]) == plan.id
+    assert load_study(slow).family == load_study(study(low)).family
+    with pytest.raises(InputError, match="fast belongs to the method path"):
+        Questions(load_study(study(low, timing="fast", method="critical")))
+
+
 @pytest.mark.slow
 def test_rollouts_and_trials(tmp_path: Path) -> None:
     low = {"name": "step.height", "values": [0.04]}

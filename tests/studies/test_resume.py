@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -56,6 +57,15 @@ def test_a_finished_study_answers_from_its_store(tmp_path: Path) -> None:
     assert sorted(_asked(document, path)) == [0, 1]
     assert _asked(document, path) == []
     assert _asked(document | {"name": "another name"}, path) == []
+
+
+def test_results_of_before_there_was_a_variable_are_read(tmp_path: Path) -> None:
+    document, path = _heights(0.05), tmp_path / "a.zarr"
+    _asked(document, path)
+    shutil.rmtree(path / "speed")
+    old = grid_dataset(ResultStore(path))
+    assert bool(old.feasible.all())
+    assert np.isnan(old.speed).all()
 
 
 def test_an_extended_axis_computes_only_new_cells(tmp_path: Path) -> None:

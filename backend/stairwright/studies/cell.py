@@ -50,6 +50,7 @@ def _answer(study: Study, question: CellQuestion, diagnose: bool) -> Record:
         question.friction,
         question.method,
         dict(question.weights),
+        timing=question.timing,
         tolerance=question.tolerance,
         diagnose=diagnose,
     )
@@ -83,6 +84,7 @@ def _of_plan(plan: Plan) -> Record:
                 record["least_friction"] = limit.needed
     if plan.feasible and plan.poses:
         record |= _margins(plan)
+        record["speed"] = plan.poses[-1].progress / plan.timing.total
     return record
 
 
@@ -113,6 +115,7 @@ def _rolled_out(study: Study, question: CellQuestion, plan: Plan) -> Record:
     return {
         "outcome": run.outcome,
         "duration": run.metrics.duration,
+        "speed": run.metrics.speed_mean,
         "energy": run.metrics.energy,
         "cost_of_transport": run.metrics.cost_of_transport,
         "success": int(run.success),

@@ -11,7 +11,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from stairwright.arguments import MOST_SEED
 from stairwright.documents import Model, content_hash
 from stairwright.errors import InputError
-from stairwright.planning.plan import Method
+from stairwright.planning.plan import Method, PlanTiming
 from stairwright.planning.tolerance import Tolerance
 from stairwright.robot.description import Robot
 from stairwright.simulation.ranges import Ranges
@@ -92,6 +92,7 @@ class Study(Model):
     friction: Friction | None = Field(None, description="the terrain's own by default")
     method: Method = "path"
     weights: dict[SettingName, bool | float] = Field({}, max_length=32)
+    timing: PlanTiming = Field("steady", description="of plans of the method path, as for a plan")
     tolerance: Tolerance | None = Field(
         None, description="that plans of the method path shall stand; axes may vary it"
     )
@@ -155,8 +156,11 @@ class Study(Model):
     def family(self) -> str:
         """Hash of everything but texts and values of axes: studies that share cells share it."""
         data = self.model_dump(mode="json", exclude={"name", "description", "axes"})
-        if self.tolerance is None:  # the name of what was asked before there was one stays
+        # The name of what was asked before there was a choice stays.
+        if self.tolerance is None:
             data.pop("tolerance")
+        if self.timing == "steady":
+            data.pop("timing")
         data["axes"] = [axis.name for axis in self.axes]
         if self.diagnose == "last" and self.boundary_axis is not None:
             data["diagnose"] = ["last", self.boundary_axis.points[-1]]

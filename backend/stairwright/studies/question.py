@@ -13,7 +13,7 @@ from stairwright.arguments import as_friction
 from stairwright.control.settings import parse_settings
 from stairwright.documents import parse, wording
 from stairwright.errors import InputError
-from stairwright.planning.plan import Method
+from stairwright.planning.plan import Method, PlanTiming
 from stairwright.planning.tolerance import Tolerance, parse_tolerance
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
@@ -41,6 +41,7 @@ class CellQuestion:
     disturbance: Mapping[str, float] = field(default_factory=dict)
     seed: int = 0
     tolerance: Tolerance | None = None
+    timing: PlanTiming = "steady"
 
     @property
     def plan(self) -> dict[str, Any]:
@@ -54,6 +55,8 @@ class CellQuestion:
         }
         if self.tolerance is not None:
             body["tolerance"] = self.tolerance.asked
+        if self.timing != "steady":
+            body["timing"] = self.timing
         return body
 
 
@@ -75,6 +78,8 @@ class Questions:
         self.study = study
         parse_settings(study.controller)
         parse_weights(study.method, study.weights)
+        if study.timing == "fast" and study.method != "path":
+            raise InputError("fast belongs to the method path", ("timing",))
         self.targets: list[Target] = []
         for i, axis in enumerate(study.axes):
             where = target(axis.name, study.method)
@@ -121,6 +126,7 @@ class Questions:
             {t.path[0]: float(v) for t, v in given if t.part == "disturbance"},
             _whole(plain.get("seed", study.seed), "seed"),
             parse_tolerance(tolerance, method, mu),
+            study.timing,
         )
 
     def _terrain(self, measures: dict[str, Value]) -> Terrain:

@@ -62,6 +62,8 @@ class ResultStore:
         self._arrays = {name: self._array(name) for name in VARIABLES}
 
     def _array(self, name: str) -> Any:
+        if name not in self._group:  # written before there was this variable
+            _add_variable(self._group, name, self.study)
         array: Any = self._group[name]
         return array
 
@@ -180,7 +182,6 @@ def _lay_out(path: Path, study: Study, engine: str) -> None:
         "study": study.model_dump_json(),
     }
     group = zarr.open_group(path, mode="w", zarr_format=3, attributes=attributes)
-    names = tuple(axis.name for axis in study.axes)
     for axis in study.axes:
         values = np.array(axis.points, dtype="f8" if axis.numeric else np.dtypes.StringDType())
         made = group.create_array(
@@ -192,20 +193,25 @@ def _lay_out(path: Path, study: Study, engine: str) -> None:
             attributes={"units": target(axis.name, study.method).unit} if axis.numeric else {},
         )
         made[...] = values
-    chunks = _chunks(study.shape)
-    for name, variable in VARIABLES.items():
-        about: dict[str, Any] = {"long_name": variable.text}
-        if variable.kind == "number":
-            about["units"] = variable.unit
-        group.create_array(
-            name,
-            shape=study.shape,
-            dtype=str if variable.kind == "word" else variable.dtype,
-            chunks=chunks,
-            dimension_names=names,
-            fill_value=variable.missing,
-            attributes=about,
-        )
+    for name in VARIABLES:
+        _add_variable(group, name, study)
+
+
+def _add_variable(group: zarr.Group, name: str, study: Study) -> None:
+    """An array over all axes that holds nothing yet."""
+    variable = VARIABLES[name]
+    about: dict[str, Any] = {"long_name": variable.text}
+    if variable.kind == "number":
+        about["units"] = variable.unit
+    group.create_array(
+        name,
+        shape=study.shape,
+        dtype=str if variable.kind == "word" else variable.dtype,
+        chunks=_chunks(study.shape),
+        dimension_names=tuple(axis.name for axis in study.axes),
+        fill_value=variable.missing,
+        attributes=about,
+    )
 
 
 def _chunks(shape: Sequence[int]) -> tuple[int, ...]:

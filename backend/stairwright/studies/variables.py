@@ -73,6 +73,7 @@ VARIABLES: Mapping[str, Variable] = {
     "margin_joint_limit": Variable("number", "least distance of a joint from its limits", "rad"),
     "binding": Variable("word", "the margin that is least, as a share of what there is", length=16),
     "duration": Variable("number", "planned time; simulated time of rollouts", "s"),
+    "speed": Variable("number", "mean speed along the way, planned or simulated", "m/s"),
     "energy": Variable("number", "of the rollout: integral of |torque x speed|", "J"),
     "cost_of_transport": Variable("number", "of the rollout: energy per weight and way"),
     "success": Variable("count", "rollouts or trials that succeeded"),

@@ -1001,6 +1001,13 @@ export interface components {
             weights: {
                 [key: string]: boolean | number;
             };
+            /**
+             * Timing
+             * @description of plans of the method path, as for a plan
+             * @default steady
+             * @enum {string}
+             */
+            timing: "steady" | "fast";
             /** @description that plans of the method path shall stand; axes may vary it */
             tolerance?: components["schemas"]["Tolerance"] | null;
             /**
@@ -3482,6 +3489,13 @@ export interface components {
             weights: {
                 [key: string]: boolean | number;
             };
+            /**
+             * Timing
+             * @description of plans of the method path, as for a plan
+             * @default steady
+             * @enum {string}
+             */
+            timing: "steady" | "fast";
             /** @description that plans of the method path shall stand; axes may vary it */
             tolerance?: components["schemas"]["Tolerance"] | null;
             /** Axes */

@@ -143,6 +143,8 @@ export function documentOf(now: Form): StudyDocument | null {
     robot: page.robot,
     method: page.method,
     ...(page.weights ? { weights: page.weights } : {}),
+    ...(page.timing ? { timing: page.timing } : {}),
+    ...(page.tolerance ? { tolerance: page.tolerance } : {}),
     ...rest,
     axes,
   };
