@@ -116,6 +116,7 @@ export const QUANTITIES: readonly Quantity[] = [
     rising: false,
   },
   { name: "duration", title: "Time", unit: "s", digits: 1, scale: 1, rising: true },
+  { name: "speed", title: "Mean speed", unit: "m/s", digits: 2, scale: 1, rising: false },
 ];
 
 export const quantityOf = (name: string): Quantity =>
