@@ -108,6 +108,12 @@ export function ground(now: Form): string {
   return drawing.value.name;
 }
 
+/** What the page's settings make of every plan of the map, in a few words. */
+export function manner(): string {
+  const { timing, tolerance } = request.value ?? {};
+  return `${timing === "fast" ? ", fast" : ""}${tolerance ? ", with the tolerance set" : ""}`;
+}
+
 /** The study; null while the page has nothing to plan with. */
 export function documentOf(now: Form): StudyDocument | null {
   const page = request.peek();

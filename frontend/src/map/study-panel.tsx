@@ -16,6 +16,7 @@ import {
   form,
   ground,
   hasFriction,
+  manner,
   PRESETS,
   type Range,
 } from "./form";
@@ -40,6 +41,7 @@ export function StudyPanel() {
           <Second />
           <p class="sub">
             {robotName.value}, {ground(form.value)}
+            {manner()}
           </p>
         </section>
         <Progress />
