@@ -23,6 +23,8 @@ from tests.in_process import served
 
 from .small import STEP, identical, study
 
+pytestmark = pytest.mark.slow  # a server of its own
+
 ENDED = ("done", "failed", "cancelled")
 LONG = study(
     {"name": "stairs.rise", "from": 0.05, "to": 0.5, "count": 60},
@@ -167,7 +169,6 @@ def test_the_least_cells_that_are_too_many_are_refused_in_words(api: httpx.Clien
     assert answer.status_code in (400, 422)
 
 
-@pytest.mark.slow
 def test_cancelled_and_gone_on_with(api: httpx.Client) -> None:
     name = api.post("/studies", json=LONG).json()["id"]
     while api.get(f"/studies/{name}").json()["done"] < 5:
@@ -204,7 +205,6 @@ def test_without_the_packages_it_says_what_to_install(
     assert "pip install 'stairwright[studies]'" in answer.json()["detail"]
 
 
-@pytest.mark.slow
 def test_the_server_is_killed_and_the_study_goes_on(
     start_server: Callable[..., AbstractContextManager[Server]],
 ) -> None:
