@@ -18,19 +18,18 @@ from statistics import median
 from profiles import random_profile
 
 import stairwright as sw
+from stairwright.terrain.stairs import Direction, stair
 
 ROBOTS = "a1_wheeled,a1_wheeled_x,go2w"
 
 
-def flight(down: bool) -> sw.Terrain:
+def flight(direction: Direction) -> sw.Terrain:
     """Five stairs, 0.18 m by 0.28 m."""
-    points = [(-1.0, 0.0), (0.0, 0.0)]
-    for k in range(5):
-        points += [(0.28 * k, 0.18 * (k + 1)), (0.28 * (k + 1), 0.18 * (k + 1))]
-    points[-1] = (points[-1][0] + 0.9, points[-1][1])
-    if down:
-        points = [(-x, z - points[-1][1]) for x, z in reversed(points)]
-    return sw.Terrain(name="five stairs down" if down else "five stairs up", points=points)
+    level = (1.0, 1.18) if direction == "up" else (1.18, 1.0)  # before and after
+    return stair(
+        0.18, 0.28, 5, direction=direction, approach=level[0], platform=level[1],
+        name=f"five stairs {direction}",
+    )  # fmt: skip
 
 
 def outcome(plan: sw.Plan, options: argparse.Namespace, seed: int) -> sw.Rollout:
@@ -94,7 +93,7 @@ def main() -> None:
         profiles.append(terrain.model_copy(update={"name": f"{kind} {seed}"}))
     print("| terrain | robot | succeed | median speed over faces |\n|---|---|---|---|")
     for robot in options.robots.split(","):
-        for terrain in (flight(down=False), flight(down=True)):
+        for terrain in (flight("up"), flight("down")):
             compare(terrain.name, [terrain], robot, options)
         compare(f"{len(profiles)} random profiles", profiles, robot, options)
 

@@ -78,7 +78,7 @@ def speeds(options: argparse.Namespace) -> dict[tuple[str, str], float | None]:
     """Speed over the faces of each question [m/s]; None where it fails."""
     found: dict[tuple[str, str], float | None] = {}
     for robot in ROBOTS.split(","):
-        questions = [("up", flight(False)), ("down", flight(True))]
+        questions = [("up", flight("up")), ("down", flight("down"))]
         seeds = range(options.first, options.first + options.count)
         questions += [(str(seed), random_profile(seed)[1]) for seed in seeds]
         for name, terrain in questions:

@@ -4,23 +4,14 @@ import pytest
 
 import stairwright as sw
 from stairwright.simulation.ranges import BUNDLES, draw
+from stairwright.terrain.stairs import stair
 
 
-def flight(*, down: bool) -> sw.Terrain:
-    """Five stairs, 0.18 m by 0.28 m."""
-    points = [(-1.0, 0.0), (0.0, 0.0)]
-    for k in range(5):
-        points += [(0.28 * k, 0.18 * (k + 1)), (0.28 * (k + 1), 0.18 * (k + 1))]
-    points[-1] = (points[-1][0] + 0.9, points[-1][1])
-    if down:
-        points = [(-x, z - points[-1][1]) for x, z in reversed(points)]
-    return sw.Terrain(points=points)
-
-
-@pytest.fixture(scope="module", params=[False, True], ids=["up", "down"])
+@pytest.fixture(scope="module", params=["up", "down"])
 def plan(request: pytest.FixtureRequest) -> sw.Plan:
     """The mass centre has 7 to 14 mm of margin there."""
-    return sw.plan(flight(down=request.param), "a1_wheeled", 0.6, timing="fast")
+    flight = stair(0.18, 0.28, 5, direction=request.param, approach=1.18, platform=1.18)
+    return sw.plan(flight, "a1_wheeled", 0.6, timing="fast")
 
 
 def test_wheels_that_hop_off_a_riser_do_not_stop_it(plan: sw.Plan) -> None:

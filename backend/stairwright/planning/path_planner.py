@@ -108,7 +108,7 @@ class Blocked:
 
 
 # What came of attempts, by them and whether they were made within torques.
-Tried = dict[tuple[Attempt, bool], Solved | Blocked]
+Outcomes = dict[tuple[Attempt, bool], Solved | Blocked]
 
 
 def path_planner(
@@ -130,7 +130,7 @@ class PathPlanner(PathProblem):
     """A problem and the ways to its answer."""
 
     searches: Searches = field(default_factory=dict)
-    tried: Tried = field(default_factory=dict, init=False)
+    tried: Outcomes = field(default_factory=dict, init=False)
 
     def find(
         self,

@@ -11,7 +11,7 @@ import numpy as np
 from stairwright.planning.lattice.body_lattice import LOOSE, Bounds
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
-from stairwright.planning.path_planner import Blocked, PathPlanner, Solved, Tried, path_planner
+from stairwright.planning.path_planner import Blocked, Outcomes, PathPlanner, Solved, path_planner
 from stairwright.planning.smoothing.node_margins import JOINTS, Motor
 from stairwright.planning.standing import NoStandingPose
 from stairwright.planning.strategy import quick, solve
@@ -44,7 +44,7 @@ class Candidate:
     # Questions asked last, by their factor: what is tried anew has its tables.
     changed: dict[float, PathPlanner] = field(default_factory=dict, compare=False, repr=False)
     # What came of attempts at all of them.
-    tried: dict[float, Tried] = field(default_factory=dict, compare=False, repr=False)
+    tried: dict[float, Outcomes] = field(default_factory=dict, compare=False, repr=False)
 
     def at(self, ratio: float) -> float:
         """The value that differs from what there is by the factor `ratio` > 1."""
