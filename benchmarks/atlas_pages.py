@@ -11,7 +11,7 @@ import matplotlib as mpl
 mpl.use("svg")
 
 import matplotlib.pyplot as plt
-from atlas import DOCS, STAIR, studies_of
+from atlas_studies import DOCS, STAIR, studies_of
 from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import pkgutil
 from collections.abc import Callable, Generator, Mapping
 from pathlib import Path
 from typing import Any, Self, TypeVar
@@ -214,3 +215,11 @@ def content_hash(data: Any) -> str:
         data = data.model_dump(mode="json")
     text = json.dumps(data, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return "sha256:" + hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def save(document: Model, path: str, rate: float | None = None) -> None:
+    """Write a plan, a rollout or a robot; see `stairwright.export.formats.save`.
+
+    Exports import the documents that they write, so documents know them by name alone.
+    """
+    pkgutil.resolve_name("stairwright.export.formats:save")(document, path, rate)

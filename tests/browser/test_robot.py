@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import stairwright as sw
-from stairwright.export.formats import save_robot
+from stairwright.export.formats import save
 
 from .conftest import DESK, PHONE, Product
 
@@ -196,7 +196,7 @@ def test_an_edited_robot_is_downloaded(product: Product, name: str, tmp_path: Pa
 def test_a_file_is_read_reported_and_opened(product: Product, tmp_path: Path) -> None:
     page = product.page
     path = tmp_path / "theirs.urdf"
-    save_robot(sw.load_robot("go2w"), str(path))
+    save(sw.load_robot("go2w"), str(path))
     page.get_by_label("Robot file").set_input_files(path)
     report = page.get_by_role("region", name="File")
     report.get_by_text("theirs.urdf read").wait_for()

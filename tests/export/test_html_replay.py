@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import expect
 
-from stairwright.export.formats import save_rollout
+from stairwright.export.formats import save
 from stairwright.simulation.result import Rollout
 from tests.scene.example import example_rollout
 
@@ -30,7 +30,7 @@ def run() -> Rollout:
 
 @pytest.fixture
 def replay(browser: Browser, run: Rollout, tmp_path) -> Iterator[Page]:
-    save_rollout(run, tmp_path / "run.html")
+    save(run, tmp_path / "run.html")
     with browser.new_context(
         offline=True,
         viewport={"width": 1200, "height": 800},

@@ -10,7 +10,7 @@ import pytest
 import stairwright as sw
 from stairwright.documents import parse
 from stairwright.errors import InputError
-from stairwright.export.formats import save_robot
+from stairwright.export.formats import save
 from stairwright.export.table import PLAN_FORMATS, ROLLOUT_FORMATS
 from stairwright.robot.description import JOINTS, Robot
 from tests.export.mcap_reading import messages
@@ -34,7 +34,7 @@ def counted(frames: object) -> Robot:
 @pytest.mark.slow
 def test_the_urdf_reads_back_with_the_same_frames(tmp_path: Path) -> None:
     robot, path = counted(FRAMES), tmp_path / "own.urdf"
-    save_robot(robot, str(path))
+    save(robot, str(path))
     read = sw.import_robot(path)
     for joint, frame in FRAMES.items():
         assert read.joints[joint].sign == frame["sign"], joint
@@ -44,7 +44,7 @@ def test_the_urdf_reads_back_with_the_same_frames(tmp_path: Path) -> None:
             mine, theirs = (getattr(getattr(r.joints, end), link) for r in (robot, read.robot))
             assert theirs == pytest.approx(mine, abs=1e-9)
     again = tmp_path / "again.urdf"
-    save_robot(read.robot, str(again))
+    save(read.robot, str(again))
     for joint, mine in sw.import_robot(again).joints.items():
         assert mine.sign == read.joints[joint].sign
         assert mine.offset == pytest.approx(read.joints[joint].offset, abs=1e-9)

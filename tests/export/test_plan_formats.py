@@ -14,7 +14,7 @@ import pytest
 from rosbags.highlevel import AnyReader
 
 from stairwright.errors import InputError
-from stairwright.export.formats import PLAN_FORMATS, convert, load_plan, save_plan
+from stairwright.export.formats import PLAN_FORMATS, convert, load_plan, save
 from stairwright.planning.plan import Plan
 from stairwright.robot import kinematics
 from stairwright.robot.description import JOINTS
@@ -28,7 +28,7 @@ def plan() -> Plan:
 
 
 def test_json_is_the_document(plan, tmp_path):
-    save_plan(plan, tmp_path / "plan.json")
+    save(plan, tmp_path / "plan.json")
     data = json.loads((tmp_path / "plan.json").read_text())
     assert data["schema"] == "stairwright/plan/1"
     assert data["poses"][7]["q"] == list(plan.poses[7].q)
@@ -57,7 +57,7 @@ def test_csv_is_readable_by_numpy(plan):
 
 
 def test_npz_holds_arrays_and_metadata(plan, tmp_path):
-    save_plan(plan, tmp_path / "plan.npz")
+    save(plan, tmp_path / "plan.npz")
     with np.load(tmp_path / "plan.npz", allow_pickle=False) as file:
         np.testing.assert_array_equal(file["q"], [pose.q for pose in plan.poses])
         assert file["collision_points"].shape == (len(plan.poses), 25, 2)
@@ -91,7 +91,7 @@ def test_mcap_goes_from_the_first_pose_to_the_last(plan):
 
 
 def test_mcap_is_read_by_rosbags(plan, tmp_path):
-    save_plan(plan, tmp_path / "plan.mcap")
+    save(plan, tmp_path / "plan.mcap")
     with AnyReader([tmp_path / "plan.mcap"]) as reader:
         topics = {c.topic: c for c in reader.connections}
         assert topics["/joint_trajectory"].msgtype == "trajectory_msgs/msg/JointTrajectory"
@@ -103,7 +103,7 @@ def test_mcap_is_read_by_rosbags(plan, tmp_path):
 
 
 def test_mjcf_keyframes_are_the_poses(plan, tmp_path):
-    save_plan(plan, tmp_path / "plan.xml")
+    save(plan, tmp_path / "plan.xml")
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "plan.xml"))
     data = mujoco.MjData(model)
     assert model.nkey == len(plan.poses)
@@ -181,12 +181,12 @@ def test_standing_pose_needs_the_torques_of_its_weight():
 @pytest.mark.parametrize("name", ["plan", "plan.html", "plan.txt"])
 def test_unknown_ending_names_the_valid_ones(plan, tmp_path, name):
     with pytest.raises(InputError, match=r"\.json, \.csv, \.npz, \.mcap, \.mjcf, \.urdf"):
-        save_plan(plan, tmp_path / name)
+        save(plan, tmp_path / name)
     assert not (tmp_path / name).exists()
 
 
 def test_convert_picks_the_format_by_name_or_ending(plan, tmp_path):
-    save_plan(plan, tmp_path / "plan.json")
+    save(plan, tmp_path / "plan.json")
     convert(tmp_path / "plan.json", None, tmp_path / "out.csv")
     convert(tmp_path / "plan.json", "csv", tmp_path / "out.txt")
     assert (tmp_path / "out.csv").read_bytes() == (tmp_path / "out.txt").read_bytes()
@@ -203,11 +203,11 @@ def test_damaged_files_are_input_errors(tmp_path):
         with pytest.raises(InputError):
             load_plan(tmp_path / name)
     with pytest.raises(InputError, match="cannot write"):
-        save_plan(example_plan(count=3), Path(tmp_path / "no" / "folder" / "plan.json"))
+        save(example_plan(count=3), Path(tmp_path / "no" / "folder" / "plan.json"))
 
 
 def test_an_npz_whose_arrays_do_not_fit_is_an_input_error(plan, tmp_path):
-    save_plan(plan, tmp_path / "plan.npz")
+    save(plan, tmp_path / "plan.npz")
     arrays = dict(np.load(tmp_path / "plan.npz"))
     np.savez(tmp_path / "bad.npz", **{**arrays, "trunk": arrays["trunk"][:, :2]})
     with pytest.raises(InputError, match="arrays of a plan"):

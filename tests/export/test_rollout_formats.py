@@ -16,7 +16,7 @@ from stairwright.export.formats import (
     convert,
     load,
     load_rollout,
-    save_rollout,
+    save,
 )
 from stairwright.robot.description import JOINTS
 from stairwright.simulation.result import Rollout
@@ -38,7 +38,7 @@ def assert_same_series(a: Rollout, b: Rollout) -> None:
 
 
 def test_json_round_trip(run, tmp_path):
-    save_rollout(run, tmp_path / "run.json")
+    save(run, tmp_path / "run.json")
     data = json.loads((tmp_path / "run.json").read_text())
     assert data["schema"] == "stairwright/rollout/1"
     assert np.array(data["series"]["contact_force"]).shape == (len(run.series), 4, 2)
@@ -61,7 +61,7 @@ def test_csv_columns_carry_units_and_exact_numbers(run):
 
 
 def test_npz_round_trip_without_the_plan(run, tmp_path):
-    save_rollout(run, tmp_path / "run.npz")
+    save(run, tmp_path / "run.npz")
     with np.load(tmp_path / "run.npz", allow_pickle=False) as file:
         np.testing.assert_array_equal(file["torque"], run.series.torque)
         about = json.loads(str(file["metadata"]))
@@ -90,7 +90,7 @@ def test_mcap_joint_states_and_transforms(run):
 
 
 def test_mcap_is_read_by_rosbags(run, tmp_path):
-    save_rollout(run, tmp_path / "run.mcap")
+    save(run, tmp_path / "run.mcap")
     with AnyReader([tmp_path / "run.mcap"]) as reader:
         chosen = [c for c in reader.connections if c.topic == "/joint_states"]
         states = [reader.deserialize(raw, c.msgtype) for c, _, raw in reader.messages(chosen)]
@@ -98,9 +98,9 @@ def test_mcap_is_read_by_rosbags(run, tmp_path):
 
 
 def test_convert_knows_a_rollout_by_its_schema(run, tmp_path):
-    save_rollout(run, tmp_path / "run.json")
+    save(run, tmp_path / "run.json")
     convert(tmp_path / "run.json", "csv", tmp_path / "run.csv")
     assert (tmp_path / "run.csv").read_bytes() == ROLLOUT_FORMATS["csv"].write(run)
     assert isinstance(load(tmp_path / "run.json"), Rollout)
     with pytest.raises(InputError, match=r"\.html"):
-        save_rollout(run, tmp_path / "run.mjcf")
+        save(run, tmp_path / "run.mjcf")

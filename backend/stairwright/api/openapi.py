@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from functools import lru_cache
 from typing import Any
 
@@ -51,13 +50,3 @@ def _even_tuples(node: Any) -> Any:
         del plain["prefixItems"]
         plain["items"] = items[0]
     return plain
-
-
-def allowed_methods(app: FastAPI, path: str) -> str:
-    """What may be done at `path`, for the Allow header; empty if nothing is known of it."""
-    for template, operations in app.openapi()["paths"].items():
-        pattern = re.sub(r"\\{\w+\\}", "[^/]+", re.escape(template))
-        if re.fullmatch(pattern, path):
-            methods = {method.upper() for method in operations}
-            return ", ".join(sorted(methods | ({"HEAD"} if "GET" in methods else set())))
-    return ""

@@ -162,7 +162,6 @@ def problem_of(error: Exception) -> Problem:
 
 def install(app: FastAPI) -> None:
     """Let every exception leave as a problem document."""
-    from .openapi import allowed_methods  # which describes problems itself
 
     async def on_error(_: Request, error: Exception) -> Response:
         return problem_of(error).response()
@@ -180,9 +179,19 @@ def install(app: FastAPI) -> None:
         headers = dict(error.headers or {})
         if error.status_code == 405:
             detail = f"{request.method} is not allowed here"
-            allowed = allowed_methods(app, request.url.path)
+            allowed = _allowed_methods(app, request.url.path)
             headers = {"Allow": allowed} if allowed else headers
         return Problem(error.status_code, detail, headers=headers).response()
+
+
+def _allowed_methods(app: FastAPI, path: str) -> str:
+    """What may be done at `path`, for the Allow header; empty if nothing is known of it."""
+    for template, operations in app.openapi()["paths"].items():
+        pattern = re.sub(r"\\{\w+\\}", "[^/]+", re.escape(template))
+        if re.fullmatch(pattern, path):
+            methods = {method.upper() for method in operations}
+            return ", ".join(sorted(methods | ({"HEAD"} if "GET" in methods else set())))
+    return ""
 
 
 def _unavailable(detail: str) -> Problem:

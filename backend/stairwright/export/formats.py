@@ -25,37 +25,23 @@ __all__ = [
     "load",
     "load_plan",
     "load_rollout",
-    "save_plan",
-    "save_robot",
-    "save_rollout",
+    "save",
 ]
 
 
-def save_plan(plan: Plan, path: str | Path, rate: float | None = None) -> None:
-    """Write a plan; the ending picks the format (``.mjcf`` and ``.xml`` are the same).
+def save(document: Plan | Rollout | Robot, path: str | Path, rate: float | None = None) -> None:
+    """Write a document; the ending picks the format (``.mjcf`` and ``.xml`` are the same).
+
+    Args:
+        document: A plan, a rollout or a robot.
+        path: Where to.
+        rate: Samples per second of timed commands [Hz], where the format has them.
 
     Raises:
         InputError: For an unknown ending or a path that cannot be written.
     """
-    _write(Path(path), by_ending(PLAN_FORMATS, path, "plan").write(plan, rate))
-
-
-def save_rollout(rollout: Rollout, path: str | Path) -> None:
-    """Write a rollout; the ending picks the format.
-
-    Raises:
-        InputError: For an unknown ending or a path that cannot be written.
-    """
-    _write(Path(path), by_ending(ROLLOUT_FORMATS, path, "rollout").write(rollout))
-
-
-def save_robot(robot: Robot, path: str | Path) -> None:
-    """Write a robot; the ending picks the format.
-
-    Raises:
-        InputError: For an unknown ending or a path that cannot be written.
-    """
-    _write(Path(path), by_ending(ROBOT_FORMATS, path, "robot").write(robot))
+    kind = _kind(document)
+    _write(Path(path), by_ending(FORMATS[kind], path, kind).write(document, rate))
 
 
 def load_plan(path: str | Path) -> Plan:
@@ -103,13 +89,16 @@ def convert(
         InputError: If the file cannot be read, or its kind has no such format.
     """
     document = _document(source)
-    kind: Kind = (
-        "plan" if isinstance(document, Plan)
-        else "rollout" if isinstance(document, Rollout) else "robot"
-    )  # fmt: skip
+    kind = _kind(document)
     formats = FORMATS[kind]
     chosen = by_ending(formats, out, kind) if format is None else by_name(formats, format, kind)
     _write(Path(out), chosen.write(document, rate))
+
+
+def _kind(document: Plan | Rollout | Robot) -> Kind:
+    if isinstance(document, Plan):
+        return "plan"
+    return "rollout" if isinstance(document, Rollout) else "robot"
 
 
 def _document(source: str | Path) -> Plan | Rollout | Robot:

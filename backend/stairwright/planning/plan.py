@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, PlainSerializer, model_validator
 
 from stairwright.arguments import MOST_FRICTION
-from stairwright.documents import Deferred, Model, content_hash, deferrable
+from stairwright.documents import Deferred, Model, content_hash, deferrable, save
 from stairwright.errors import InputError
 from stairwright.planning.tolerance import Tolerance
 from stairwright.robot.description import Robot
@@ -214,9 +214,7 @@ class Plan(Model):
         They are json, csv, npz, mcap, mjcf, urdf, and zip: a bundle for the robot.
         `rate` is that of the joint commands in MCAP [Hz].
         """
-        from stairwright.export.formats import save_plan  # exports lie to the right of planning
-
-        save_plan(self, path, rate)
+        save(self, path, rate)
 
 
 def plan_id(

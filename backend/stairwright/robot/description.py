@@ -18,11 +18,12 @@ from numpy.typing import NDArray
 from pydantic import AfterValidator, Field, model_validator
 
 from stairwright import _core
-from stairwright.documents import Model, content_hash
+from stairwright.documents import Model, content_hash, save
 from stairwright.errors import InputError
 
 from .defaults import standard_points, suitable_gains
 from .legs import Body, Leg, body_of, legs_of
+from .native import native_robot
 from .parts import (
     BENT,
     Actuator,
@@ -193,9 +194,7 @@ class Robot(Model):
 
     def save(self, path: str) -> None:
         """Write the robot; the ending of `path` picks the format (yaml, json, urdf, mjcf)."""
-        from stairwright.export.formats import save_robot  # exports lie to the right of robots
-
-        save_robot(self, path)
+        save(self, path)
 
     @property
     def ros_joints(self) -> tuple[str, ...]:
@@ -212,12 +211,13 @@ class Robot(Model):
     @cached_property
     def legs(self) -> tuple[Leg, Leg]:
         """Front and rear leg, with everything that the document may leave out."""
-        return legs_of(self)
+        links = (self.thigh, self.calf, self.wheel)
+        return legs_of(self.hips, *links, self.joints, self.actuators, self.rear)
 
     @cached_property
     def body(self) -> Body:
         """The trunk with its payload."""
-        return body_of(self)
+        return body_of(self.trunk, self.payload)
 
     @property
     def mass(self) -> float:
@@ -248,19 +248,17 @@ class Robot(Model):
     @cached_property
     def points(self) -> CollisionPoints:
         """Where the collision points sit."""
-        return self.collision_points or standard_points(self)
+        return self.collision_points or standard_points(self.trunk)
 
     @cached_property
     def feedback(self) -> Gains:
         """The document's gains, or what suits its masses and motors."""
-        return self.gains or suitable_gains(self)
+        return self.gains or suitable_gains(self.mass, self.legs)
 
     @cached_property
     def native(self) -> _core.Robot:
         """The planar robot of the native core; to change one, copy it first (`copy.copy`)."""
-        from .native import native_robot  # it imports this file
-
-        return native_robot(self)
+        return native_robot(self.body, self.legs, self.hips.half_track, self.nominal_height)
 
     def with_knees(self, front: float, rear: float) -> Robot:
         """The robot whose knees bend one way each: +1 forward, -1 backward.

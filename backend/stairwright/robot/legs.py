@@ -7,15 +7,23 @@ thigh and calf, straight capsules); here nothing is left out. SI units; frames o
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .parts import Actuator, LegLimits, Link, Outline, Wheel
-
-if TYPE_CHECKING:
-    from .description import Robot
+from .parts import (
+    Actuator,
+    Actuators,
+    Hips,
+    Joints,
+    LegLimits,
+    Link,
+    Outline,
+    Payload,
+    RearLegs,
+    Trunk,
+    Wheel,
+)
 
 Vector2 = tuple[float, float]
 Capsule = tuple[Vector2, Vector2, float]  # ends in the link's frame, radius
@@ -108,28 +116,33 @@ class Body:
         return float(np.hypot(*self.corners.T).max())
 
 
-def legs_of(robot: Robot) -> tuple[Leg, Leg]:
-    """Front and rear leg."""
-    rear = robot.rear
+def legs_of(
+    hips: Hips,
+    thigh: Link,
+    calf: Link,
+    wheel: Wheel,
+    joints: Joints,
+    actuators: Actuators,
+    rear: RearLegs | None,
+) -> tuple[Leg, Leg]:
+    """Front and rear leg; `rear` holds what differs in the rear one."""
+    parts = ("thigh", "calf", "wheel")
     front_leg = Leg(
-        robot.hips.front, _form(robot.thigh), _form(robot.calf), robot.wheel, robot.joints.front,
-        *(robot.actuators.of(part) for part in ("thigh", "calf", "wheel")),
-    )  # fmt: skip
-    motors = (rear and rear.actuators) or robot.actuators
+        hips.front, _form(thigh), _form(calf), wheel, joints.front, *map(actuators.of, parts)
+    )
     rear_leg = Leg(
-        robot.hips.rear,
-        _form((rear and rear.thigh) or robot.thigh),
-        _form((rear and rear.calf) or robot.calf),
-        (rear and rear.wheel) or robot.wheel,
-        robot.joints.rear,
-        *(motors.of(part) for part in ("thigh", "calf", "wheel")),
+        hips.rear,
+        _form((rear and rear.thigh) or thigh),
+        _form((rear and rear.calf) or calf),
+        (rear and rear.wheel) or wheel,
+        joints.rear,
+        *map(((rear and rear.actuators) or actuators).of, parts),
     )
     return front_leg, rear_leg
 
 
-def body_of(robot: Robot) -> Body:
+def body_of(trunk: Trunk, load: Payload | None) -> Body:
     """Trunk and payload as one body."""
-    trunk, load = robot.trunk, robot.payload
     outline = tuple(trunk.outline) or (box(*trunk.size),)
     if load is None:
         return Body(trunk.mass, trunk.com, trunk.inertia, outline)

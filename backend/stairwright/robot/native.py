@@ -7,19 +7,18 @@ from numpy.typing import NDArray
 
 from stairwright import _core
 
-from .description import Robot
-from .legs import Leg, LinkForm
+from .legs import Body, Leg, LinkForm
 from .parts import Actuator
 
 
-def native_robot(robot: Robot) -> _core.Robot:
-    """The planar robot of a document."""
-    body = robot.body
+def native_robot(
+    body: Body, legs: tuple[Leg, Leg], half_track: float, nominal_height: float
+) -> _core.Robot:
+    """The planar robot of a document's parts; lengths in m."""
     outline = [_core.Polygon(_anticlockwise(piece.points)) for piece in body.outline]
     x, _, z = body.com
     trunk = _core.Trunk(body.mass, body.inertia[1], _core.Vec2(x, z), outline)
-    legs = [_leg(leg) for leg in robot.legs]
-    return _core.Robot(trunk, legs, robot.hips.half_track, robot.nominal_height)
+    return _core.Robot(trunk, [_leg(leg) for leg in legs], half_track, nominal_height)
 
 
 def _leg(leg: Leg) -> _core.Leg:

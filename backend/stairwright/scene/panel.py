@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time as clock
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, get_args
+from typing import Any, Protocol, get_args
 
 from viser import GuiCheckboxHandle
 
@@ -14,26 +14,43 @@ from stairwright.planning.weights import MODELS
 from .camera import Preset
 from .motion import Motion
 from .palette import Palette
+from .player import Player
 from .stage import LAYERS
 from .tracking_plots import TrackingPlots
-
-if TYPE_CHECKING:
-    from .session import SceneSession
 
 SLIDERS_EVERY = 0.1  # s between updates of slider and plots while playing
 SPEEDS = ("0.25x", "0.5x", "1x", "2x", "4x")
 
 
+class Scene(Protocol):
+    """What the panel steers."""
+
+    @property
+    def player(self) -> Player:
+        """The clock."""
+
+    def playback(
+        self, *, time: float | None = None, playing: bool | None = None, speed: float | None = None
+    ) -> None:
+        """Set the clock; what is None stays."""
+
+    def camera(self, name: str) -> None:
+        """Move the cameras to a preset."""
+
+    def set_layers(self, layers: Mapping[str, bool]) -> None:
+        """Show or hide layers."""
+
+
 class Panel:
-    """The panel of one session. Its callbacks run on viser's threads and call the session."""
+    """The panel of one session. Its callbacks run on viser's threads and call the scene."""
 
     def __init__(
         self,
         server: Any,
-        session: SceneSession,
+        scene: Scene,
         replan: Callable[[dict[str, float]], None] | None,
     ) -> None:
-        self._gui, self._session, self._replan = server.gui, session, replan
+        self._gui, self._scene, self._replan = server.gui, scene, replan
         self._updated = 0.0
         self._seconds = 0.0
         self._weights: dict[str, Any] = {}
@@ -66,7 +83,7 @@ class Panel:
 
     def tick(self, time: float) -> None:
         """Follow the clock, a few times a second."""
-        playing = self._session.player.playing
+        playing = self._scene.player.playing
         self._play.label = "Pause" if playing else "Play"
         now = clock.monotonic()
         if playing and now - self._updated < SLIDERS_EVERY:
@@ -81,7 +98,7 @@ class Panel:
             self._layers[name].value = shown
 
     def _build_playback(self) -> None:
-        gui, session = self._gui, self._session
+        gui, scene = self._gui, self._scene
         self._summary = gui.add_markdown("Nothing to show yet.")
         self._play = gui.add_button("Play")
         self._slider = gui.add_slider("Time, s", 0.0, 1.0, 0.01, 0.0)
@@ -90,21 +107,21 @@ class Panel:
 
         @self._play.on_click
         def _(_: Any) -> None:
-            session.playback(playing=not session.player.playing)
+            scene.playback(playing=not scene.player.playing)
 
         @self._slider.on_update
         def _(event: Any) -> None:
             if event.client_id is not None:  # moved by hand, not by the clock
-                session.playback(time=float(self._slider.value), playing=False)
+                scene.playback(time=float(self._slider.value), playing=False)
 
         @self._speed.on_update
         def _(event: Any) -> None:
             if event.client_id is not None:
-                session.playback(speed=float(self._speed.value.removesuffix("x")))
+                scene.playback(speed=float(self._speed.value.removesuffix("x")))
 
         @self._cameras.on_click
         def _(_: Any) -> None:
-            session.camera(str(self._cameras.value))
+            scene.camera(str(self._cameras.value))
 
     def _build_layers(self) -> None:
         self._layers: dict[str, Any] = {}
@@ -117,7 +134,7 @@ class Panel:
     def _layer_callback(self, name: str, box: Any) -> Callable[[Any], None]:
         def change(event: Any) -> None:
             if event.client_id is not None:
-                self._session.set_layers({name: bool(box.value)})
+                self._scene.set_layers({name: bool(box.value)})
 
         return change
 

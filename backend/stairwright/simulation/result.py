@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, PlainSerializer, WithJs
 from pydantic import model_validator as check
 
 from stairwright.control.settings import StoredSettings
-from stairwright.documents import Model
+from stairwright.documents import Model, save
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
 from stairwright.robot.description import Robot
@@ -162,7 +162,4 @@ class Rollout(Model):
 
     def save(self, path: str) -> None:
         """Write the rollout; the ending picks the format (html, json, csv, npz, mcap)."""
-        # Exports lie to the right of simulation.
-        from stairwright.export.formats import save_rollout
-
-        save_rollout(self, path)
+        save(self, path)

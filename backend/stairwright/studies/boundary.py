@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from .border import border, flips, foretell, low_count, next_cells
 from .document import Study
-from .fill import Meter, Report, Writer
 from .grid import levels
+from .progress import Meter, Report, Writer
 from .serial import Engine, Finished, Stopped
 from .store import ResultStore
 from .variables import DONE, PENDING, Record

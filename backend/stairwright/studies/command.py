@@ -14,8 +14,8 @@ import numpy as np
 from stairwright.errors import InputError
 from stairwright.summary import columns
 
-from .fill import Progress
 from .formats import MISSING
+from .progress import Progress
 from .study import BUDGET, StudyResult, study
 
 if TYPE_CHECKING:

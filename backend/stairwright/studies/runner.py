@@ -25,8 +25,9 @@ from stairwright.jobs.failures import Failure, WorkerDied, problem_of
 
 from .blocks import block_of, blocks_of
 from .document import Study, study_id
-from .fill import Progress, fill
+from .fill import fill
 from .keeping import kept_store, relatives
+from .progress import Progress
 from .serial import Engine
 from .store import ResultStore
 from .study import choose_engine

@@ -13,8 +13,9 @@ from stairwright.errors import InputError
 from stairwright.resources import all_cores
 
 from .document import Study, check_budget, study_id
-from .fill import Report, fill, is_complete
+from .fill import fill, is_complete
 from .formats import MISSING
+from .progress import Report
 from .question import Questions, check_axes
 from .resolve import load_study
 from .serial import Engine, SerialEngine, Stopped
