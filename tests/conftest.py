@@ -130,7 +130,8 @@ class Server:
 
 
 @contextlib.contextmanager
-def _serve(data: Path, prefix: Sequence[str] = (), **variables: str) -> Iterator[Server]:
+def serve(data: Path, prefix: Sequence[str] = (), **variables: str) -> Iterator[Server]:
+    """A server on a data folder, until the context ends; see `start_server`."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
@@ -176,13 +177,13 @@ def start_server(
     Servers that one test starts share one data folder, so a restart finds what was saved.
     `prefix` is a command that runs the server.
     """
-    return lambda **given: _serve(tmp_path / "data", **given)
+    return lambda **given: serve(tmp_path / "data", **given)
 
 
 @pytest.fixture(scope="session")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """One real server for all tests that do not mind what other tests saved there."""
-    with _serve(tmp_path_factory.mktemp("server") / "data") as running:
+    with serve(tmp_path_factory.mktemp("server") / "data") as running:
         yield running
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shutil
 import subprocess
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -12,7 +13,7 @@ from typing import Any
 import httpx
 import pytest
 
-from tests.conftest import Server
+from tests.conftest import Server, serve
 
 pytestmark = pytest.mark.slow  # servers of its own
 
@@ -31,12 +32,21 @@ exec "$@"
 MORTAL = ("setpriv", "--bounding-set=-dac_override,-dac_read_search")
 
 
-@pytest.fixture
-def plan(start_server: Start) -> dict[str, Any]:
-    """A plan, stored by a server that has ended; its terrain is saved as `kept`."""
-    with start_server() as server, httpx.Client(base_url=f"{server.url}/api/v1") as api:
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
+    """The folder that a server left, and the plan in it; its terrain is saved as `kept`."""
+    folder = tmp_path_factory.mktemp("stored") / "data"
+    with serve(folder) as server, httpx.Client(base_url=f"{server.url}/api/v1") as api:
         assert api.put("/terrains/kept", json=STAIR).status_code == 201
         made: dict[str, Any] = api.post("/plans", json={"terrain": "kept"}, timeout=120).json()
+    return folder, made
+
+
+@pytest.fixture
+def plan(stored: tuple[Path, dict[str, Any]], tmp_path: Path) -> dict[str, Any]:
+    """A plan that lies in this test's data folder."""
+    folder, made = stored
+    shutil.copytree(folder, tmp_path / "data")
     return made
 
 

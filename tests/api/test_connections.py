@@ -40,7 +40,7 @@ pytestmark = pytest.mark.slow
 @pytest.fixture(scope="module")
 def hasty(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A server that waits a second for a request, and takes twenty connections of an address."""
-    from tests.conftest import _serve
+    from tests.conftest import serve
 
     data = tmp_path_factory.mktemp("hasty") / "data"
     settings = {
@@ -48,7 +48,7 @@ def hasty(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
         "STAIRWRIGHT_KEEP_ALIVE": "1",
         "STAIRWRIGHT_CONNECTIONS": str(LIMIT),
     }
-    with _serve(data, **settings) as server:
+    with serve(data, **settings) as server:
         yield server
 
 

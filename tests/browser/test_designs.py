@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from stairwright.studies import design as designing
-from tests.conftest import TAB, _serve
+from tests.conftest import TAB, serve
 from tests.studies.test_design import Rule, _document
 
 from .conftest import DESK, PHONE, Product
@@ -32,7 +32,7 @@ def product(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Itera
         patch.setenv("STAIRWRIGHT_DATA", str(data))
         designing.design(_document(name="small motors"))
     with (
-        _serve(data) as server,
+        serve(data) as server,
         browser.new_context(**TAB, base_url=server.url) as context,
     ):
         opened = Product(context.new_page()).open()

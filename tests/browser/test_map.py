@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import httpx
 import pytest
 
-from tests.conftest import TAB, Server, _serve
+from tests.conftest import TAB, Server, serve
 
 from .conftest import PATIENCE, Product
 
@@ -26,7 +26,7 @@ AXE = Path(__file__).parents[2] / "frontend" / "node_modules" / "axe-core" / "ax
 @pytest.fixture(scope="module")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A server of these tests' own, with one process for studies: it needs no cluster."""
-    with _serve(tmp_path_factory.mktemp("maps") / "data", STAIRWRIGHT_STUDY_WORKERS="1") as running:
+    with serve(tmp_path_factory.mktemp("maps") / "data", STAIRWRIGHT_STUDY_WORKERS="1") as running:
         yield running
 
 

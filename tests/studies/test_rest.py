@@ -35,10 +35,10 @@ LONG = study(
 @pytest.fixture(scope="module")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A server of these tests' own, with one process for studies: it needs no cluster."""
-    from tests.conftest import _serve
+    from tests.conftest import serve
 
     variables = {"STAIRWRIGHT_STUDY_WORKERS": "1", "STAIRWRIGHT_STUDY_CELLS": "2000"}
-    with _serve(tmp_path_factory.mktemp("studies") / "data", **variables) as running:
+    with serve(tmp_path_factory.mktemp("studies") / "data", **variables) as running:
         yield running
 
 
