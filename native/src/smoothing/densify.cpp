@@ -53,6 +53,18 @@ std::vector<double> contact_marks(const WheelPath& path) {
 
 }  // namespace
 
+NodeGeometry geometry_along(const WheelPath& path, std::span<const Node> nodes) {
+    NodeGeometry out;
+    for (const auto& [s, body] : nodes) {
+        out.wheels.push_back({path.centre(s.front), path.centre(s.rear)});
+        out.contacts.push_back({path.contact(s.front), path.contact(s.rear)});
+        out.bodies.push_back(body);
+        const Vec2 line = out.wheels.back()[kFront] - out.wheels.back()[kRear];
+        out.slopes.push_back(std::atan2(line.z, line.x));
+    }
+    return out;
+}
+
 std::vector<double> contact_changes(const WheelPath& path, std::span<const Node> nodes) {
     std::vector<double> marks = contact_marks(path), out;
     std::sort(marks.begin(), marks.end());

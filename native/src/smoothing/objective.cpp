@@ -81,16 +81,7 @@ PathCost path_cost(const RefineProblem& problem, std::span<const Node> path) {
     const std::vector<double> changes = contact_changes(problem.path, nodes);
     const std::vector<NodeIntervals> intervals =
         intervals_along(problem.path, nodes, changes, problem.friction, problem.reserve, problem.lag);
-    std::vector<WheelCentres> wheels, contacts;
-    std::vector<double> slopes;
-    std::vector<Body> bodies;
-    for (const auto& [s, body] : nodes) {
-        wheels.push_back({problem.path.centre(s.front), problem.path.centre(s.rear)});
-        contacts.push_back({problem.path.contact(s.front), problem.path.contact(s.rear)});
-        bodies.push_back(body);
-        const Vec2 line = wheels.back()[kFront] - wheels.back()[kRear];
-        slopes.push_back(std::atan2(line.z, line.x));
-    }
+    const auto [wheels, contacts, slopes, bodies] = geometry_along(problem.path, nodes);
     const double share = u.back() / static_cast<double>(count - 1) / kUsualSpacing;
     const Objective o = objective(problem, spacing, share);
     const SmoothingProblem at{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, {}, {}, o};

@@ -101,16 +101,7 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
     const std::vector<double> changes = contact_changes(problem.path, nodes);
     const std::vector<NodeIntervals> intervals =
         intervals_along(problem.path, nodes, changes, problem.friction, problem.reserve, problem.lag);
-    std::vector<WheelCentres> wheels, contacts;
-    std::vector<double> slopes;
-    std::vector<Body> bodies;
-    for (const auto& [s, body] : nodes) {
-        wheels.push_back({problem.path.centre(s.front), problem.path.centre(s.rear)});
-        contacts.push_back({problem.path.contact(s.front), problem.path.contact(s.rear)});
-        bodies.push_back(body);
-        const Vec2 line = wheels.back()[kFront] - wheels.back()[kRear];
-        slopes.push_back(std::atan2(line.z, line.x));
-    }
+    auto [wheels, contacts, slopes, bodies] = geometry_along(problem.path, nodes);
     std::vector<std::vector<WheelLoads>> loads;
     if (problem.torques)
         loads = loads_along(problem.path, nodes, changes, problem.friction, problem.lag, problem.robot.mass * kGravity);

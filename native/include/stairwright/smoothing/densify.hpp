@@ -9,6 +9,14 @@
 
 namespace stairwright::smoothing {
 
+// What the smoothing takes from nodes, in their order.
+struct NodeGeometry {
+    std::vector<WheelCentres> wheels, contacts;
+    std::vector<double> slopes;  // of the lines from the rear to the front wheels [rad]
+    std::vector<Body> bodies;
+};
+NodeGeometry geometry_along(const WheelPath& path, std::span<const Node> nodes);
+
 // Where contacts change between nodes, as fractional node numbers.
 std::vector<double> contact_changes(const WheelPath& path, std::span<const Node> nodes);
 
