@@ -247,6 +247,7 @@ class StudyDocument(Model):
     total: int = Field(description="cells that are to be known, as far as can be told")
     progress: float = Field(ge=0.0, le=1.0)
     eta: float | None = Field(description="seconds until it is done, by its own pace so far")
+    stage: str = Field(description="what is done before its first cells; empty from then on")
     created: float = Field(description="seconds since 1970")
     outdated: bool = Field(description="by another version of the planner than this service's")
     error: dict[str, Any] | None = Field(description="a problem document, when failed")

@@ -23,6 +23,7 @@ from stairwright.storage.store import Store
 from stairwright.storage.studies import StudyRecord
 
 from .document import Study, study_id
+from .packages import INSTALLING, Installer, NotInstalled, absent
 from .process import RunnerProcess
 from .version import engine_of
 
@@ -31,6 +32,7 @@ logger = logging.getLogger(__name__)
 IDLE = 600.0  # s without a study after which the processes end
 MOST_DEATHS = 3  # of the process at one study
 MOST_LOSSES = 20  # of the service while a study ran
+_LOOK = 0.2  # s between looks whether it is cancelled
 _KEPT = 32  # finished studies in memory
 
 
@@ -42,6 +44,7 @@ class Following:
         self.job = Job(record.id, "study", owner=record.owner)
         self.done, self.total = record.done, record.total
         self.left: float | None = None
+        self.stage = ""  # what is done before its work begins
         self.blocks: list[bytes] = []  # JSON, in the order in which they came
         self.deaths = 0
         self.retry = False
@@ -68,9 +71,12 @@ class Following:
 class Studies:
     """All studies of one service. Belongs to one event loop."""
 
-    def __init__(self, store: Store, workers: int, scheduler: str, queue_limit: int) -> None:
+    def __init__(
+        self, store: Store, workers: int, scheduler: str, queue_limit: int, setup: str = ""
+    ) -> None:
         self._store, self._workers, self._scheduler = store, workers, scheduler
         self._limit = queue_limit
+        self._installer = Installer(setup) if setup else None
         self._known: OrderedDict[str, Following] = OrderedDict()
         self._waiting: asyncio.Queue[Following] = asyncio.Queue()
         self._current: Following | None = None
@@ -175,6 +181,9 @@ class Studies:
                 await self._carry_out(following)
             except asyncio.CancelledError:
                 raise
+            except NotInstalled as error:
+                logger.warning("a study was not begun: %s", error)
+                following.job.finish("failed", error=problem_of(error))
             except Exception as error:  # whatever it is, who follows it must learn of it
                 logger.exception("a study failed")
                 following.job.finish("failed", error=problem_of(error))
@@ -187,6 +196,9 @@ class Studies:
         """Have the runner do it, again where the runner dies."""
         while True:
             if self._process is None:
+                await self._install(following)
+                if following.job.finished:
+                    return
                 self._process = await RunnerProcess.start(self._workers, self._scheduler)
             following.job.start()
             await self._note(following)
@@ -212,6 +224,23 @@ class Studies:
             logger.warning("a study goes on: the process that was at it died")
             following.blocks.clear()  # all known cells come again
             following.job.requeue()
+
+    async def _install(self, following: Following) -> None:
+        """Wait for packages that are missing, unless the study is cancelled meanwhile.
+
+        Raises:
+            NotInstalled: If they cannot be installed.
+        """
+        if self._installer is None or not absent():
+            return
+        following.stage = INSTALLING
+        following.job.start()
+        installed = self._installer.started()
+        while not (installed.done() or following.job.finished):
+            await asyncio.wait({installed}, timeout=_LOOK)
+        following.stage = ""
+        if not following.job.finished:
+            installed.result()
 
     async def _followed(self, following: Following, process: RunnerProcess) -> bool:
         """Take its reports in until it has ended with the study; False if the process died."""

@@ -3565,6 +3565,11 @@ export interface components {
              */
             eta: number | null;
             /**
+             * Stage
+             * @description what is done before its first cells; empty from then on
+             */
+            stage: string;
+            /**
              * Created
              * @description seconds since 1970
              */

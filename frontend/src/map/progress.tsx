@@ -45,7 +45,8 @@ function Bar() {
         <i style={{ width: `${fixed(share * 100, 1)}%` }} />
       </div>
       <p class="sub">
-        {count(state.done)} of {count(state.total)} cells; {words(state.state, state.eta)}
+        {count(state.done)} of {count(state.total)} cells;{" "}
+        {state.stage || words(state.state, state.eta)}
       </p>
       {state.outdated && (
         <p class="sub">

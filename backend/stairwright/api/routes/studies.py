@@ -7,7 +7,6 @@ import hashlib
 import time
 from collections.abc import AsyncIterator
 from functools import partial
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import orjson
@@ -31,8 +30,9 @@ from stairwright.api.services import EXPORT_DEADLINE, Services
 from stairwright.documents import parse
 from stairwright.errors import InputError
 from stairwright.studies.document import Study, check_budget
-from stairwright.studies.formats import FORMATS, MISSING, NEEDED
+from stairwright.studies.formats import FORMATS
 from stairwright.studies.grid import point
+from stairwright.studies.packages import absent, missing
 from stairwright.studies.question import Questions, check_axes
 from stairwright.studies.resolve import resolve
 from stairwright.studies.service import Following
@@ -79,6 +79,7 @@ def study_document(following: Following) -> StudyDocument:
         total=following.total,
         progress=1.0 if job.state == "done" else round(min(1.0, following.done / total), 4),
         eta=_eta(following),
+        stage=following.stage,
         created=record.created,
         outdated=record.engine != engine_of(study),
         error=dict(job.error) if job.error else None,
@@ -116,14 +117,23 @@ async def post_study(
 
     Its cells are followed at the link `events`; a finished one is there at once.
     """
-    if missing := [name for name in NEEDED if find_spec(name) is None]:
-        raise Problem(501, f"{MISSING}; not there: {', '.join(missing)}", kind="missing")
+    be_sure_of_packages(services)
     study = await asyncio.to_thread(_resolved, services, body)
     following = await services.studies.submit(study, owner, retry=retry)
     once.result = following.record.id
     shown = study_document(following)
     headers = {"location": shown.links["self"], "retry-after": "1"}
     return Response(shown.model_dump_json(), 202, headers=headers, media_type="application/json")
+
+
+def be_sure_of_packages(services: Services) -> None:
+    """Packages that studies need are there, or are installed before the first one.
+
+    Raises:
+        Problem: 501 with what to install.
+    """
+    if not services.settings.studies_setup and (names := absent()):
+        raise Problem(501, f"{missing()}; not there: {', '.join(names)}", kind="missing")
 
 
 def _resolved(services: Services, body: Study) -> Study:
