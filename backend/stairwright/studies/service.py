@@ -1,4 +1,5 @@
-"""Studies of a service: queued, carried out one after the other, followed, cancelled, gone on with.
+"""Studies of a service, and searches for designs: queued, carried out one after the other,
+followed, cancelled, gone on with.
 
 The work is done by a process of its own (`runner`), started with the first study and ended when
 there was none for a while; its cluster stays warm in between.
@@ -22,6 +23,7 @@ from stairwright.jobs.job import Job
 from stairwright.storage.store import Store
 from stairwright.storage.studies import StudyRecord
 
+from .design_document import Design, design_id
 from .document import Study, study_id
 from .packages import INSTALLING, Installer, NotInstalled, absent
 from .process import RunnerProcess
@@ -37,12 +39,13 @@ _KEPT = 32  # finished studies in memory
 
 
 class Following:
-    """One study in memory: its job, and the cells that came since this process follows it."""
+    """One study or search in memory: its job, and the cells that came since it is followed."""
 
     def __init__(self, record: StudyRecord) -> None:
         self.record = record
-        self.job = Job(record.id, "study", owner=record.owner)
+        self.job = Job(record.id, "design" if record.is_search else "study", owner=record.owner)
         self.done, self.total = record.done, record.total
+        self.share = record.done / record.total if record.total else 0.0  # of all the work
         self.left: float | None = None
         self.stage = ""  # what is done before its work begins
         self.blocks: list[bytes] = []  # JSON, in the order in which they came
@@ -56,9 +59,16 @@ class Following:
         self.done = int(report["done"])
         self.total = int(report["total"]) or self.total
         self.left = report["left"]
+        self.share = report.get("share", self.done / self.total if self.total else 0.0)
         if report["cells"] is not None:
             self.blocks.append(orjson.dumps(report["cells"]))
-        self.job.advance(self.done / self.total if self.total else 0.0)
+        self.job.advance(self.share)
+
+    @property
+    def eta(self) -> float | None:
+        """Seconds until it is done, as far as its own pace can tell."""
+        running = self.job.state == "running"
+        return round(self.left, 1) if running and self.left is not None else None
 
     def as_record(self) -> StudyRecord:
         """What is written down of it now."""
@@ -113,8 +123,23 @@ class Studies:
             QueueFull: If too many wait.
         """
         engine = await asyncio.to_thread(engine_of, study)
-        name = study_id(study, engine)
-        known = await self.find(name)
+        name, document = study_id(study, engine), study.model_dump_json()
+        record = StudyRecord(name, study.name, document, engine, owner=owner, total=study.cells)
+        return await self._submit(record, retry)
+
+    async def submit_design(self, design: Design, owner: str) -> Following:
+        """Carry a search for designs out, or follow it where it is known already.
+
+        Raises:
+            QueueFull: If too many wait.
+        """
+        engine = await asyncio.to_thread(engine_of, design.ask)
+        name, document = design_id(design, engine), design.model_dump_json()
+        record = StudyRecord(name, design.name, document, engine, owner=owner, total=design.designs)
+        return await self._submit(record)
+
+    async def _submit(self, record: StudyRecord, retry: bool = False) -> Following:
+        known = await self.find(record.id)
         if known is not None and (
             not known.job.finished or (known.job.state == "done" and not retry)
         ):
@@ -122,21 +147,24 @@ class Studies:
         waiting = sum(not each.job.finished for each in self._known.values())
         if waiting > self._limit:
             raise QueueFull(f"{waiting - 1} studies are waiting already", retry_after=10.0)
-        document = study.model_dump_json()
-        record = StudyRecord(name, study.name, document, engine, owner=owner, total=study.cells)
-        following = Following(record)
+        following = Following(record if known is None else replace(record, done=known.done))
         following.retry = retry
         await asyncio.to_thread(self._store.studies.put, record)
-        self._known[name] = following
+        self._known[record.id] = following
         self._enqueue(following)
         return following
 
     async def find(self, name: str) -> Following | None:
-        """A study by its id."""
+        """A study or search by its id."""
         if name in self._known:
             return self._known[name]
         record = await asyncio.to_thread(self._store.studies.get, name)
         return None if record is None else Following(record)
+
+    def searches(self) -> list[Following]:
+        """All searches for designs; reads the database."""
+        records = self._store.studies.searches()
+        return [self._known.get(record.id) or Following(record) for record in records]
 
     async def cancel(self, following: Following) -> None:
         """Stop it; its cells so far stay."""
@@ -206,7 +234,7 @@ class Studies:
             await self._process.order(
                 {
                     "run": name,
-                    "study": orjson.loads(following.record.document),
+                    following.job.kind: orjson.loads(following.record.document),
                     "path": str(self._store.studies.path(name)),
                     "retry": following.retry,
                 }

@@ -13,7 +13,6 @@ import orjson
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
 
-from stairwright.api.bodies import AxisDocument, CellDocument, StudyDocument
 from stairwright.api.deps import (
     JSON_BODY,
     Idempotent,
@@ -27,6 +26,7 @@ from stairwright.api.deps import (
 from stairwright.api.problems import Problem, describe, not_found
 from stairwright.api.responses import models_json
 from stairwright.api.services import EXPORT_DEADLINE, Services
+from stairwright.api.study_bodies import AxisDocument, CellDocument, StudyDocument
 from stairwright.documents import parse
 from stairwright.errors import InputError
 from stairwright.studies.document import Study, check_budget
@@ -78,7 +78,7 @@ def study_document(following: Following) -> StudyDocument:
         done=following.done,
         total=following.total,
         progress=1.0 if job.state == "done" else round(min(1.0, following.done / total), 4),
-        eta=_eta(following),
+        eta=following.eta,
         stage=following.stage,
         created=record.created,
         outdated=record.engine != engine_of(study),
@@ -92,11 +92,6 @@ def study_document(following: Following) -> StudyDocument:
             "export": f"{here}/export",
         },
     )
-
-
-def _eta(following: Following) -> float | None:
-    running = following.job.state == "running"
-    return round(following.left, 1) if running and following.left is not None else None
 
 
 @router.post(
@@ -164,7 +159,7 @@ async def find_study(
         Problem: 404 if there is none.
     """
     following = await services.studies.find(study_id)
-    if following is None:
+    if following is None or following.record.is_search:
         raise not_found("study", study_id)
     return following
 
