@@ -146,7 +146,7 @@ def _document(services: Services, following: Following) -> DesignDocument:
 
 
 def _shown(summary: DesignSummary, following: Following | None) -> DesignDocument:
-    return DesignDocument(**dict(summary), **_state(summary.id, summary.complete, following))
+    return DesignDocument(**dict(summary), **_state(summary, following))
 
 
 def _answer(content: bytes | None, following: Following | None) -> bytes:
@@ -155,7 +155,7 @@ def _answer(content: bytes | None, following: Following | None) -> bytes:
     else:
         assert following is not None
         known = _nothing_yet(following)
-    return orjson.dumps(known | _state(known["id"], known["complete"], following))
+    return orjson.dumps(known | _state(summary_of(known, 0.0), following))
 
 
 def _nothing_yet(following: Following) -> dict[str, Any]:
@@ -169,17 +169,18 @@ def _asked(following: Following) -> Design:
     return parse(Design, orjson.loads(following.record.document))
 
 
-def _state(design_id: str, complete: bool, following: Following | None) -> dict[str, Any]:
+def _state(summary: DesignSummary, following: Following | None) -> dict[str, Any]:
     """How far a search is; without `following` it is of `stairwright design`."""
-    here = f"/api/v1/designs/{design_id}"
+    here = f"/api/v1/designs/{summary.id}"
     links = {"self": here, "cancel": f"{here}/cancel"}
+    share = min(1.0, summary.tried / summary.designs)
     if following is None:
-        state = {"state": "done" if complete else None, "progress": float(complete), "eta": None}
+        state = {"state": "done" if summary.complete else None, "progress": share, "eta": None}
         return state | {"stage": "", "outdated": False, "error": None, "links": links}
-    job, done = following.job, following.job.state == "done"
+    job = following.job
     return {
         "state": job.state,
-        "progress": 1.0 if done else round(min(1.0, following.share), 4),
+        "progress": round(min(1.0, max(share, following.share)), 4),  # counts what is replayed, too
         "eta": following.eta,
         "stage": following.stage,
         "outdated": following.record.engine != engine_of(_asked(following).ask),
