@@ -22,9 +22,9 @@ ENV PATH=/opt/stairwright/bin:$PATH \
     PIP_NO_CACHE_DIR=1
 WORKDIR /src
 RUN python -m venv /opt/stairwright
-COPY requirements.lock slim.py ./
+COPY requirements.lock requirements-studies.lock slim.py ./
 # Without what running needs not; libraries that a wheel holds twice become one.
-RUN pip install --require-hashes --requirement requirements.lock \
+RUN pip install --require-hashes --requirement requirements.lock --requirement requirements-studies.lock \
     && python slim.py
 COPY pyproject.toml hatch_build.py README.md LICENSE ./
 COPY terrains/ terrains/

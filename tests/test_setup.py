@@ -22,7 +22,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).resolve().parents[1]
-LOCKS = [ROOT / name for name in ("requirements.lock", "requirements-dev.lock")]
+LOCKS = [ROOT / f"requirements{name}.lock" for name in ("", "-studies", "-dev")]
 ALL_LOCKS = [*LOCKS, *(ROOT / f"requirements-{name}.lock" for name in ("node", "bench", "clients"))]
 # put together here, so that this file does not contain what it looks for
 REGISTRY_HOSTS = [
@@ -75,19 +75,43 @@ def test_every_locked_package_has_hashes_and_no_address(path: Path, dev: ModuleT
 def test_locks_satisfy_what_the_package_asks_for() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())
     dev_group = [r for r in project["dependency-groups"]["dev"] if isinstance(r, str)]
-    serving, everything = locked(LOCKS[0]), locked(LOCKS[0]) | locked(LOCKS[1])
-    for text in project["project"]["dependencies"] + project["dependency-groups"]["build"]:
-        requirement = Requirement(text)
-        assert requirement.specifier.contains(serving[canonicalize_name(requirement.name)]), text
-    for text in dev_group:
-        requirement = Requirement(text)
-        assert requirement.specifier.contains(everything[canonicalize_name(requirement.name)]), text
-    assert not locked(LOCKS[0]).keys() & locked(LOCKS[1]).keys()
+    asked = (
+        project["project"]["dependencies"] + project["dependency-groups"]["build"],
+        project["project"]["optional-dependencies"]["studies"],
+        dev_group,
+    )
+    there: dict[str, str] = {}
+    for lock, texts in zip(LOCKS, asked, strict=True):
+        assert not there.keys() & locked(lock).keys()
+        there |= locked(lock)
+        for text in texts:
+            requirement = Requirement(text)
+            assert requirement.specifier.contains(there[canonicalize_name(requirement.name)]), text
+
+
+def test_what_studies_need_is_in_their_lock() -> None:
+    """Else `./dev up` would carry it for everybody, or maps would lack it."""
+    serving, with_studies = locked(LOCKS[0]), locked(LOCKS[0]) | locked(LOCKS[1])
+    extra = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    todo = [Requirement(text).name for text in extra["studies"]]
+    seen: set[str] = set()
+    while todo:
+        name = canonicalize_name(todo.pop())
+        if name in seen:
+            continue
+        seen.add(name)
+        assert name in with_studies, f"{name} is not locked"
+        for text in importlib.metadata.requires(name) or ():
+            requirement = Requirement(text)
+            if requirement.marker is None or requirement.marker.evaluate({"extra": ""}):
+                todo.append(requirement.name)
+    assert len(seen - serving.keys()) > 20
 
 
 def test_what_is_installed_is_what_is_locked() -> None:
-    for name in ("numpy", "mujoco", "viser", "casadi", "fastapi", "pytest"):
-        assert importlib.metadata.version(name) == {**locked(LOCKS[0]), **locked(LOCKS[1])}[name]
+    versions = {name: version for lock in LOCKS for name, version in locked(lock).items()}
+    for name in ("numpy", "mujoco", "viser", "casadi", "fastapi", "xarray", "pytest"):
+        assert importlib.metadata.version(name) == versions[name]
 
 
 def test_no_tracked_file_names_a_registry_host() -> None:

@@ -17,6 +17,13 @@ def data_folder(name: str) -> Path:
     return shipped if shipped.is_dir() else _PACKAGE.parents[1] / name
 
 
+def checkout() -> Path | None:
+    """The checkout in whose own environment, the one of `./dev`, this runs; None elsewhere."""
+    root = _PACKAGE.parents[1]
+    ours = (root / "dev").is_file() and Path(sys.prefix).resolve() == root / ".venv"
+    return root if ours else None
+
+
 def default_data_folder() -> Path:
     """Where this platform keeps a user's data, or systemd a service's.
 

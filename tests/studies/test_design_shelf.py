@@ -10,6 +10,7 @@ import httpx
 import pytest
 
 from stairwright.studies import design as designing
+from stairwright.studies import design_search
 from stairwright.studies.design_shelf import RESULT, kept_results, read_result
 
 from .test_design import Rule, _document
@@ -26,7 +27,7 @@ def _search(folder: Path, monkeypatch: pytest.MonkeyPatch, **options: Any) -> Pa
 def test_a_search_at_work_tells_what_it_has_found(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(designing, "_TOLD", 0.0)
+    monkeypatch.setattr(design_search, "_TOLD", 0.0)
     seen = []
 
     def look(done: int, _: int) -> None:

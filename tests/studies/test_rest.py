@@ -194,15 +194,16 @@ def test_without_the_packages_it_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from stairwright.api.app import create_app
-    from stairwright.api.routes import studies
     from stairwright.api.settings import Settings
+    from stairwright.studies import packages
 
-    monkeypatch.setattr(studies, "find_spec", lambda name: None if name == "zarr" else 1)
+    monkeypatch.setattr(packages, "find_spec", lambda name: None if name == "zarr" else 1)
     app = create_app(Settings(data=tmp_path))
     with served(app) as (_, port):
         answer = httpx.post(f"http://127.0.0.1:{port}/api/v1/studies", json=STEP)
     assert answer.status_code == 501
-    assert "pip install 'stairwright[studies]'" in answer.json()["detail"]
+    assert "./dev studies" in answer.json()["detail"]
+    assert "not there: zarr" in answer.json()["detail"]
 
 
 def test_the_server_is_killed_and_the_study_goes_on(

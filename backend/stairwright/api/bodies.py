@@ -228,44 +228,6 @@ class JobDocument(Model):
     links: dict[str, str]
 
 
-class AxisDocument(Model):
-    """An axis of a study."""
-
-    name: str
-    unit: str = Field(description="of the values; 1 for ratios and words")
-    values: list[float | str] = Field(description="all of them, in order")
-    boundary: bool = Field(description="searched for where the outcome changes, not filled")
-
-
-class StudyDocument(Model):
-    """A study's state. Events leave the axes out."""
-
-    id: str
-    name: str
-    state: Literal["queued", "running", "done", "failed", "cancelled"]
-    done: int = Field(description="cells that are known")
-    total: int = Field(description="cells that are to be known, as far as can be told")
-    progress: float = Field(ge=0.0, le=1.0)
-    eta: float | None = Field(description="seconds until it is done, by its own pace so far")
-    created: float = Field(description="seconds since 1970")
-    outdated: bool = Field(description="by another version of the planner than this service's")
-    error: dict[str, Any] | None = Field(description="a problem document, when failed")
-    axes: list[AxisDocument]
-    compute: Literal["plan", "rollout", "trials"]
-    links: dict[str, str]
-
-
-class CellDocument(Model):
-    """One cell of a study."""
-
-    cell: int
-    values: dict[str, float | str] = Field(description="of the axes, by name")
-    plan: dict[str, Any] | None = Field(
-        description="body of POST /plans for this cell; null where its values make no question"
-    )
-    record: dict[str, Any] = Field(description="the variables of the dataset")
-
-
 class SessionDocument(Model):
     """A 3D scene of one browser session."""
 

@@ -73,7 +73,11 @@ class Services:
         self.rollouts = Rollouts(self.store, self.simulators, settings.queue_limit)
         self.simulators.resized = self.rollouts.queue.resize
         self.studies = Studies(
-            self.store, settings.study_workers, settings.scheduler, settings.study_queue_limit
+            self.store,
+            settings.study_workers,
+            settings.scheduler,
+            settings.study_queue_limit,
+            settings.studies_setup,
         )
         self.uploading = asyncio.Semaphore(1)
         self.sessions = Sessions(

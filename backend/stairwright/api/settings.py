@@ -90,6 +90,10 @@ class Settings:
         default=50_000, metadata=_about("plans, rollouts or trials that one study may take", 1)
     )
     study_queue_limit: int = field(default=16, metadata=_about("studies that may wait", 0))
+    studies_setup: str = field(
+        default="",
+        metadata=_about("command that installs what studies need, where the first one lacks it"),
+    )
     body_limit: int = field(
         default=256 * 1024, metadata=_about("largest request body, bytes", 1024)
     )

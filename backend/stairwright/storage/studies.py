@@ -1,4 +1,4 @@
-"""Studies: what was asked and how far it is; the cells are in a folder each."""
+"""Studies and searches for designs: what was asked, how far it is; results have a folder each."""
 
 from __future__ import annotations
 
@@ -18,18 +18,19 @@ from .jobs import UNFINISHED
 from .tables import StoredStudy
 
 SUFFIX = ".zarr"
+SEARCH = "d-"  # begins ids of searches for designs; those of studies begin with s-
 SHARE = 0.25  # of the room for results that studies may take
 
 
 @dataclass(frozen=True)
 class StudyRecord:
-    """A study as it was last written down.
+    """A study, or a search for designs, as it was last written down.
 
     Attributes:
         document: Its JSON, names resolved.
         engine: Fingerprint of the code that its cells are by.
         error: A problem document, where it failed.
-        done, total: Cells.
+        done, total: Cells; of a search, designs.
         losses: How often whoever was at it was gone.
         created: Seconds since 1970.
     """
@@ -47,6 +48,11 @@ class StudyRecord:
     losses: int = 0
     created: float = field(default_factory=time.time)
 
+    @property
+    def is_search(self) -> bool:
+        """Whether it looks for designs."""
+        return self.id.startswith(SEARCH)
+
 
 class StudyShelf:
     """Studies by id."""
@@ -56,8 +62,8 @@ class StudyShelf:
         self.folder = folder
 
     def path(self, study_id: str) -> Path:
-        """Where its cells lie, or would lie."""
-        return self.folder / f"{study_id}{SUFFIX}"
+        """Where its cells, or a search's studies and result, lie or would lie."""
+        return self.folder / (study_id if study_id.startswith(SEARCH) else f"{study_id}{SUFFIX}")
 
     def put(self, record: StudyRecord) -> None:
         """Write one down as it is now."""
@@ -88,15 +94,22 @@ class StudyShelf:
             return [_record(row) for row in session.scalars(query)]
 
     def page(self, limit: int, offset: int) -> tuple[Sequence[StudyRecord], int]:
-        """Newest first: `limit` after `offset`, and how many there are in all."""
+        """Studies, newest first: `limit` after `offset`, and how many there are in all."""
         newest = (StoredStudy.created.desc(), StoredStudy.id)
-        query = select(StoredStudy).order_by(*newest).limit(limit).offset(offset)
+        asked = ~StoredStudy.id.startswith(SEARCH)
+        query = select(StoredStudy).where(asked).order_by(*newest).limit(limit).offset(offset)
         with self._sessions() as session:
-            total = session.scalar(select(func.count()).select_from(StoredStudy)) or 0
-            return [_record(row) for row in session.scalars(query)], total
+            count = select(func.count()).select_from(StoredStudy).where(asked)
+            return [_record(row) for row in session.scalars(query)], session.scalar(count) or 0
+
+    def searches(self) -> list[StudyRecord]:
+        """All searches for designs."""
+        query = select(StoredStudy).where(StoredStudy.id.startswith(SEARCH))
+        with self._sessions() as session:
+            return [_record(row) for row in session.scalars(query)]
 
     def delete(self, study_id: str) -> bool:
-        """Remove one with its cells; False if there is none."""
+        """Remove one with its folder; False if there is none."""
         with self._sessions.begin() as session:
             row = session.get(StoredStudy, study_id)
             if row is not None:

@@ -14,16 +14,17 @@ import numpy as np
 from stairwright.errors import InputError
 from stairwright.summary import columns
 
-from .formats import MISSING
-from .progress import Progress
+from .packages import check_packages
 from .study import BUDGET, StudyResult, study
 
 if TYPE_CHECKING:
     from .design_result import DesignResult
+    from .progress import Progress
 
 
 def run_study(given: argparse.Namespace) -> str | None:
     """Carry out the study in a file; returns why it is not complete, if it is not."""
+    check_packages()
     output = None if given.output is None else Path(given.output)
     if output is not None:
         from .dataset import check_ending
@@ -53,10 +54,9 @@ def run_study(given: argparse.Namespace) -> str | None:
 
 def run_design(given: argparse.Namespace) -> str | None:
     """Carry out the design study in a file; returns why there is no answer, if there is none."""
-    try:
-        from .design import design
-    except ImportError as error:
-        raise InputError(MISSING) from error
+    check_packages()
+    from .design import design
+
     output = None if given.output is None else Path(given.output)
     if output is not None and output.suffix.lower() != ".json":
         raise InputError("designs can be written as .json only", ("output",))

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from stairwright.documents import Model
 from stairwright.errors import InputError
@@ -27,7 +27,12 @@ class Candidate(Model):
 
 
 class DesignResult(Model):
-    """The outcome (``stairwright/design-result/1``)."""
+    """The outcome (``stairwright/design-result/1``).
+
+    A service's answer tells more, of the search's state: what is read from it leaves that out.
+    """
+
+    model_config = ConfigDict(extra="ignore")
 
     schema_: Literal["stairwright/design-result/1"] = Field(
         "stairwright/design-result/1", alias="schema"

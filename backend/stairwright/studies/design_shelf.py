@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +39,26 @@ def keep_result(result: DesignResult, folder: Path) -> None:
     aside.replace(folder / RESULT)
 
 
+def summary_of(result: Mapping[str, Any], changed: float) -> DesignSummary:
+    """What a list tells of a result as JSON tells it.
+
+    Raises:
+        KeyError, TypeError, ValueError: If it is none.
+    """
+    design, candidates = result["design"], result["candidates"]
+    return DesignSummary(
+        id=result["id"],
+        name=design["name"],
+        changed=changed,
+        designs=design["designs"],
+        tried=len(candidates),
+        passed=sum(each["passed"] for each in candidates),
+        best=sum(each["best"] for each in candidates),
+        complete=result["complete"],
+        aims=design["aims"],
+    )
+
+
 def kept_results(studies: Path) -> list[DesignSummary]:
     """Of the folder that studies are kept in, newest first; what cannot be read is left out."""
     found = [_summary(path) for path in studies.glob(f"d-*/{RESULT}")]
@@ -54,18 +75,6 @@ def read_result(studies: Path, name: str) -> bytes | None:
 
 def _summary(path: Path) -> DesignSummary | None:
     try:
-        data: dict[str, Any] = orjson.loads(path.read_bytes())
-        design, candidates = data["design"], data["candidates"]
-        return DesignSummary(
-            id=data["id"],
-            name=design["name"],
-            changed=path.stat().st_mtime,
-            designs=design["designs"],
-            tried=len(candidates),
-            passed=sum(each["passed"] for each in candidates),
-            best=sum(each["best"] for each in candidates),
-            complete=data["complete"],
-            aims=design["aims"],
-        )
+        return summary_of(orjson.loads(path.read_bytes()), path.stat().st_mtime)
     except (OSError, ValueError, KeyError, TypeError):
         return None  # half gone, or another program's

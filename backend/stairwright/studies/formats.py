@@ -10,8 +10,3 @@ FORMATS: Mapping[str, tuple[str, str]] = {
     "csv": ("text/csv; charset=utf-8", ".csv"),
     "json": ("application/json", ".json"),
 }
-NEEDED = ("cryptography", "distributed", "xarray", "zarr")  # packages
-MISSING = (
-    "studies need a few more packages: pip install 'stairwright[studies]' "
-    "(xarray, Zarr, Dask distributed, Optuna; about 200 MB)"
-)

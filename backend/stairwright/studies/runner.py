@@ -1,10 +1,10 @@
 """The service's process for studies: carries out one after the other, and tells how far it is.
 
-Orders come as JSON lines: ``{"run": id, "study": {...}, "path": "...", "retry": false}`` and
-``{"cancel": id}``. Reports go out the same way, one a line: ``{"id", "done", "total", "left",
-"cells": block or null}`` while it is at a study (a total of 0: not known yet), and ``{"id",
-"state", "error"}`` at the end. When the orders end, whoever gave them has gone: this process ends
-too, and what is written stays.
+Orders come as JSON lines: ``{"run": id, "study": {...}, "path": "...", "retry": false}``, with
+"design" instead of "study" for a search, and ``{"cancel": id}``. Reports go out the same way, one a
+line: ``{"id", "done", "total", "left", "cells": block or null}`` while it is at a study (a total of
+0: not known yet), with "share" (0..1) of a search, and ``{"id", "state", "error"}`` at the end.
+When the orders end, whoever gave them has gone: this process ends too, and what is written stays.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import os
 import queue
 import sys
 import threading
+from functools import partial
 from pathlib import Path
 from typing import IO, Any
 
@@ -24,6 +25,8 @@ from stairwright.errors import StairwrightError
 from stairwright.jobs.failures import Failure, WorkerDied, problem_of
 
 from .blocks import block_of, blocks_of
+from .design_document import Design
+from .design_search import Tried, search
 from .document import Study, study_id
 from .fill import fill
 from .keeping import kept_store, relatives
@@ -62,7 +65,12 @@ class Runner:
             order = self._orders.get()
             name = str(order["run"])
             try:
-                self._carry_out(name, order)
+                if "design" in order:
+                    self._search(name, order)
+                else:
+                    self._fill(name, order)
+                state = "cancelled" if name in self._cancelled else "done"
+                self._tell({"id": name, "state": state, "error": None})
             except StairwrightError as error:
                 known = error if isinstance(error, Failure) else WorkerDied(str(error))
                 self._tell({"id": name, "state": "failed", "error": problem_of(known)})
@@ -70,7 +78,17 @@ class Runner:
                 print(f"study {name}: {type(error).__name__}: {error}", file=sys.stderr, flush=True)
                 self._tell({"id": name, "state": "failed", "error": problem_of(error)})
 
-    def _carry_out(self, name: str, order: dict[str, Any]) -> None:
+    def _search(self, name: str, order: dict[str, Any]) -> None:
+        design = parse(Design, order["design"])
+
+        def report(tried: Tried) -> None:
+            self._tell({"id": name, "done": tried.designs, "total": design.designs,
+                        "left": tried.left, "cells": None, "share": tried.share})  # fmt: skip
+
+        stopped = partial(self._cancelled.__contains__, name)
+        search(design, self._engine, Path(order["path"]), report, stopped)
+
+    def _fill(self, name: str, order: dict[str, Any]) -> None:
         study = parse(Study, order["study"])
         path = Path(order["path"])
         store = _store(study, path)
@@ -88,8 +106,6 @@ class Runner:
 
         with store.writing():
             fill(store, self._engine, report, lambda: name in self._cancelled)
-        state = "cancelled" if name in self._cancelled else "done"
-        self._tell({"id": name, "state": state, "error": None})
 
     def _tell(self, report: dict[str, Any]) -> None:
         self._reports.write(orjson.dumps(report) + b"\n")

@@ -1,4 +1,5 @@
-"""Studies of a service: queued, carried out one after the other, followed, cancelled, gone on with.
+"""Studies of a service, and searches for designs: queued, carried out one after the other,
+followed, cancelled, gone on with.
 
 The work is done by a process of its own (`runner`), started with the first study and ended when
 there was none for a while; its cluster stays warm in between.
@@ -22,7 +23,9 @@ from stairwright.jobs.job import Job
 from stairwright.storage.store import Store
 from stairwright.storage.studies import StudyRecord
 
+from .design_document import Design, design_id
 from .document import Study, study_id
+from .packages import INSTALLING, Installer, NotInstalled, absent
 from .process import RunnerProcess
 from .version import engine_of
 
@@ -31,17 +34,20 @@ logger = logging.getLogger(__name__)
 IDLE = 600.0  # s without a study after which the processes end
 MOST_DEATHS = 3  # of the process at one study
 MOST_LOSSES = 20  # of the service while a study ran
+_LOOK = 0.2  # s between looks whether it is cancelled
 _KEPT = 32  # finished studies in memory
 
 
 class Following:
-    """One study in memory: its job, and the cells that came since this process follows it."""
+    """One study or search in memory: its job, and the cells that came since it is followed."""
 
     def __init__(self, record: StudyRecord) -> None:
         self.record = record
-        self.job = Job(record.id, "study", owner=record.owner)
+        self.job = Job(record.id, "design" if record.is_search else "study", owner=record.owner)
         self.done, self.total = record.done, record.total
+        self.share = record.done / record.total if record.total else 0.0  # of all the work
         self.left: float | None = None
+        self.stage = ""  # what is done before its work begins
         self.blocks: list[bytes] = []  # JSON, in the order in which they came
         self.deaths = 0
         self.retry = False
@@ -53,9 +59,16 @@ class Following:
         self.done = int(report["done"])
         self.total = int(report["total"]) or self.total
         self.left = report["left"]
+        self.share = report.get("share", self.done / self.total if self.total else 0.0)
         if report["cells"] is not None:
             self.blocks.append(orjson.dumps(report["cells"]))
-        self.job.advance(self.done / self.total if self.total else 0.0)
+        self.job.advance(self.share)
+
+    @property
+    def eta(self) -> float | None:
+        """Seconds until it is done, as far as its own pace can tell."""
+        running = self.job.state == "running"
+        return round(self.left, 1) if running and self.left is not None else None
 
     def as_record(self) -> StudyRecord:
         """What is written down of it now."""
@@ -68,9 +81,12 @@ class Following:
 class Studies:
     """All studies of one service. Belongs to one event loop."""
 
-    def __init__(self, store: Store, workers: int, scheduler: str, queue_limit: int) -> None:
+    def __init__(
+        self, store: Store, workers: int, scheduler: str, queue_limit: int, setup: str = ""
+    ) -> None:
         self._store, self._workers, self._scheduler = store, workers, scheduler
         self._limit = queue_limit
+        self._installer = Installer(setup) if setup else None
         self._known: OrderedDict[str, Following] = OrderedDict()
         self._waiting: asyncio.Queue[Following] = asyncio.Queue()
         self._current: Following | None = None
@@ -107,8 +123,23 @@ class Studies:
             QueueFull: If too many wait.
         """
         engine = await asyncio.to_thread(engine_of, study)
-        name = study_id(study, engine)
-        known = await self.find(name)
+        name, document = study_id(study, engine), study.model_dump_json()
+        record = StudyRecord(name, study.name, document, engine, owner=owner, total=study.cells)
+        return await self._submit(record, retry)
+
+    async def submit_design(self, design: Design, owner: str) -> Following:
+        """Carry a search for designs out, or follow it where it is known already.
+
+        Raises:
+            QueueFull: If too many wait.
+        """
+        engine = await asyncio.to_thread(engine_of, design.ask)
+        name, document = design_id(design, engine), design.model_dump_json()
+        record = StudyRecord(name, design.name, document, engine, owner=owner, total=design.designs)
+        return await self._submit(record)
+
+    async def _submit(self, record: StudyRecord, retry: bool = False) -> Following:
+        known = await self.find(record.id)
         if known is not None and (
             not known.job.finished or (known.job.state == "done" and not retry)
         ):
@@ -116,21 +147,24 @@ class Studies:
         waiting = sum(not each.job.finished for each in self._known.values())
         if waiting > self._limit:
             raise QueueFull(f"{waiting - 1} studies are waiting already", retry_after=10.0)
-        document = study.model_dump_json()
-        record = StudyRecord(name, study.name, document, engine, owner=owner, total=study.cells)
-        following = Following(record)
+        following = Following(record if known is None else replace(record, done=known.done))
         following.retry = retry
         await asyncio.to_thread(self._store.studies.put, record)
-        self._known[name] = following
+        self._known[record.id] = following
         self._enqueue(following)
         return following
 
     async def find(self, name: str) -> Following | None:
-        """A study by its id."""
+        """A study or search by its id."""
         if name in self._known:
             return self._known[name]
         record = await asyncio.to_thread(self._store.studies.get, name)
         return None if record is None else Following(record)
+
+    def searches(self) -> list[Following]:
+        """All searches for designs; reads the database."""
+        records = self._store.studies.searches()
+        return [self._known.get(record.id) or Following(record) for record in records]
 
     async def cancel(self, following: Following) -> None:
         """Stop it; its cells so far stay."""
@@ -175,6 +209,9 @@ class Studies:
                 await self._carry_out(following)
             except asyncio.CancelledError:
                 raise
+            except NotInstalled as error:
+                logger.warning("a study was not begun: %s", error)
+                following.job.finish("failed", error=problem_of(error))
             except Exception as error:  # whatever it is, who follows it must learn of it
                 logger.exception("a study failed")
                 following.job.finish("failed", error=problem_of(error))
@@ -187,6 +224,9 @@ class Studies:
         """Have the runner do it, again where the runner dies."""
         while True:
             if self._process is None:
+                await self._install(following)
+                if following.job.finished:
+                    return
                 self._process = await RunnerProcess.start(self._workers, self._scheduler)
             following.job.start()
             await self._note(following)
@@ -194,7 +234,7 @@ class Studies:
             await self._process.order(
                 {
                     "run": name,
-                    "study": orjson.loads(following.record.document),
+                    following.job.kind: orjson.loads(following.record.document),
                     "path": str(self._store.studies.path(name)),
                     "retry": following.retry,
                 }
@@ -212,6 +252,23 @@ class Studies:
             logger.warning("a study goes on: the process that was at it died")
             following.blocks.clear()  # all known cells come again
             following.job.requeue()
+
+    async def _install(self, following: Following) -> None:
+        """Wait for packages that are missing, unless the study is cancelled meanwhile.
+
+        Raises:
+            NotInstalled: If they cannot be installed.
+        """
+        if self._installer is None or not absent():
+            return
+        following.stage = INSTALLING
+        following.job.start()
+        installed = self._installer.started()
+        while not (installed.done() or following.job.finished):
+            await asyncio.wait({installed}, timeout=_LOOK)
+        following.stage = ""
+        if not following.job.finished:
+            installed.result()
 
     async def _followed(self, following: Following, process: RunnerProcess) -> bool:
         """Take its reports in until it has ended with the study; False if the process died."""

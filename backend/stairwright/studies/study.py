@@ -9,13 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stairwright.arguments import as_whole
-from stairwright.errors import InputError
 from stairwright.resources import all_cores
 
 from .document import Study, check_budget, study_id
-from .fill import fill, is_complete
-from .formats import MISSING
-from .progress import Report
+from .packages import check_packages
 from .question import Questions, check_axes
 from .resolve import load_study
 from .serial import Engine, SerialEngine, Stopped
@@ -24,6 +21,7 @@ from .version import engine_of
 if TYPE_CHECKING:
     import xarray as xr
 
+    from .progress import Report
     from .store import ResultStore
 
 BUDGET = 1_000_000
@@ -55,6 +53,8 @@ class StudyResult:
     @property
     def complete(self) -> bool:
         """Whether everything that was asked for is known."""
+        from .fill import is_complete
+
         return is_complete(self._store)
 
     def counts(self) -> dict[str, int]:
@@ -99,6 +99,9 @@ def study(
     Raises:
         InputError: If the document or an argument is bad, or packages are missing.
     """
+    check_packages()
+    from .fill import fill, is_complete
+
     chosen = prepared(document, budget)
     if workers is not None:
         workers = as_whole(workers, 1, MOST_WORKERS, "workers")
@@ -131,12 +134,10 @@ def open_store(study: Study, path: Path | None) -> ResultStore:
     """The store of a study: as it was left, or a new one that takes over what others know.
 
     Raises:
-        InputError: If packages are missing, or `path` holds something else.
+        InputError: If `path` holds something else.
     """
-    try:
-        from .keeping import kept_store
-    except ImportError as error:
-        raise InputError(MISSING) from error
+    from .keeping import kept_store
+
     return kept_store(study, study_id(study, engine_of(study)), engine_of(study), path)
 
 
@@ -150,8 +151,7 @@ def choose_engine(scheduler: str | None, workers: int | None) -> Engine:
     count = all_cores() if workers is None else workers
     if address is None and count == 1:
         return SerialEngine()
-    try:
-        from .cluster import ClusterEngine
-    except ImportError as error:
-        raise InputError(MISSING) from error
+    check_packages()
+    from .cluster import ClusterEngine
+
     return ClusterEngine(address, count)

@@ -755,11 +755,17 @@ export interface paths {
         };
         /**
          * List Designs
-         * @description Searches of `stairwright design` in this data folder, newest first; those at work too.
+         * @description Searches of this service and of `stairwright design` in its data folder, newest first.
          */
         get: operations["list_designs"];
         put?: never;
-        post?: never;
+        /**
+         * Post Design
+         * @description Search for the best designs, or go on with it: the same document is the same search.
+         *
+         *     What it has found by then is at its place, the link `self`.
+         */
+        post: operations["post_design"];
         delete?: never;
         options?: never;
         head?: never;
@@ -775,11 +781,35 @@ export interface paths {
         };
         /**
          * Get Design
-         * @description Every design that was tried so far, and the best ones with their robots.
+         * @description Every design that was tried so far, the best ones with their robots, and how far it is.
          */
         get: operations["get_design"];
         put?: never;
         post?: never;
+        /**
+         * Delete Design
+         * @description Remove a search with all that it has tried.
+         */
+        delete: operations["delete_design"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/designs/{design_id}/cancel": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Cancel Design
+         * @description Stop a search; what it has found stays, and posting it again goes on with it.
+         */
+        post: operations["cancel_design"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1546,10 +1576,43 @@ export interface components {
             seed: number;
         };
         /**
-         * DesignResult
-         * @description The outcome (``stairwright/design-result/1``).
+         * DesignAnswer
+         * @description What a search has found, as `stairwright design -o` writes it, and how far it is.
          */
-        DesignResult: {
+        DesignAnswer: {
+            /**
+             * State
+             * @description null where `stairwright design` is at it, or was: this service does not know
+             */
+            state: ("queued" | "running" | "done" | "failed" | "cancelled") | null;
+            /** Progress */
+            progress: number;
+            /**
+             * Eta
+             * @description seconds until it is done, by its own pace so far
+             */
+            eta: number | null;
+            /**
+             * Stage
+             * @description what is done before its first designs; empty from then on
+             */
+            stage: string;
+            /**
+             * Outdated
+             * @description by another version of the planner than this service's
+             */
+            outdated: boolean;
+            /**
+             * Error
+             * @description a problem document, when failed
+             */
+            error: {
+                [key: string]: unknown;
+            } | null;
+            /** Links */
+            links: {
+                [key: string]: string;
+            };
             /**
              * Schema
              * @default stairwright/design-result/1
@@ -1565,10 +1628,43 @@ export interface components {
             candidates: components["schemas"]["Candidate"][];
         };
         /**
-         * DesignSummary
-         * @description What a list tells of a design search.
+         * DesignDocument
+         * @description A search in a list, and how far it is.
          */
-        DesignSummary: {
+        DesignDocument: {
+            /**
+             * State
+             * @description null where `stairwright design` is at it, or was: this service does not know
+             */
+            state: ("queued" | "running" | "done" | "failed" | "cancelled") | null;
+            /** Progress */
+            progress: number;
+            /**
+             * Eta
+             * @description seconds until it is done, by its own pace so far
+             */
+            eta: number | null;
+            /**
+             * Stage
+             * @description what is done before its first designs; empty from then on
+             */
+            stage: string;
+            /**
+             * Outdated
+             * @description by another version of the planner than this service's
+             */
+            outdated: boolean;
+            /**
+             * Error
+             * @description a problem document, when failed
+             */
+            error: {
+                [key: string]: unknown;
+            } | null;
+            /** Links */
+            links: {
+                [key: string]: string;
+            };
             /** Id */
             id: string;
             /** Name */
@@ -3564,6 +3660,11 @@ export interface components {
              * @description seconds until it is done, by its own pace so far
              */
             eta: number | null;
+            /**
+             * Stage
+             * @description what is done before its first cells; empty from then on
+             */
+            stage: string;
             /**
              * Created
              * @description seconds since 1970
@@ -8649,7 +8750,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["DesignSummary"][];
+                    "application/json": components["schemas"]["DesignDocument"][];
                 };
             };
             /** @description Bad Request: `bad-json`, `host` */
@@ -8700,6 +8801,128 @@ export interface operations {
             };
         };
     };
+    post_design: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description an open session: sessions take turns in the queues */
+                "stairwright-session"?: string | null;
+                /** @description a repeated request with the same key does its work once */
+                "idempotency-key"?: string | null;
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Design"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DesignDocument"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unsupported Media Type: `media-type` */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Too Many Requests: `attempts`, `connections`, `queue-full`, `sessions` */
+            429: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Implemented: `missing` */
+            501: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            503: {
+                headers: {
+                    "Retry-After": components["headers"]["Retry-After"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
     get_design: {
         parameters: {
             query?: never;
@@ -8718,7 +8941,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["DesignResult"];
+                    "application/json": components["schemas"]["DesignAnswer"];
                 };
             };
             /** @description Bad Request: `bad-json`, `host` */
@@ -8751,6 +8974,167 @@ export interface operations {
             };
             /** @description Not Found: `not-found` */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    delete_design: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                design_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Request Entity Too Large: `too-large` */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unprocessable Entity: `bad-input`, `idempotency` */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+        };
+    };
+    cancel_design: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                design_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DesignDocument"];
+                };
+            };
+            /** @description Bad Request: `bad-json`, `host` */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Unauthorized: `token` */
+            401: {
+                headers: {
+                    "WWW-Authenticate": components["headers"]["WWW-Authenticate"];
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Forbidden: `origin`, `read-only` */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Not Found: `not-found` */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemDocument"];
+                };
+            };
+            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };

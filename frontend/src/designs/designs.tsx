@@ -3,7 +3,9 @@
 import { useEffect } from "preact/hooks";
 import { Front } from "./front";
 import { Best, InView, Searches } from "./panels";
+import { SearchProgress } from "./progress";
 import { RoomTabs } from "./room-tabs";
+import { SearchForm } from "./search-form";
 import { across, aimName, followSearches, search } from "./state";
 import { wordsOf } from "./words";
 
@@ -15,7 +17,11 @@ export function Designs() {
         <header class="ph">
           <RoomTabs />
         </header>
-        <Searches />
+        <div class="scroll">
+          <SearchForm />
+          <SearchProgress />
+          <Searches />
+        </div>
       </aside>
       <section class="map-middle" aria-label="Front">
         <header class="ph">
@@ -55,7 +61,8 @@ function Body() {
         <h3>Which robot would be better?</h3>
         <p>
           A design search varies lengths, masses and motors of a robot for up to three aims. Its
-          front shows what one aim costs the other; a click opens the robot.
+          front shows what one aim costs the other; a click opens the robot. Say what varies on the
+          left, and press Run.
         </p>
       </div>
     );
@@ -63,7 +70,9 @@ function Body() {
   if (!shown.candidates.some((each) => each.passed)) {
     return (
       <div class="map-empty">
-        <h3>No design passes so far.</h3>
+        <h3>
+          {shown.candidates.length > 0 ? "No design passes so far." : "No design was tried yet."}
+        </h3>
         <p>{shown.candidates[0]?.reason}</p>
       </div>
     );

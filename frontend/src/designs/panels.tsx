@@ -2,6 +2,7 @@
 
 import { fixed } from "../geometry/format";
 import { Icon } from "../ui/icon";
+import { numberOf } from "./numbers";
 import { openDesign } from "./open-robot";
 import {
   aimName,
@@ -14,56 +15,63 @@ import {
   summaries,
   trouble,
 } from "./state";
-import { numberOf, withUnit, wordsOf } from "./words";
+import { withUnit, wordsOf } from "./words";
+
+/** What the list says of a search beside its numbers. */
+const STATES: Record<string, string> = {
+  queued: ", waiting",
+  running: ", at work",
+  cancelled: ", paused",
+  failed: ", stopped",
+};
 
 export function Searches() {
   return (
-    <div class="scroll">
-      <section>
-        <h3>Design searches</h3>
-        {summaries.value.length === 0 && <p class="sub">None in this service yet.</p>}
-        <ul class="searches">
-          {summaries.value.map((each) => (
-            <li key={each.id}>
-              <button
-                type="button"
-                aria-pressed={search.value?.id === each.id}
-                onClick={() => void openSearch(each.id)}
-              >
-                <b>{each.name || each.aims.map((a) => wordsOf(aimName(a)).title).join(", ")}</b>
-                <small>
-                  {each.complete ? "" : `${each.tried} of `}
-                  {each.designs} designs, {each.best} on the front
-                </small>
-              </button>
-            </li>
-          ))}
-        </ul>
-        <label class="btn file">
-          <Icon name="upload" />
-          Open a result
-          <input
-            type="file"
-            accept=".json"
-            class="sr"
-            onChange={(event) => {
-              const file = event.currentTarget.files?.[0];
-              if (file) void openFile(file);
-              event.currentTarget.value = "";
-            }}
-          />
-        </label>
-        {trouble.value && (
-          <p class="error" role="alert">
-            {trouble.value}
-          </p>
-        )}
-        <p class="sub">
-          <code>stairwright design FILE</code> searches for the best dimensions of a robot. Here its
-          front grows while it runs.
+    <section>
+      <h3>Design searches</h3>
+      {summaries.value.length === 0 && <p class="sub">None in this service yet.</p>}
+      <ul class="searches">
+        {summaries.value.map((each) => (
+          <li key={each.id}>
+            <button
+              type="button"
+              aria-pressed={search.value?.id === each.id}
+              onClick={() => void openSearch(each.id)}
+            >
+              <b>{each.name || each.aims.map((a) => wordsOf(aimName(a)).title).join(", ")}</b>
+              <small>
+                {each.complete ? "" : `${each.tried} of `}
+                {each.designs} designs, {each.best} on the front
+                {STATES[each.state ?? ""]}
+              </small>
+            </button>
+          </li>
+        ))}
+      </ul>
+      <label class="btn file">
+        <Icon name="upload" />
+        Open a result
+        <input
+          type="file"
+          accept=".json"
+          class="sr"
+          onChange={(event) => {
+            const file = event.currentTarget.files?.[0];
+            if (file) void openFile(file);
+            event.currentTarget.value = "";
+          }}
+        />
+      </label>
+      {trouble.value && (
+        <p class="error" role="alert">
+          {trouble.value}
         </p>
-      </section>
-    </div>
+      )}
+      <p class="sub">
+        <code>stairwright design FILE</code> searches from the command line, for anything that a
+        study can ask. Here its front grows while it runs.
+      </p>
+    </section>
   );
 }
 
@@ -159,7 +167,11 @@ function Failures() {
   for (const each of search.value?.candidates ?? []) {
     if (each.passed) continue;
     // Sentences differ in their numbers; what comes before the first one is the reason.
-    const why = each.reason.split(/[\d:;,(]/)[0]!.trim() || "no reason given";
+    const first = each.reason
+      .split(/[\d:;,(]/)[0]!
+      .replace(/ at x =\s*$/, "")
+      .trim();
+    const why = first || "no reason given";
     counts.set(why, (counts.get(why) ?? 0) + 1);
   }
   if (counts.size === 0) return null;

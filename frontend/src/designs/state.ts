@@ -1,14 +1,15 @@
 /** Design searches of this service: which there are, the one that is shown, the design in view. */
 
 import { batch, computed, signal } from "@preact/signals";
-import { BASE, call } from "../api/client";
+import { ApiError, call, callJson } from "../api/client";
 import type { components } from "../api/schema";
 import { report } from "../state/connection";
 import { kept, readFlag } from "../state/kept";
+import { documentOf, refusal, refused } from "./form";
 
 type Schemas = components["schemas"];
-export type Summary = Schemas["DesignSummary"];
-export type Search = Schemas["DesignResult"];
+export type Summary = Schemas["DesignDocument"];
+export type Search = Schemas["DesignAnswer"];
 export type Candidate = Schemas["Candidate"];
 export type Aim = Schemas["Aim"];
 
@@ -79,7 +80,58 @@ export async function openFile(file: File): Promise<void> {
   }
 }
 
+/** How far the shown search is, where this service knows it. */
+export const shownState = computed<Summary | null>(
+  () => summaries.value.find((each) => each.id === search.value?.id) ?? null,
+);
+const atWork = (each: Summary | null) => ["queued", "running"].includes(each?.state ?? "");
+export const searching = computed(() => atWork(shownState.value));
+
+async function submit(document: unknown): Promise<void> {
+  refusal.value = null;
+  try {
+    const begun = await callJson<Summary>("POST", "designs", document);
+    await Promise.all([readList(), openSearch(begun.id)]);
+  } catch (error) {
+    report(error);
+    refusal.value =
+      error instanceof ApiError
+        ? refused(error)
+        : error instanceof Error
+          ? error.message
+          : String(error);
+  }
+}
+
+/** Search as the form says, or go on with that search: the same question is the same search. */
+export async function start(): Promise<void> {
+  const document = documentOf();
+  if (document) await submit(document);
+}
+
+/** Go on with the shown search as it was asked, whatever the form says now. */
+export async function goOn(): Promise<void> {
+  const shown = search.peek();
+  if (shown) await submit(shown.design);
+}
+
+export async function pause(): Promise<void> {
+  const id = search.peek()?.id;
+  try {
+    if (id) await call("POST", `designs/${encodeURIComponent(id)}/cancel`);
+    await readList();
+  } catch (error) {
+    say(error);
+  }
+}
+
+async function readList(): Promise<void> {
+  summaries.value = await callJson<Summary[]>("GET", "designs");
+}
+
 const EVERY = 3000;
+/** While the shown search is at work. */
+const SOON = 1000;
 
 /** Read the list while the room is open, and the shown search while it is at work. */
 export function followSearches(): () => void {
@@ -87,8 +139,7 @@ export function followSearches(): () => void {
   let left = false;
   const read = async () => {
     try {
-      const answer = await fetch(`${BASE}/designs`);
-      if (answer.ok) summaries.value = (await answer.json()) as Summary[];
+      await readList();
       const now = search.peek();
       const news = summaries.peek().find((each) => each.id === now?.id);
       if (!now && summaries.peek()[0]) await openSearch(summaries.peek()[0]!.id);
@@ -96,7 +147,7 @@ export function followSearches(): () => void {
     } catch (error) {
       report(error);
     }
-    if (!left) timer = setTimeout(read, EVERY);
+    if (!left) timer = setTimeout(read, searching.peek() ? SOON : EVERY);
   };
   void read();
   return () => {

@@ -2,6 +2,7 @@
 
 import { setting } from "../geometry/format";
 import { AXES, axisKind, QUANTITIES } from "../map/quantities";
+import { NUMBERS } from "./numbers";
 
 interface Words {
   title: string;
@@ -17,6 +18,11 @@ function plain(name: string): string {
 
 export function wordsOf(name: string): Words {
   if (name === "mass") return { title: "Mass", unit: "kg", show: (v) => v.toFixed(2) };
+  const number = NUMBERS.find((each) => each.name === name);
+  if (number) {
+    const { title, unit, digits } = number;
+    return { title, unit, show: (v) => v.toFixed(digits) };
+  }
   const known = AXES.some((each) => each.name === axisKind(name).name);
   if (known) {
     const { title, unit, digits } = axisKind(name);
@@ -32,12 +38,3 @@ export const withUnit = (name: string, value: number): string => {
   const { unit, show } = wordsOf(name);
   return `${show(value)} ${unit}`.trim();
 };
-
-/** A number of a robot's file by its path, such as `robot.calf.length`; null where there is none. */
-export function numberOf(robot: unknown, name: string): number | null {
-  let at: unknown = robot;
-  for (const part of name.replace(/^robot\./, "").split(".")) {
-    at = at && typeof at === "object" ? (at as Record<string, unknown>)[part] : undefined;
-  }
-  return typeof at === "number" ? at : null;
-}

@@ -45,7 +45,8 @@ function Bar() {
         <i style={{ width: `${fixed(share * 100, 1)}%` }} />
       </div>
       <p class="sub">
-        {count(state.done)} of {count(state.total)} cells; {words(state.state, state.eta)}
+        {count(state.done)} of {count(state.total)} cells;{" "}
+        {state.stage || remaining(state.state, state.eta, "what was computed stays")}
       </p>
       {state.outdated && (
         <p class="sub">
@@ -59,9 +60,10 @@ function Bar() {
 
 export const count = (n: number) => n.toLocaleString("en-US");
 
-function words(state: string, eta: number | null): string {
+/** What is left of it, in words. */
+export function remaining(state: string, eta: number | null, stays: string): string {
   if (state === "queued") return "waiting for its turn";
-  if (state === "cancelled") return "paused, what was computed stays";
+  if (state === "cancelled") return `paused, ${stays}`;
   if (state === "done") return "done";
   if (state === "failed") return "stopped";
   return eta === null ? "measuring the pace" : `${left(eta)} left`;

@@ -1,40 +1,189 @@
-"""Design searches that were carried out on this machine, with what they have found so far."""
+"""Searches for designs: start one, see what it has found so far, stop it, remove it."""
 
 from __future__ import annotations
 
 import asyncio
 import hashlib
-from typing import Annotated
+from functools import partial
+from typing import Annotated, Any
 
+import orjson
 from fastapi import APIRouter, Path, Request, Response
 
-from stairwright.api.deps import Limit, Offset, Service
-from stairwright.api.problems import describe, not_found
+from stairwright.api.deps import (
+    JSON_BODY,
+    Idempotent,
+    Limit,
+    Offset,
+    Owner,
+    Service,
+    resolve_robot,
+    resolve_terrain,
+)
+from stairwright.api.problems import FieldError, Problem, describe, not_found
 from stairwright.api.responses import fresh_json, models_json, not_modified
+from stairwright.api.services import Services
+from stairwright.api.study_bodies import DesignAnswer, DesignDocument
+from stairwright.documents import parse
+from stairwright.studies.design import resolved_design
+from stairwright.studies.design_document import Design
 from stairwright.studies.design_result import DesignResult
-from stairwright.studies.design_shelf import DesignSummary, kept_results, read_result
+from stairwright.studies.design_shelf import (
+    DesignSummary,
+    kept_results,
+    read_result,
+    summary_of,
+)
+from stairwright.studies.service import Following
+from stairwright.studies.version import engine_of
+
+from .studies import be_sure_of_packages
 
 router = APIRouter(prefix="/designs", tags=["studies"])
 Id = Annotated[str, Path(max_length=80, pattern=r"^d-[0-9a-f]+$", examples=["d-0123456789abcdef"])]
 
 
-@router.get("", response_model=list[DesignSummary])
+@router.post(
+    "",
+    status_code=202,
+    response_model=DesignDocument,
+    dependencies=[JSON_BODY],
+    responses=describe(409, 415, 429, 501, 503),
+)
+async def post_design(services: Service, owner: Owner, body: Design, once: Idempotent) -> Response:
+    """Search for the best designs, or go on with it: the same document is the same search.
+
+    What it has found by then is at its place, the link `self`.
+    """
+    be_sure_of_packages(services)
+    design = await asyncio.to_thread(_resolved, services, body)
+    following = await services.studies.submit_design(design, owner)
+    once.result = following.record.id
+    shown = await asyncio.to_thread(_document, services, following)
+    headers = {"location": shown.links["self"], "retry-after": "1"}
+    return Response(shown.model_dump_json(), 202, headers=headers, media_type="application/json")
+
+
+def _resolved(services: Services, body: Design) -> Design:
+    terrain, robot = partial(resolve_terrain, services), partial(resolve_robot, services)
+    budget = services.settings.study_cells
+    try:
+        return resolved_design(body, terrain, robot, budget, "STAIRWRIGHT_STUDY_CELLS")
+    except Problem as problem:  # a name that is unknown; it stands in `ask`
+        errors = [FieldError(field=f"ask.{e.field}", message=e.message) for e in problem.errors]
+        raise Problem(
+            problem.status, f"ask.{problem.detail}", kind=problem.kind, errors=errors
+        ) from None
+
+
+@router.get("", response_model=list[DesignDocument])
 async def list_designs(
     request: Request, services: Service, limit: Limit = 100, offset: Offset = 0
 ) -> Response:
-    """Searches of `stairwright design` in this data folder, newest first; those at work too."""
-    found = await asyncio.to_thread(kept_results, services.store.studies.folder)
+    """Searches of this service and of `stairwright design` in its data folder, newest first."""
+    found = await asyncio.to_thread(_all, services)
     shown = found[offset : offset + limit]
     return models_json(request, shown, total=len(found), limit=limit, offset=offset)
 
 
-@router.get("/{design_id}", response_model=DesignResult, responses=describe(404))
+def _all(services: Services) -> list[DesignDocument]:
+    kept = {each.id: each for each in kept_results(services.store.studies.folder)}
+    ours = {each.record.id: each for each in services.studies.searches()}
+    begun = {
+        name: summary_of(_nothing_yet(each), each.record.created)
+        for name, each in ours.items()
+        if name not in kept
+    }
+    shown = [_shown(each, ours.get(name)) for name, each in (kept | begun).items()]
+    return sorted(shown, key=lambda each: -each.changed)
+
+
+@router.get("/{design_id}", response_model=DesignAnswer, responses=describe(404))
 async def get_design(request: Request, services: Service, design_id: Id) -> Response:
-    """Every design that was tried so far, and the best ones with their robots."""
+    """Every design that was tried so far, the best ones with their robots, and how far it is."""
     content = await asyncio.to_thread(read_result, services.store.studies.folder, design_id)
-    if content is None:
-        raise not_found("design search", design_id)
-    digest = hashlib.sha256(content).hexdigest()
+    following = await services.studies.find(design_id)
+    if content is None and following is None:
+        raise not_found("search for designs", design_id)
+    answer = await asyncio.to_thread(_answer, content, following)
+    digest = hashlib.sha256(answer).hexdigest()
     if not_modified(request, f'"{digest[:32]}"'):
         return Response(status_code=304)
-    return await fresh_json(request, content, digest)
+    return await fresh_json(request, answer, digest)
+
+
+@router.post("/{design_id}/cancel", responses=describe(404, 409))
+async def cancel_design(services: Service, design_id: Id) -> DesignDocument:
+    """Stop a search; what it has found stays, and posting it again goes on with it."""
+    following = await services.studies.find(design_id)
+    if following is None:
+        if await asyncio.to_thread(services.store.studies.path(design_id).exists):
+            raise Problem(
+                409, "this search is of `stairwright design`: stop it there", kind="other"
+            )
+        raise not_found("search for designs", design_id)
+    await services.studies.cancel(following)
+    return await asyncio.to_thread(_document, services, following)
+
+
+@router.delete("/{design_id}", status_code=204, responses=describe(404))
+async def delete_design(services: Service, design_id: Id) -> None:
+    """Remove a search with all that it has tried."""
+    following, shelf = await services.studies.find(design_id), services.store.studies
+    if following is not None:
+        await services.studies.delete(following)
+    elif await asyncio.to_thread(shelf.path(design_id).exists):
+        await asyncio.to_thread(shelf.delete, design_id)
+    else:
+        raise not_found("search for designs", design_id)
+
+
+def _document(services: Services, following: Following) -> DesignDocument:
+    """A search of ours, as it is now."""
+    content = read_result(services.store.studies.folder, following.record.id)
+    known = orjson.loads(content) if content else _nothing_yet(following)
+    return _shown(summary_of(known, following.record.created), following)
+
+
+def _shown(summary: DesignSummary, following: Following | None) -> DesignDocument:
+    return DesignDocument(**dict(summary), **_state(summary, following))
+
+
+def _answer(content: bytes | None, following: Following | None) -> bytes:
+    if content is not None:
+        known = orjson.loads(content)
+    else:
+        assert following is not None
+        known = _nothing_yet(following)
+    return orjson.dumps(known | _state(summary_of(known, 0.0), following))
+
+
+def _nothing_yet(following: Following) -> dict[str, Any]:
+    result = DesignResult(
+        id=following.record.id, design=_asked(following), complete=False, candidates=[]
+    )
+    return result.model_dump(mode="json")
+
+
+def _asked(following: Following) -> Design:
+    return parse(Design, orjson.loads(following.record.document))
+
+
+def _state(summary: DesignSummary, following: Following | None) -> dict[str, Any]:
+    """How far a search is; without `following` it is of `stairwright design`."""
+    here = f"/api/v1/designs/{summary.id}"
+    links = {"self": here, "cancel": f"{here}/cancel"}
+    share = min(1.0, summary.tried / summary.designs)
+    if following is None:
+        state = {"state": "done" if summary.complete else None, "progress": share, "eta": None}
+        return state | {"stage": "", "outdated": False, "error": None, "links": links}
+    job = following.job
+    return {
+        "state": job.state,
+        "progress": round(min(1.0, max(share, following.share)), 4),  # counts what is replayed, too
+        "eta": following.eta,
+        "stage": following.stage,
+        "outdated": following.record.engine != engine_of(_asked(following).ask),
+        "error": dict(job.error) if job.error else None,
+        "links": links,
+    }

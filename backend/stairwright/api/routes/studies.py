@@ -7,14 +7,12 @@ import hashlib
 import time
 from collections.abc import AsyncIterator
 from functools import partial
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import orjson
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
 
-from stairwright.api.bodies import AxisDocument, CellDocument, StudyDocument
 from stairwright.api.deps import (
     JSON_BODY,
     Idempotent,
@@ -28,11 +26,13 @@ from stairwright.api.deps import (
 from stairwright.api.problems import Problem, describe, not_found
 from stairwright.api.responses import models_json
 from stairwright.api.services import EXPORT_DEADLINE, Services
+from stairwright.api.study_bodies import AxisDocument, CellDocument, StudyDocument
 from stairwright.documents import parse
 from stairwright.errors import InputError
 from stairwright.studies.document import Study, check_budget
-from stairwright.studies.formats import FORMATS, MISSING, NEEDED
+from stairwright.studies.formats import FORMATS
 from stairwright.studies.grid import point
+from stairwright.studies.packages import absent, missing
 from stairwright.studies.question import Questions, check_axes
 from stairwright.studies.resolve import resolve
 from stairwright.studies.service import Following
@@ -78,7 +78,8 @@ def study_document(following: Following) -> StudyDocument:
         done=following.done,
         total=following.total,
         progress=1.0 if job.state == "done" else round(min(1.0, following.done / total), 4),
-        eta=_eta(following),
+        eta=following.eta,
+        stage=following.stage,
         created=record.created,
         outdated=record.engine != engine_of(study),
         error=dict(job.error) if job.error else None,
@@ -91,11 +92,6 @@ def study_document(following: Following) -> StudyDocument:
             "export": f"{here}/export",
         },
     )
-
-
-def _eta(following: Following) -> float | None:
-    running = following.job.state == "running"
-    return round(following.left, 1) if running and following.left is not None else None
 
 
 @router.post(
@@ -116,14 +112,23 @@ async def post_study(
 
     Its cells are followed at the link `events`; a finished one is there at once.
     """
-    if missing := [name for name in NEEDED if find_spec(name) is None]:
-        raise Problem(501, f"{MISSING}; not there: {', '.join(missing)}", kind="missing")
+    be_sure_of_packages(services)
     study = await asyncio.to_thread(_resolved, services, body)
     following = await services.studies.submit(study, owner, retry=retry)
     once.result = following.record.id
     shown = study_document(following)
     headers = {"location": shown.links["self"], "retry-after": "1"}
     return Response(shown.model_dump_json(), 202, headers=headers, media_type="application/json")
+
+
+def be_sure_of_packages(services: Services) -> None:
+    """Packages that studies need are there, or are installed before the first one.
+
+    Raises:
+        Problem: 501 with what to install.
+    """
+    if not services.settings.studies_setup and (names := absent()):
+        raise Problem(501, f"{missing()}; not there: {', '.join(names)}", kind="missing")
 
 
 def _resolved(services: Services, body: Study) -> Study:
@@ -154,7 +159,7 @@ async def find_study(
         Problem: 404 if there is none.
     """
     following = await services.studies.find(study_id)
-    if following is None:
+    if following is None or following.record.is_search:
         raise not_found("study", study_id)
     return following
 

@@ -1,0 +1,145 @@
+"""Searches for designs over REST: started, followed, cancelled, gone on with, removed."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
+from typing import Any
+
+import httpx
+import pytest
+
+import stairwright as sw
+from tests.conftest import Server
+
+from .test_design import TORQUE, _document
+
+pytestmark = pytest.mark.slow  # a server of its own
+
+ENDED = ("done", "failed", "cancelled")
+STEPS = {"robot": "a1_wheeled", "axes": [{"name": "step.height", "values": [0.1, 0.2]}]}
+SMALL = _document(
+    ask=STEPS,
+    vary=[{"name": TORQUE, "between": [2, 40]}],
+    aims=[{"minimise": TORQUE}],
+    designs=6,
+    generation=3,
+)
+LONG = SMALL | {"designs": 400, "generation": 2, "seed": 1}
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A server of these tests' own, with one process for studies: it needs no cluster."""
+    from tests.conftest import serve
+
+    variables = {"STAIRWRIGHT_STUDY_WORKERS": "1", "STAIRWRIGHT_STUDY_CELLS": "2000"}
+    with serve(tmp_path_factory.mktemp("designs") / "data", **variables) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def api(service: Server) -> Iterator[httpx.Client]:
+    with httpx.Client(base_url=f"{service.url}/api/v1", timeout=60) as client:
+        yield client
+
+
+def _listed(api: httpx.Client, name: str) -> dict[str, Any]:
+    found: dict[str, Any] = next(each for each in api.get("/designs").json() if each["id"] == name)
+    return found
+
+
+def _until(api: httpx.Client, name: str, tried: int) -> dict[str, Any]:
+    """Wait until it has tried so many."""
+    while (now := _listed(api, name))["tried"] < tried:
+        assert now["state"] in ("queued", "running"), now
+        assert now["tried"] <= now["progress"] * now["designs"] + 0.01
+        time.sleep(0.05)
+    return now
+
+
+def test_a_search_finds_what_the_command_line_finds(api: httpx.Client) -> None:
+    answer = api.post("/designs", json=SMALL)
+    assert answer.status_code == 202, answer.text
+    name = answer.json()["id"]
+    assert answer.headers["location"] == f"/api/v1/designs/{name}"
+    assert api.get(f"/designs/{name}").status_code == 200  # before it has found anything
+    while (found := api.get(f"/designs/{name}").json())["state"] not in ENDED:
+        time.sleep(0.1)
+    assert (found["state"], found["progress"], found["complete"]) == ("done", 1.0, True)
+    truth = sw.design(SMALL, workers=1)
+    assert truth.id == name
+    assert sw.DesignResult.model_validate(found) == truth
+    again = api.post("/designs", json=found["design"]).json()
+    assert (again["id"], again["state"], again["tried"]) == (name, "done", 6)
+    assert name not in [each["id"] for each in api.get("/studies").json()]
+    assert api.get(f"/studies/{name}").status_code == 404
+
+
+def test_cancelled_gone_on_with_and_removed(api: httpx.Client) -> None:
+    name = api.post("/designs", json=LONG).json()["id"]
+    _until(api, name, 2)
+    assert api.post(f"/designs/{name}/cancel").json()["state"] == "cancelled"
+    kept = api.get(f"/designs/{name}").json()["candidates"]
+    assert api.post("/designs", json=LONG).json()["id"] == name
+    state = _until(api, name, len(kept) + 6)
+    assert (state["state"], state["designs"]) == ("running", 400)
+    assert state["eta"] > 0.0
+    more = api.get(f"/designs/{name}").json()["candidates"]
+    assert [each["values"] for each in more[: len(kept)]] == [each["values"] for each in kept]
+    assert api.delete(f"/designs/{name}").status_code == 204
+    assert api.get(f"/designs/{name}").status_code == 404
+    assert api.post(f"/designs/{name}/cancel").status_code == 404
+
+
+@pytest.mark.parametrize(
+    ("fields", "field"),
+    [
+        ({"designs": 100_000}, "designs"),
+        ({"designs": 10**12}, "designs"),
+        ({"vary": [{"name": "__class__.x", "between": [1, 2]}]}, "vary.0.name"),
+        ({"vary": [{"name": "robot.tail", "between": [1, 2]}], "aims": [{"minimise": "mass"}]},
+         "vary.0.between"),
+        ({"vary": [{"name": TORQUE, "between": [1, "NaN"]}]}, "vary.0.between"),
+        ({"vary": [{"name": f"robot.{k}.x", "between": [1, 2]} for k in range(100)]}, "vary"),
+        ({"aims": []}, "aims"),
+        ({"aims": [{"minimise": "beauty"}]}, "aims.0"),
+        ({"ask": STEPS | {"robot": "no such robot"}}, "ask.robot"),
+        ({"ask": STEPS | {"terrain": "../../etc/passwd"}}, "ask.terrain"),
+        ({"ask": STEPS | {"axes": [{"name": "friction", "from": 0, "to": 1, "count": 9999}]}},
+         "designs"),
+        ({"path": "/tmp/x"}, "path"),
+    ],
+)  # fmt: skip
+def test_hostile_documents_are_refused_with_the_field(
+    api: httpx.Client, fields: dict[str, Any], field: str
+) -> None:
+    answer = api.post("/designs", json=SMALL | fields)
+    assert answer.status_code == 422, answer.text
+    assert answer.json()["errors"][0]["field"].startswith(field), answer.text
+
+
+def test_the_budget_is_the_services(api: httpx.Client) -> None:
+    answer = api.post("/designs", json=SMALL | {"designs": 1001})
+    assert answer.status_code == 422
+    assert "2,002 cells are more than the budget of 2,000" in answer.json()["detail"]
+    assert "STAIRWRIGHT_STUDY_CELLS" in answer.json()["detail"]
+
+
+def test_the_server_is_killed_and_the_search_goes_on(
+    start_server: Callable[..., AbstractContextManager[Server]],
+) -> None:
+    variables = {"STAIRWRIGHT_STUDY_WORKERS": "1"}
+    with start_server(**variables) as server:
+        api = httpx.Client(base_url=f"{server.url}/api/v1", timeout=60)
+        name = api.post("/designs", json=LONG).json()["id"]
+        before = _until(api, name, 4)["tried"]
+        server.process.send_signal(signal.SIGKILL)
+        server.process.wait()
+    time.sleep(1.0)
+    with start_server(**variables) as server:
+        api = httpx.Client(base_url=f"{server.url}/api/v1", timeout=60)
+        _until(api, name, before + 4)
+        assert _listed(api, name)["state"] == "running"
