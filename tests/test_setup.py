@@ -239,6 +239,32 @@ def test_a_step_runs_again_only_when_what_it_read_has_changed(
     assert needed("two"), "a failed step must not count as done"
 
 
+def test_what_studies_need_stays_and_nothing_is_installed_twice(
+    dev: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`uv pip sync` removes what no lock names: it is given theirs once they were installed."""
+    asked: list[list[str]] = []
+    monkeypatch.setattr(dev, "VENV", tmp_path)
+    monkeypatch.setattr(dev, "venv_python", lambda: "3.11")
+    monkeypatch.setattr(dev, "setup_uv", lambda: "uv")
+    monkeypatch.setattr(dev, "run", lambda *command: asked.append([str(each) for each in command]))
+    monkeypatch.setattr(dev, "pip_install", lambda *words: asked.append([*map(str, words)]))
+
+    def locks_of_set_up() -> list[str]:
+        asked.clear()
+        dev.setup_python(dev.LOCKS[:1])
+        return [Path(each).name for each in asked[0] if each.endswith(".lock")] if asked else []
+
+    assert locks_of_set_up() == ["requirements.lock"]
+    assert locks_of_set_up() == []
+    dev.setup_studies()
+    assert asked[0] == ["-r", str(ROOT / "requirements-studies.lock")]
+    assert locks_of_set_up() == []
+    (tmp_path / ".locked").write_text("another lock than today's")
+    assert locks_of_set_up() == ["requirements.lock", "requirements-studies.lock"]
+    assert locks_of_set_up() == []
+
+
 def test_renaming_a_source_changes_the_hash(
     dev: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

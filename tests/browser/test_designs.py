@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -12,10 +13,10 @@ from stairwright.studies import design as designing
 from tests.conftest import TAB, serve
 from tests.studies.test_design import Rule, _document
 
-from .conftest import DESK, PHONE, Product
+from .conftest import DESK, PATIENCE, PHONE, Product
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser
+    from playwright.sync_api import Browser, Route
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -32,7 +33,7 @@ def product(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Itera
         patch.setenv("STAIRWRIGHT_DATA", str(data))
         designing.design(_document(name="small motors"))
     with (
-        serve(data) as server,
+        serve(data, STAIRWRIGHT_STUDY_WORKERS="1") as server,
         browser.new_context(**TAB, base_url=server.url) as context,
     ):
         opened = Product(context.new_page()).open()
@@ -95,3 +96,58 @@ def test_another_file_is_refused_in_words(product: Product, tmp_path: Path) -> N
     page.get_by_label("Open a result").set_input_files(other)
     page.get_by_text("other.json is no result of a design search").wait_for()
     assert page.locator(".design-front .best").count() > 1
+
+
+def test_a_new_search_is_asked_watched_paused_and_gone_on_with(product: Product) -> None:
+    page = product.page
+    refusal = page.locator(".prog-map [role=alert]")
+    page.get_by_label("Calf length from").fill("0.3")
+    page.get_by_role("button", name="Run", exact=True).click()
+    refusal.get_by_text("Calf length: the low end 0.3 must lie below").wait_for()
+    page.get_by_label("Calf length from").fill("0.18")
+    page.get_by_label("Number of designs").fill("99000")
+    page.get_by_role("button", name="Run", exact=True).click()
+    refusal.get_by_text("Designs: 99,000 cells are more than the budget").wait_for()
+    page.get_by_label("Number of designs").fill("900")
+    page.get_by_label("Aim 2").select_option("less duration")
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.get_by_text("Design front").get_by_text("less leg torque, less time").wait_for()
+    page.get_by_role("button", name="Pause").click()
+    page.get_by_text("paused, what was tried stays").wait_for(timeout=PATIENCE)
+    page.get_by_role("button", name="Go on").click()
+    page.locator(".searches [aria-pressed=true]").get_by_text("at work").wait_for()
+    page.locator(".design-front .best").first.wait_for(timeout=PATIENCE)
+    page.get_by_text(re.compile("of 900 designs; about .* left")).wait_for(timeout=PATIENCE)
+    page.get_by_role("button", name="Pause").click()
+    page.get_by_role("button", name="Go on").wait_for()
+
+
+def test_the_form_asks_what_it_shows(product: Product) -> None:
+    """A step's height among the aims takes the place of the drawn terrain; nothing is started."""
+    page = product.page
+    sent: list[dict[str, Any]] = []
+
+    def refuse(route: Route) -> None:
+        if route.request.method != "POST":
+            route.fallback()
+            return
+        sent.append(route.request.post_data_json)
+        route.fulfill(status=422, json={"errors": [{"field": "aims.2", "message": "no"}]})
+
+    page.get_by_label("Thigh length", exact=False).first.check()
+    page.get_by_label("Thigh length to").fill("0.23")
+    page.get_by_role("radio", name="Trials").click()
+    page.get_by_label("Number of trials").fill("7")
+    page.get_by_label("Aim 3").select_option("more step.height")
+    page.get_by_text("on one step").wait_for()
+    page.route("**/api/v1/designs", refuse)
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.locator(".prog-map [role=alert]").get_by_text("Aim 3: no").wait_for()
+    page.unroute("**/api/v1/designs")
+    (document,) = sent
+    assert document["ask"]["trials"] == {"count": 7}
+    assert "terrain" not in document["ask"]
+    assert {"name": "robot.thigh.length", "between": [0.16, 0.23]} in document["vary"]
+    assert document["aims"][2] == {
+        "maximise": "step.height", "between": [0.1, 1], "tolerance": 0.02
+    }  # fmt: skip

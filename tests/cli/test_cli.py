@@ -179,6 +179,15 @@ def test_bad_input_is_status_2_and_one_line(arguments: tuple[str, ...]) -> None:
     assert run(*arguments, status=2) == ""
 
 
+@pytest.mark.parametrize("command", ["study", "robot import", "certify"])
+def test_an_unknown_option_leads_to_the_help_of_its_command(command: str) -> None:
+    told = io.StringIO()
+    with contextlib.redirect_stderr(told), pytest.raises(SystemExit):
+        main([*command.split(), "a file", "--nonsense"])
+    assert "unrecognized arguments: --nonsense" in told.getvalue()
+    assert told.getvalue().endswith(f"(see stairwright {command} --help)\n")
+
+
 def test_a_plan_that_is_made_already_takes_no_weights(plan: Path) -> None:
     run("rollout", plan, "--weight", "speed=0.2", status=2)
 

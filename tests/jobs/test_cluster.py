@@ -18,7 +18,7 @@ import pytest
 from distributed import Client, LocalCluster
 
 import stairwright as sw
-from stairwright.errors import InputError
+from stairwright.errors import Cancelled, InputError
 from stairwright.jobs.cluster import simulators, tasks
 from stairwright.jobs.cluster.simulators import DaskSimulators
 from stairwright.jobs.cluster.worker import OtherVersion
@@ -138,6 +138,25 @@ def test_who_cancels_stops_the_workers(dask_cluster: LocalCluster, tmp_path: Pat
                     await asyncio.sleep(0.05)
 
     tell(dask_cluster.scheduler_address, tmp_path, story)
+
+
+def test_trials_stop_while_one_is_at_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    shares: list[float] = []
+
+    class Unwanted:
+        def __init__(self, order: tasks.Order) -> None: ...
+
+        def progress(self, share: float) -> None:
+            shares.append(share)
+            raise Cancelled("nobody waits")
+
+    monkeypatch.setattr(tasks, "News", Unwanted)
+    question = {"count": 2, "seed": 0, "ranges": {}, "friction": 0.6, "controller": {}}
+    order = tasks.Order("run", "topic", "key", tasks.rollout_engine(), deadline=60.0)
+    with pytest.raises(Cancelled):
+        tasks.try_part(sw.plan(CURB).model_dump_json().encode(), question, 0, 2, order)
+    assert len(shares) == 1
+    assert shares[0] < 0.4  # not after the first of the two
 
 
 def _at_work(dask_worker: Any) -> bool:

@@ -17,6 +17,7 @@ _OPERATIONS = {
     "get_study_document": "get_question",
     "healthz": "get_health",
     "job_events": "follow_job",
+    "post_design": "create_design",
     "post_margins": "create_margins",
     "post_plan": "create_plan",
     "post_rollout": "create_rollout",
@@ -52,7 +53,7 @@ KINDS: Mapping[int, tuple[str, ...]] = {
     403: ("origin", "read-only"),
     404: ("not-found",),
     408: ("overdue",),
-    409: ("cancelled", "full", "idempotency"),
+    409: ("cancelled", "full", "idempotency", "not-ours"),
     413: ("too-large",),
     415: ("media-type",),
     421: ("host",),
@@ -62,8 +63,8 @@ KINDS: Mapping[int, tuple[str, ...]] = {
     500: ("bug",),
     501: ("missing",),
     503: (
-        "deadline", "failed", "interrupted", "memory", "no-scene", "other-version", "starting",
-        "unavailable", "unreachable", "worker-died",
+        "deadline", "failed", "interrupted", "memory", "missing", "no-scene", "other-version",
+        "starting", "unavailable", "unreachable", "worker-died",
     ),
 }  # fmt: skip
 URN = "urn:stairwright:problem:"
@@ -80,6 +81,7 @@ _HEADERS: dict[str, dict[str, Any]] = {
     "WWW-Authenticate": {"description": "Bearer", "schema": _TEXT},
 }
 _MADE = {  # by operation and status
+    ("create_design", "202"): ("Location", "Retry-After"),
     ("create_margins", "202"): ("Location", "Retry-After"),
     ("create_plan", "200"): ("ETag", "Content-Location"),
     ("create_rollout", "202"): ("Location", "Retry-After"),

@@ -120,8 +120,8 @@ class TrialSet:
         draws = draw(self.ranges, self.count, self.seed)
         return [(self.seed + i, deviation) for i, deviation in enumerate(draws)]
 
-    def carry_out(self, job: Job) -> Trial:
-        """One of `jobs`.
+    def carry_out(self, job: Job, progress: Callable[[float], None] | None = None) -> Trial:
+        """One of `jobs`; `progress` as of `rollout`.
 
         Raises:
             InputError: If the plan has no poses.
@@ -133,6 +133,7 @@ class TrialSet:
             controller=self.controller,
             seed=seed,
             disturbance=disturbance,
+            progress=progress,
             record_hz=5.0,
             keep_plan=False,
         )

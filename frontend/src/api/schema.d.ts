@@ -765,7 +765,7 @@ export interface paths {
          *
          *     What it has found by then is at its place, the link `self`.
          */
-        post: operations["post_design"];
+        post: operations["create_design"];
         delete?: never;
         options?: never;
         head?: never;
@@ -4249,7 +4249,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -4469,7 +4469,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -4573,7 +4573,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -4727,7 +4727,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            /** @description Conflict: `cancelled`, `full`, `idempotency`, `not-ours` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -4932,7 +4932,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -5165,7 +5165,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -5245,7 +5245,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -5399,7 +5399,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            /** @description Conflict: `cancelled`, `full`, `idempotency`, `not-ours` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -5647,7 +5647,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            /** @description Conflict: `cancelled`, `full`, `idempotency`, `not-ours` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -5693,7 +5693,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -6045,7 +6045,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -6201,7 +6201,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            /** @description Conflict: `cancelled`, `full`, `idempotency`, `not-ours` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -6247,7 +6247,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -6596,7 +6596,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -6752,7 +6752,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            /** @description Conflict: `cancelled`, `full`, `idempotency`, `not-ours` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -6798,7 +6798,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -7197,7 +7197,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            /** @description Conflict: `cancelled`, `full`, `idempotency`, `not-ours` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -7243,7 +7243,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -7961,7 +7961,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            /** @description Conflict: `cancelled`, `full`, `idempotency`, `not-ours` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -8016,7 +8016,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -8419,7 +8419,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -8517,7 +8517,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -8622,7 +8622,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -8801,7 +8801,7 @@ export interface operations {
             };
         };
     };
-    post_design: {
+    create_design: {
         parameters: {
             query?: never;
             header?: {
@@ -8822,6 +8822,8 @@ export interface operations {
             /** @description Successful Response */
             202: {
                 headers: {
+                    Location: components["headers"]["Location"];
+                    "Retry-After": components["headers"]["Retry-After"];
                     [name: string]: unknown;
                 };
                 content: {
@@ -8856,7 +8858,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            /** @description Conflict: `cancelled`, `full`, `idempotency`, `not-ours` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -8911,7 +8913,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];
@@ -9133,7 +9135,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            /** @description Conflict: `cancelled`, `full`, `idempotency`, `not-ours` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -9211,7 +9213,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Conflict: `cancelled`, `full`, `idempotency` */
+            /** @description Conflict: `cancelled`, `full`, `idempotency`, `not-ours` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -9248,7 +9250,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["ProblemDocument"];
                 };
             };
-            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
+            /** @description Service Unavailable: `deadline`, `failed`, `interrupted`, `memory`, `missing`, `no-scene`, `other-version`, `starting`, `unavailable`, `unreachable`, `worker-died` */
             503: {
                 headers: {
                     "Retry-After": components["headers"]["Retry-After"];

@@ -28,7 +28,7 @@ const LENGTH = { unit: "m", digits: 2, tolerance: 0.02 };
 
 /** Of these the search finds the last value that a design passes. */
 const BORDERS: readonly AimChoice[] = [
-  { ...more("step.height", "step height"), border: { ...LENGTH, from: 0.1, to: 0.6 } },
+  { ...more("step.height", "step height"), border: { ...LENGTH, from: 0.1, to: 1 } },
   { ...more("stairs.rise", "rise of stairs"), border: { ...LENGTH, from: 0.1, to: 0.5 } },
   {
     ...more("payload", "payload"),

@@ -110,14 +110,17 @@ export function setBorder(choice: AimChoice, range: Range): void {
   change({ ranges: { ...form.peek().ranges, [choice.key]: range } });
 }
 
+/** What an aim measures instead of the drawn terrain, if one does. */
 const measured = () =>
-  aims.value.map((each) => each.aim.maximise?.split(".")[0]).find((head) => head !== "payload");
+  aims.value
+    .map((each) => each.aim.maximise?.split(".")[0])
+    .find((head) => head === "step" || head === "stairs");
 
 /** Which terrain is meant, in a few words. */
 export function ground(): string {
   const head = measured();
-  if (head === "step") return "one step";
-  return head === "stairs" ? "stairs up" : drawing.value.name;
+  if (!head) return drawing.value.name;
+  return head === "step" ? "one step" : "stairs up";
 }
 
 /** The search; null while the page has nothing to plan with. */
@@ -126,7 +129,6 @@ export function documentOf(): Record<string, unknown> | null {
   if (!page) return null;
   const { compute, trials, designs } = form.peek();
   const { terrain, friction, ...rest } = page;
-  const measures = ["step", "stairs"].includes(measured() ?? "");
   const searched = aims.peek().some((each) => each.aim.minimise === "friction");
   const names = aims.peek().map((each) => lowerFirst(each.title));
   return {
@@ -137,7 +139,7 @@ export function documentOf(): Record<string, unknown> | null {
       axes: [],
       compute,
       diagnose: "none", // of designs that fail it is enough to know that they do
-      ...(measures ? {} : { terrain }),
+      ...(measured() ? {} : { terrain }),
       ...(searched ? {} : { friction }),
       ...(compute === "trials" ? { trials: { count: trials } } : {}),
     },

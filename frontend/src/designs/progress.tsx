@@ -27,7 +27,7 @@ export function SearchProgress() {
         )}
       </div>
       {refusal.value && (
-        <p class="error" role="alert">
+        <p class="error" role="alert" ref={(shown) => shown?.scrollIntoView({ block: "nearest" })}>
           {refusal.value}
         </p>
       )}

@@ -175,10 +175,7 @@ function Ends({ title, unit, digits, range, set }: EndsProps) {
       {field("to", "to", 0)}
       <span class="unit">{unit}</span>
       {range.tolerance !== undefined && (
-        <>
-          <span>within</span>
-          {field("tolerance", "within", 10 ** -digits)}
-        </>
+        <span class="within">within {field("tolerance", "within", 10 ** -digits)}</span>
       )}
     </div>
   );

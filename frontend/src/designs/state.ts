@@ -60,10 +60,18 @@ function say(error: unknown): void {
   trouble.value = error instanceof Error ? error.message : String(error);
 }
 
+/** The search that was asked for last: answers about others come too late. */
+let wanted: string | null = null;
+
 export async function openSearch(id: string): Promise<void> {
+  wanted = id;
+  await read(id);
+}
+
+async function read(id: string): Promise<void> {
   try {
-    const answer = await call("GET", `designs/${encodeURIComponent(id)}`);
-    show((await answer.json()) as Search);
+    const found = await callJson<Search>("GET", `designs/${encodeURIComponent(id)}`);
+    if (wanted === id) show(found);
   } catch (error) {
     say(error);
   }
@@ -74,6 +82,7 @@ export async function openFile(file: File): Promise<void> {
   try {
     const found = JSON.parse(await file.text()) as Partial<Search>;
     if (found.schema !== "stairwright/design-result/1") throw new TypeError();
+    wanted = found.id ?? null;
     show(found as Search);
   } catch {
     trouble.value = `${file.name} is no result of a design search (stairwright/design-result/1).`;
@@ -137,19 +146,19 @@ const SOON = 1000;
 export function followSearches(): () => void {
   let timer: ReturnType<typeof setTimeout> | undefined;
   let left = false;
-  const read = async () => {
+  const look = async () => {
     try {
       await readList();
       const now = search.peek();
       const news = summaries.peek().find((each) => each.id === now?.id);
-      if (!now && summaries.peek()[0]) await openSearch(summaries.peek()[0]!.id);
-      else if (now && news && news.tried !== now.candidates.length) await openSearch(news.id);
+      if (!wanted && summaries.peek()[0]) await openSearch(summaries.peek()[0]!.id);
+      else if (now && news && news.tried !== now.candidates.length) await read(news.id);
     } catch (error) {
       report(error);
     }
-    if (!left) timer = setTimeout(read, searching.peek() ? SOON : EVERY);
+    if (!left) timer = setTimeout(look, searching.peek() ? SOON : EVERY);
   };
-  void read();
+  void look();
   return () => {
     left = true;
     clearTimeout(timer);

@@ -119,7 +119,7 @@ async def cancel_design(services: Service, design_id: Id) -> DesignDocument:
     if following is None:
         if await asyncio.to_thread(services.store.studies.path(design_id).exists):
             raise Problem(
-                409, "this search is of `stairwright design`: stop it there", kind="other"
+                409, "this search is of `stairwright design`: stop it there", kind="not-ours"
             )
         raise not_found("search for designs", design_id)
     await services.studies.cancel(following)

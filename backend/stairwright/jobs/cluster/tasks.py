@@ -131,11 +131,16 @@ def try_part(
         InputError, Cancelled, OtherVersion: As `roll_out`.
     """
     check_version(rollout_engine(), order.engine)
-    asked, news, found = _trials(content, question), News(order), []
+    asked, news = _trials(content, question), News(order)
+    found: list[Trial] = []
+
+    def progress(share: float) -> None:
+        news.progress((len(found) + share) / (last - first))
+
     for i in range(first, last):
         with watch.over(order.deadline):
-            found.append(asked.carry_out(asked.jobs[i]))
-        news.progress((i + 1 - first) / (last - first))
+            found.append(asked.carry_out(asked.jobs[i], progress))
+        progress(0.0)
     return found
 
 
