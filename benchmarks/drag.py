@@ -109,6 +109,15 @@ def _row(work: str, measured: list[float], note: str) -> Row:
     return Row(work, "stairwright", median, p95, note=note)
 
 
+def chromium(named: str | None) -> str | None:
+    """Where the browser is: as named, as the environment says, or as it is usually called."""
+    return (
+        named
+        or os.environ.get("STAIRWRIGHT_BROWSER")
+        or next(filter(None, map(shutil.which, BROWSERS)), None)
+    )
+
+
 @contextlib.contextmanager
 def own_server() -> Iterator[str]:
     """A server with a data folder of its own."""
@@ -137,12 +146,10 @@ def run(url: str | None = None, seconds: float = 6.0, browser: str | None = None
     """All terrains, on the server at `url` or on one of its own."""
     from playwright.sync_api import sync_playwright
 
-    named = browser or os.environ.get("STAIRWRIGHT_BROWSER")
-    executable = named or next(filter(None, map(shutil.which, BROWSERS)), None)
     server = contextlib.nullcontext(url) if url else own_server()
     with server as address, sync_playwright() as playwright:
         launched = playwright.chromium.launch(
-            executable_path=executable, args=["--no-sandbox", "--disable-dev-shm-usage"]
+            executable_path=chromium(browser), args=["--no-sandbox", "--disable-dev-shm-usage"]
         )
         rows = [
             row

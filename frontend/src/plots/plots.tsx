@@ -1,6 +1,6 @@
 /** The row of plots, all on one clock. */
 
-import { computed, signal } from "@preact/signals";
+import { computed } from "@preact/signals";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import { hasFailed } from "../api/types";
 import { live, livePlan } from "../state/live";
@@ -9,19 +9,10 @@ import { plannedEnd, shownRun } from "../state/playback";
 import { progress, run, runB, running, runPlan } from "../state/rollouts";
 import { compare, robot } from "../state/setup";
 import type { Tint } from "./chart";
-import { type Panel, type PanelId, type Source, timeAxis } from "./lines";
+import { type Panel, type Source, timeAxis } from "./lines";
 import { buildPanel } from "./panels";
 import { Plot } from "./plot";
-import { alonePlot, roomFor, rowWidth } from "./room";
-
-/** In the order of the row; the last ones fall away where there is no room for them. */
-export const shownPanels = signal<readonly PanelId[]>([
-  "pitch",
-  "thigh",
-  "calf",
-  "torque",
-  "margins",
-]);
+import { alonePlot, roomFor, rowWidth, shownPanels } from "./room";
 
 /** While a rollout runs, its lines grow on the plan's bands. */
 const growing = computed(() => running.value === "a");
