@@ -1,5 +1,6 @@
 /** The page: top bar, the open workspace, status line. */
 
+import { computed } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { closeCut, meshFile } from "./import/cut";
 import { DropZone } from "./import/drop-zone";
@@ -23,11 +24,11 @@ import { Toast } from "./ui/toast";
 import { openByKey, openRoom } from "./workspaces";
 
 /** In one word, for style sheets and tests. */
-function planState(): string {
+const planState = computed(() => {
   if (isEmpty.value) return "none";
   if (refusal.value) return "refused";
   return stale.value || !plan.value ? "planning" : plan.value.status;
-}
+});
 
 /** The number keys choose a workspace, all others belong to Plan while it is open. */
 function onKey(event: KeyboardEvent): void {
@@ -64,7 +65,7 @@ export function App() {
       data-max={maximised.value ?? undefined}
       data-inspector={inspectorOpen.value ? "open" : "shut"}
       data-tab={tab.value}
-      data-plan={planState()}
+      data-plan={planState}
       data-run={activity.value === "idle" ? (run.value?.outcome ?? "none") : activity.value}
     >
       {open.name === "plan" && <SkipLinks />}

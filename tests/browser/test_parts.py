@@ -1,4 +1,4 @@
-"""Parts of the page that come later: in time, without the service, and after they failed."""
+"""Parts of the page: those that come later, and the scene, which shares a thread with it."""
 
 from __future__ import annotations
 
@@ -52,3 +52,26 @@ def test_workspaces_that_were_never_open_need_no_service(product: Product) -> No
     for name, key in ROOMS.items():
         page.keyboard.press(key)
         expect(page.locator(f".app[data-workspace={name}] .room > main:visible")).to_be_visible()
+
+
+# In the scene's frame: one frame that takes 300 ms, and how long the next one waits after it.
+NEXT_FRAME = """() => new Promise(done => {
+  requestAnimationFrame(() => {
+    const begun = performance.now();
+    while (performance.now() < begun + 300);
+    const ended = performance.now();
+    requestAnimationFrame(() => done(performance.now() - ended));
+  });
+})"""
+
+
+def test_the_scene_leaves_the_page_half_of_the_time_of_a_drag(product_with_scene: Product) -> None:
+    product = product_with_scene.open()
+    frame = product.page.frame_locator("iframe").first
+    frame.locator("canvas").first.wait_for(state="attached", timeout=PATIENCE)
+    inside = next(each for each in product.page.frames if "/scene/" in each.url)
+    box = product.vertex(2).locator("rect").bounding_box()
+    assert box is not None
+    product.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    product.page.mouse.down()
+    assert inside.evaluate(NEXT_FRAME) > 250
