@@ -21,7 +21,7 @@ interface PlotProps {
 
 /** Bands and lines are laid out once; another layout needs another chart. */
 const layoutOf = (panel: Panel) =>
-  `${panel.halves.map((h) => h.map((l) => l.kind + l.color).join()).join("/")}|${panel.limit}`;
+  panel.halves.map((h) => h.map((l) => l.kind + l.color).join()).join("/");
 
 export function Plot({ panel, tint }: PlotProps) {
   const holder = useRef<HTMLDivElement>(null);

@@ -18,7 +18,6 @@ import { alonePlot, roomFor, rowWidth, shownPanels } from "./room";
 const growing = computed(() => running.value === "a");
 
 const source = computed<Source>(() => {
-  const limit = robot.value?.limit;
   const result = growing.value ? null : run.value;
   // A cancelled run stays as far as it came, until there is another.
   const part = growing.value || (!run.value && shownRun.value !== null);
@@ -28,8 +27,7 @@ const source = computed<Source>(() => {
     plan: (drive && driven) ?? plan.value,
     run: drive,
     runB: compare.value && result ? runB.value : null,
-    legLimit: limit?.leg ?? Number.NaN,
-    wheelLimit: limit?.wheel ?? Number.NaN,
+    limits: robot.value?.limits ?? null,
   };
 });
 
