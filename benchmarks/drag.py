@@ -1,12 +1,12 @@
 """How long the poses take to follow a dragged corner, in real Chromium on the real server.
 
-    python benchmarks/drag.py [--url http://localhost:8000] [--seconds 6 | --quick] [--json FILE]
+    python benchmarks/drag.py [--url http://localhost:8000] [--seconds 6 | --quick] [--scene] [--json FILE]
 
 Drags the upper corner of the 0.36 m stair and of five stairs at 60 moves a second. Per terrain:
 from the pointer's move to the end of the frame that shows its poses (median, 95th percentile), the
-frames of the drag (median, 95th percentile, the longest), and the time until the page was
-interactive. Without `--url` it starts a server of its own. The 3-D frame is left out: without a
-graphics card it would take a core of its own.
+frames of the drag (median, 95th percentile, the longest), what a move costs the thread in script,
+and the time until the page was interactive. Without `--url` it starts a server of its own. The 3-D
+frame is left out unless `--scene` asks for it: without a graphics card it takes a core of its own.
 """
 
 from __future__ import annotations
@@ -78,14 +78,24 @@ def drag(page: Page, vertex: int, seconds: float) -> dict[str, Any]:
     return found
 
 
-def measure(browser: Browser, url: str, terrain: str, vertex: int, seconds: float) -> list[Row]:
+def measure(
+    browser: Browser, url: str, terrain: str, vertex: int, seconds: float, scene: bool
+) -> list[Row]:
     """The figures of one terrain."""
     with browser.new_context(
         viewport={"width": 1440, "height": 900},
         bypass_csp=True,  # Playwright waits for functions by `eval`
     ) as context:
         page = context.new_page()
-        page.route("**/scene/**", lambda route: route.fulfill(content_type="text/html", body=""))
+        if not scene:
+            page.route("**/scene/**", lambda route: route.fulfill(content_type="text/html"))
+        devtools = context.new_cdp_session(page)
+        devtools.send("Performance.enable")
+
+        def script() -> float:
+            found = devtools.send("Performance.getMetrics")["metrics"]
+            return next(1e3 * each["value"] for each in found if each["name"] == "ScriptDuration")
+
         page.goto(url)
         page.locator("[data-vertex]").first.wait_for()
         ready = page.evaluate("performance.now()")
@@ -93,12 +103,16 @@ def measure(browser: Browser, url: str, terrain: str, vertex: int, seconds: floa
         page.locator(".terrains .item", has_text=terrain).first.click()
         page.locator(".app[data-plan=feasible], .app[data-plan=infeasible]").wait_for()
         drag(page, vertex, 1.0)  # both sides warm
+        page.evaluate("performance.clearMarks()")
+        before = script()
         found = drag(page, vertex, seconds)
+        spent = script() - before
     shown, frames = delays(found), found["frames"]
     answers = f"{len(shown)} answers in {seconds:g} s"
     return [
         _row(f"move to poses, {terrain}", shown, answers),
         _row(f"frames of the drag, {terrain}", frames, f"longest {max(frames):.0f} ms"),
+        Row(f"script a move, {terrain}", "stairwright", spent / max(1, len(found["moves"]))),
         Row(f"page interactive, {terrain}", "stairwright", ready),
     ]
 
@@ -107,6 +121,15 @@ def _row(work: str, measured: list[float], note: str) -> Row:
     median = statistics.median(measured) if measured else None
     p95 = percentile(measured, 0.95) if measured else None
     return Row(work, "stairwright", median, p95, note=note)
+
+
+def chromium(named: str | None) -> str | None:
+    """Where the browser is: as named, as the environment says, or as it is usually called."""
+    return (
+        named
+        or os.environ.get("STAIRWRIGHT_BROWSER")
+        or next(filter(None, map(shutil.which, BROWSERS)), None)
+    )
 
 
 @contextlib.contextmanager
@@ -133,21 +156,21 @@ def own_server() -> Iterator[str]:
             process.wait(15)
 
 
-def run(url: str | None = None, seconds: float = 6.0, browser: str | None = None) -> list[Row]:
+def run(
+    url: str | None = None, seconds: float = 6.0, browser: str | None = None, scene: bool = False
+) -> list[Row]:
     """All terrains, on the server at `url` or on one of its own."""
     from playwright.sync_api import sync_playwright
 
-    named = browser or os.environ.get("STAIRWRIGHT_BROWSER")
-    executable = named or next(filter(None, map(shutil.which, BROWSERS)), None)
     server = contextlib.nullcontext(url) if url else own_server()
     with server as address, sync_playwright() as playwright:
         launched = playwright.chromium.launch(
-            executable_path=executable, args=["--no-sandbox", "--disable-dev-shm-usage"]
+            executable_path=chromium(browser), args=["--no-sandbox", "--disable-dev-shm-usage"]
         )
         rows = [
             row
             for terrain, vertex in CASES
-            for row in measure(launched, address, terrain, vertex, seconds)
+            for row in measure(launched, address, terrain, vertex, seconds, scene)
         ]
         launched.close()
     return rows
@@ -160,10 +183,12 @@ def main() -> None:
     length = parser.add_mutually_exclusive_group()
     length.add_argument("--seconds", type=float, default=6.0, help="of each drag")
     length.add_argument("--quick", action="store_const", dest="seconds", const=1.0, help="1 s")
+    parser.add_argument("--scene", action="store_true", help="with the 3-D scene")
     parser.add_argument("--browser", help="where Chromium is; searched for otherwise")
     parser.add_argument("--json", help="write machine and rows to this file too")
     arguments = parser.parse_args()
-    publish(run(arguments.url, arguments.seconds, arguments.browser), arguments.json)
+    rows = run(arguments.url, arguments.seconds, arguments.browser, arguments.scene)
+    publish(rows, arguments.json)
 
 
 if __name__ == "__main__":

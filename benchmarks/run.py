@@ -30,6 +30,7 @@ TITLES = {
     "paths": "Certified paths",
     "rollouts": "Rollouts",
     "qp": "The balance controller's QP",
+    "page": "The page for somebody who opens it first",
     "drag": "The page while a corner is dragged",
     "start": "From start to first plan",
     "memory": "Memory",

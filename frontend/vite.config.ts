@@ -10,7 +10,21 @@ export default defineConfig({
     outDir: "dist",
     chunkSizeWarningLimit: 1800, // the API's documents; the page itself stays far below
     modulePreload: { polyfill: false },
-    rolldownOptions: { input: ["index.html", "docs.html"] },
+    rolldownOptions: {
+      input: ["index.html", "docs.html"],
+      output: {
+        // One file of what the workspaces share with the page, instead of a dozen small ones.
+        codeSplitting: {
+          groups: [
+            {
+              name: "shared",
+              test: /\/(src\/(?!map|designs|robot|runs|plots)|node_modules\/(@?preact))/,
+              minShareCount: 2,
+            },
+          ],
+        },
+      },
+    },
   },
   server: {
     proxy: {

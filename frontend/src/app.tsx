@@ -1,9 +1,11 @@
 /** The page: top bar, the open workspace, status line. */
 
+import { computed } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { CutDialog } from "./import/cut-dialog";
+import { closeCut, meshFile } from "./import/cut";
 import { DropZone } from "./import/drop-zone";
 import { ImportProblem } from "./import/import-problem";
+import { cutDialog, pointsTable } from "./parts";
 import { Plan } from "./plan/plan";
 import { isField, onPageKey, onPageKeyUp } from "./profile-editor/commands";
 import { assertive, polite } from "./state/announce";
@@ -12,21 +14,21 @@ import { isEmpty } from "./state/drawing";
 import { inspectorOpen, maximised, swapped } from "./state/layout";
 import { plan, refusal, stale } from "./state/planning";
 import { activity, run } from "./state/rollouts";
-import { tab } from "./state/view";
+import { pointsOpen, tab } from "./state/view";
 import { Status } from "./status";
-import { PointsTable } from "./topbar/points-table";
 import { TopBar } from "./topbar/topbar";
+import { Show } from "./ui/part";
 import { Shortcuts, shortcutsOpen } from "./ui/shortcuts";
 import { SkipLinks } from "./ui/skip-links";
 import { Toast } from "./ui/toast";
 import { openByKey, openRoom } from "./workspaces";
 
 /** In one word, for style sheets and tests. */
-function planState(): string {
+const planState = computed(() => {
   if (isEmpty.value) return "none";
   if (refusal.value) return "refused";
   return stale.value || !plan.value ? "planning" : plan.value.status;
-}
+});
 
 /** The number keys choose a workspace, all others belong to Plan while it is open. */
 function onKey(event: KeyboardEvent): void {
@@ -38,6 +40,10 @@ function onKey(event: KeyboardEvent): void {
   }
   const plain = !(event.ctrlKey || event.metaKey || event.altKey);
   if (!(plain && openByKey(event.key)) && openRoom().name === "plan") onPageKey(event);
+}
+
+function closePoints(): void {
+  pointsOpen.value = false;
 }
 
 export function App() {
@@ -59,7 +65,7 @@ export function App() {
       data-max={maximised.value ?? undefined}
       data-inspector={inspectorOpen.value ? "open" : "shut"}
       data-tab={tab.value}
-      data-plan={planState()}
+      data-plan={planState}
       data-run={activity.value === "idle" ? (run.value?.outcome ?? "none") : activity.value}
     >
       {open.name === "plan" && <SkipLinks />}
@@ -67,16 +73,16 @@ export function App() {
       <div class="room" hidden={open.name !== "plan"}>
         <Plan />
       </div>
-      {open.name !== "plan" && (
+      {open.part && (
         <div class="room">
-          <open.room />
+          <Show key={open.name} part={open.part} />
         </div>
       )}
       <Status />
       <DropZone />
-      <CutDialog />
+      {meshFile.value && <Show part={cutDialog} giveUp={closeCut} />}
       <ImportProblem place="page" />
-      <PointsTable />
+      {pointsOpen.value && <Show part={pointsTable} giveUp={closePoints} />}
       <Shortcuts />
       <Toast />
       <div class="sr" aria-live="polite">

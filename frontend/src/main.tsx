@@ -4,6 +4,7 @@ import { effect } from "@preact/signals";
 import { render } from "preact";
 import { getRobots, getSettings, getTerrains } from "./api/client";
 import { App } from "./app";
+import { LATER } from "./parts";
 import { fit } from "./profile-editor/viewport";
 import { renewSession, startScene } from "./scene/drive";
 import { startAnnouncing } from "./state/announce";
@@ -11,11 +12,12 @@ import { report, watchConnection } from "./state/connection";
 import { drawing, open, startHistory } from "./state/drawing";
 import { startEffect } from "./state/effect";
 import { startPlanning } from "./state/planner";
-import { plan } from "./state/planning";
+import { plan, settled } from "./state/planning";
 import { duration, seek, startClock } from "./state/playback";
 import { restoreRollout } from "./state/rollouts";
 import { robotName, robots, settings, terrains } from "./state/setup";
 import { type Restored, restoreFromAddress, startSharing } from "./state/share";
+import { fetchWhileIdle } from "./ui/part";
 import "uplot/dist/uPlot.min.css";
 import "./styles/index.css";
 
@@ -68,6 +70,8 @@ async function begin(): Promise<void> {
     void restoreResults(pasted);
   });
   await restoreResults(restored);
+  await settled();
+  fetchWhileIdle(LATER);
 }
 
 render(<App />, document.getElementById("app")!);

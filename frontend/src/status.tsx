@@ -38,14 +38,7 @@ export function Status() {
       )}
       {shown && outdated.value && <span>of the drawing before the latest edit</span>}
       {shown && !shown.problem && !outdated.value && <Certified />}
-      <span class="keys">
-        {(KEYS[openRoom().name] ?? []).map(([key, does]) => (
-          <span key={key}>
-            <kbd>{key}</kbd>
-            {does}
-          </span>
-        ))}
-      </span>
+      <Keys />
       <div class="grow" />
       <span>
         <i class={connected.value ? "live" : "live bad"} />
@@ -54,6 +47,19 @@ export function Status() {
           : "Disconnected"}
       </span>
     </footer>
+  );
+}
+
+function Keys() {
+  return (
+    <span class="keys">
+      {(KEYS[openRoom().name] ?? []).map(([key, does]) => (
+        <span key={key}>
+          <kbd>{key}</kbd>
+          {does}
+        </span>
+      ))}
+    </span>
   );
 }
 

@@ -1,23 +1,21 @@
 /** The workspaces there are, in the order of their keys. A workspace appears here when it works. */
 
-import type { ComponentType } from "preact";
-import { MapRoom } from "./map/map";
-import { Plan } from "./plan/plan";
-import { RobotRoom } from "./robot/room";
-import { Runs } from "./runs/runs";
+import { mapRoom, robotRoom, runsRoom } from "./parts";
 import { type Workspace, workspace } from "./state/workspace";
+import type { Part } from "./ui/part";
 
 interface Room {
   name: Workspace;
   title: string;
-  room: ComponentType;
+  /** Plan is there from the start. */
+  part?: Part;
 }
 
 export const WORKSPACES: readonly Room[] = [
-  { name: "plan", title: "Plan", room: Plan },
-  { name: "robot", title: "Robot", room: RobotRoom },
-  { name: "map", title: "Map", room: MapRoom },
-  { name: "runs", title: "Runs", room: Runs },
+  { name: "plan", title: "Plan" },
+  { name: "robot", title: "Robot", part: robotRoom },
+  { name: "map", title: "Map", part: mapRoom },
+  { name: "runs", title: "Runs", part: runsRoom },
 ];
 
 /** The one that is open; Plan where the address names one that is not there. */

@@ -79,3 +79,23 @@ def test_a_changed_weight_says_what_it_brings(product: Product) -> None:
     ghost.click()
     page.get_by_role("button", name="Reset CoM margin").click()
     effect.wait_for(state="detached")
+
+
+def test_each_motor_limit_is_drawn_and_named(product: Product) -> None:
+    page = product.page
+    product.choose_terrain("flat")
+    page.get_by_role("button", name="Robot", exact=False).first.click()
+    page.get_by_role("menuitemradio", name="b2w").click()
+    product.planned().run()
+    page.get_by_role("region", name="Peak torque").hover()
+    saved = {}
+    for form in ("SVG", "CSV"):
+        page.get_by_role("button", name="Save Peak torque").click()
+        with page.expect_download() as download:
+            page.get_by_role("menuitem", name=form).click()
+        saved[form] = download.value.path().read_text()
+    limits = {"thigh": 200.0, "calf": 320.0, "wheel": 20.0}
+    for name, limit in limits.items():
+        assert f"{name} limit {limit:.1f}" in saved["SVG"]
+    row = next(csv.DictReader(saved["CSV"].splitlines()))
+    assert {name: float(row[f"{name} limit [Nm]"]) for name in limits} == limits

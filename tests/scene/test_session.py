@@ -216,6 +216,24 @@ def test_closing_frees_socket_and_threads(plan):
     assert not session.address.parent.exists()
 
 
+def test_a_moved_corner_moves_the_ground_and_the_robot_in_one_batch(session, plan, monkeypatch):
+    monkeypatch.setattr(session.player, "set", lambda **_: None)  # no frame of its own follows
+    session.show(plan=plan)
+    assert "/robot/trunk" in nodes(session)
+    sent = []
+    server = session._server._websock_server
+    queue = server.queue_message
+    monkeypatch.setattr(server, "queue_message", lambda m: (sent.append(m), queue(m))[1])
+    lower = [[x, 0.9 * z] for x, z in plan["terrain"]["points"]]
+    pose = plan["poses"][0]
+    poses = [{**pose, "x_c": pose["x_c"] + 0.01}, *plan["poses"][1:]]
+    session.show(plan={**plan, "terrain": {**plan["terrain"], "points": lower}, "poses": poses})
+    changed = {m.name: set(m.updates) for m in sent if hasattr(m, "updates") and hasattr(m, "name")}
+    assert changed["/terrain/treads"] == {"vertices"}
+    assert "batched_positions" in changed["/robot/trunk"]
+    assert not [m for m in sent if type(m).__name__ == "MeshMessage"]
+
+
 def test_terrain_with_two_thousand_points_is_drawn(session):
     x = np.linspace(-2, 4, 2000)
     points = [(float(a), float(0.02 * np.sin(9 * a))) for a in x]

@@ -41,10 +41,11 @@ class Nodes:
         node: str,
         mesh: shapes.Mesh,
         colour: Rgb,
+        flat: bool = False,
     ) -> None:
-        """A plain mesh of fixed topology."""
-        if node in self._handles:
-            handle = self._handles[node][1]
+        """A plain mesh; one with the same faces as before moves in place, which costs far less."""
+        handle = self._handles[node][1] if node in self._handles else None
+        if handle is not None and np.array_equal(handle.faces, mesh.faces):
             handle.vertices = mesh.vertices.astype(np.float32)
             handle.color = colour
             return
@@ -53,6 +54,7 @@ class Nodes:
             mesh.vertices,
             mesh.faces,
             color=colour,
+            flat_shading=flat,
             side="double",
             cast_shadow=False,
             receive_shadow=False,

@@ -20,7 +20,7 @@ from stairwright.terrain.profile import Terrain
 
 from . import camera as cameras
 from . import client_page
-from .motion import Motion, from_plan, from_rollout
+from .motion import Moment, Motion, from_plan, from_rollout
 from .palette import palette
 from .panel import Panel
 from .player import Player
@@ -129,6 +129,8 @@ class SceneSession:
             self._plan, self._rollout = plan, rollout
             self._redraw()
             duration = 0.0 if self._motion is None else self._motion.duration
+            # With the plan, in one batch: viewers draw once, and never one plan's robot on another.
+            self._draw_moment(min(self._player.time, duration))
             self._panel.show(plan, rollout, self._motion, self._stage.colours)
             self._panel.show_layers(wanted)
         self._player.set(duration=duration)
@@ -270,11 +272,8 @@ class SceneSession:
         with self._lock:
             if self._closed:
                 return
-            motion = self._motion
-            moment = None if motion is None else motion.at(time)
             with self._server.atomic():
-                progress = 0.0 if motion is None else motion.progress_at(time)
-                self._stage.draw_moment(progress, moment, self._failed_by(time))
+                moment = self._draw_moment(time)
             if moment is not None:
                 moved = float(np.abs(moment.position - self._subject).max()) > 1e-6
                 self._subject = moment.position.copy()
@@ -282,6 +281,13 @@ class SceneSession:
                     viewers = self._server.get_clients().values()
                     self._move_cameras(cameras.keep_in_view, viewers, self._subject)
             self._panel.tick(time)
+
+    def _draw_moment(self, time: float) -> Moment | None:
+        motion = self._motion
+        moment = None if motion is None else motion.at(time)
+        progress = 0.0 if motion is None else motion.progress_at(time)
+        self._stage.draw_moment(progress, moment, self._failed_by(time))
+        return moment
 
     def _failed_by(self, time: float) -> bool:
         """Whether the rollout that is shown has ended by `time` [s] without success."""

@@ -155,17 +155,7 @@ class Stage:
         solid = shapes.extrude(terrain.vertices, HALF_WIDTH, DEPTH)
         tints = self.colours.terrain(mu)
         for name, mesh, tint in zip(("treads", "risers", "flanks"), solid[:3], tints, strict=True):
-            node = f"/terrain/{name}"
-            handle = self._scene.add_mesh_simple(
-                node,
-                mesh.vertices,
-                mesh.faces,
-                color=tint,
-                flat_shading=True,
-                side="double",
-                visible=self.layers["terrain"],
-            )
-            self._nodes.keep("terrain", node, handle)
+            self._nodes.mesh("terrain", f"/terrain/{name}", mesh, tint, flat=True)
         self._nodes.lines("terrain", "/terrain/edges", solid.edges, self.colours.edge, 1.4)
         self.draw_grid()
 

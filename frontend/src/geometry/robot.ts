@@ -22,6 +22,13 @@ export interface LegShape {
   calf: LinkShape;
 }
 
+/** Peak torques [Nm]. */
+export interface MotorLimits {
+  thigh: number;
+  calf: number;
+  wheel: number;
+}
+
 export interface RobotShape {
   name: string;
   trunk: { length: number; height: number };
@@ -31,8 +38,8 @@ export interface RobotShape {
   /** Front and rear. */
   legs: [LegShape, LegShape];
   wheel: number;
-  /** Peak torques [Nm]; `leg` is the smaller one of thigh and calf. */
-  limit: { leg: number; thigh: number; calf: number; wheel: number };
+  /** Of the front and the rear legs' motors. */
+  limits: [MotorLimits, MotorLimits];
   /** In trunk sizes from its centre, and as fractions of the links. */
   collisionPoints: { trunk: Vec2[]; thigh: number[]; calf: number[] };
 }
@@ -95,7 +102,7 @@ export function robotShape(file: SentRobot): RobotShape {
       },
     ],
     wheel: file.wheel.radius,
-    limit: limitOf(file),
+    limits: [limitsOf(file.actuators), limitsOf(rear?.actuators ?? file.actuators)],
     collisionPoints: pointsOf(file, outline.flat(), size),
   };
 }
@@ -140,13 +147,17 @@ function loadBox(robot: RobotShape): Vec2[] | null {
   return box(robot.payload.place, size);
 }
 
-/** The weaker of thigh's and calf's peak torque [Nm]. */
-function limitOf({ actuators }: SentRobot): RobotShape["limit"] {
-  const { leg, wheel } = actuators;
-  const thigh = (actuators.thigh ?? leg)?.torque ?? Number.POSITIVE_INFINITY;
-  const calf = (actuators.calf ?? leg)?.torque ?? Number.POSITIVE_INFINITY;
-  return { leg: Math.min(thigh, calf), thigh, calf, wheel: wheel.torque };
+function limitsOf({ leg, thigh, calf, wheel }: SentRobot["actuators"]): MotorLimits {
+  return {
+    thigh: (thigh ?? leg)?.torque ?? Number.POSITIVE_INFINITY,
+    calf: (calf ?? leg)?.torque ?? Number.POSITIVE_INFINITY,
+    wheel: wheel.torque,
+  };
 }
+
+/** The weakest of the legs' motors [Nm]. */
+export const weakestLeg = ({ limits }: RobotShape): number =>
+  Math.min(...limits.flatMap(({ thigh, calf }) => [thigh, calf]));
 
 /** A vector of the trunk frame in the world; pitch turns about +y, so nose-up is negative. */
 function toWorld(frame: Frame, u: number, v: number): Vec2 {

@@ -8,10 +8,6 @@ import { CutProfile } from "./cut-profile";
 import { FromAbove } from "./from-above";
 
 export function CutDialog() {
-  return meshFile.value && <Sheet file={meshFile.value} />;
-}
-
-function Sheet({ file }: { file: File }) {
   const dialog = useRef<HTMLDialogElement>(null);
   useEffect(() => dialog.current?.showModal(), []);
   const submit = (event: Event) => {
@@ -21,7 +17,7 @@ function Sheet({ file }: { file: File }) {
   return (
     <dialog ref={dialog} class="tag cut" aria-labelledby="cut-title" onClose={closeCut}>
       <form onSubmit={submit}>
-        <h2 id="cut-title">Cut {file.name} into a profile</h2>
+        <h2 id="cut-title">Cut {meshFile.value?.name} into a profile</h2>
         <div class="cut-halves">
           <FromAbove />
           <Numbers />

@@ -2,7 +2,7 @@
 
 import { signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { readFile } from "../robot/shelf";
+import { droppedRobot } from "../state/dropped";
 import { workspace } from "../state/workspace";
 import { Icon } from "../ui/icon";
 import { takeFile, takeText } from "./take";
@@ -17,8 +17,8 @@ function take(file: File): void {
     void takeFile(file, "page");
     return;
   }
+  droppedRobot.value = file;
   workspace.value = "robot";
-  void readFile(file);
 }
 
 const isField = (target: EventTarget | null) =>

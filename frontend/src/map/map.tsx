@@ -1,10 +1,11 @@
 /** The workspace Map: how far can it go? Axes and progress, the map, codes and a kept cell. */
 
 import { useEffect } from "preact/hooks";
-import { Designs } from "../designs/designs";
 import { showsDesigns } from "../designs/state";
 import { fixed } from "../geometry/format";
+import { designs } from "../parts";
 import { Icon } from "../ui/icon";
+import { Show } from "../ui/part";
 import { frictionAt } from "./cell";
 import { CellPanel } from "./cell-panel";
 import { Earlier } from "./earlier";
@@ -17,7 +18,7 @@ import { MapTable } from "./table";
 import { asTable } from "./view";
 
 export function MapRoom() {
-  return showsDesigns.value ? <Designs /> : <Cells />;
+  return showsDesigns.value ? <Show part={designs} /> : <Cells />;
 }
 
 function Cells() {

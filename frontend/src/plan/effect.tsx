@@ -2,6 +2,7 @@
 
 import type { Plan } from "../api/types";
 import { fixed } from "../geometry/format";
+import { weakestLeg } from "../geometry/robot";
 import { MARGINS, marginClass, worst } from "../profile-editor/margins";
 import { defaultPlan, ghostShown } from "../state/effect";
 import { plan, stale } from "../state/planning";
@@ -50,7 +51,8 @@ const QUANTITIES: readonly Quantity[] = [
     title: "Static torque",
     unit: "Nm",
     weight: "torque",
-    of: (shown) => fixed((robot.value?.limit.leg ?? Number.NaN) - worst(shown.poses, "torque"), 1),
+    of: (shown) =>
+      fixed((robot.value ? weakestLeg(robot.value) : Number.NaN) - worst(shown.poses, "torque"), 1),
     thin: isThin(TORQUE),
   },
   {

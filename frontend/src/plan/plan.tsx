@@ -1,13 +1,14 @@
 /** The workspace Plan: profile, scene, playback and results, and what the planner weighs. */
 
 import { Inspector } from "../inspector/inspector";
-import { Plots } from "../plots/plots";
+import { plots } from "../parts";
 import { Editor } from "../profile-editor/editor";
 import { Results } from "../results/results";
 import { Scene } from "../scene/scene";
 import { DOCK, dock, lastPanel, maximised, SPLIT, type StagePanel, split } from "../state/layout";
 import { type Tab, tab } from "../state/view";
 import { Transport } from "../transport/transport";
+import { Show } from "../ui/part";
 import { PoseRow } from "./pose-row";
 import { Splitter } from "./splitter";
 
@@ -85,7 +86,7 @@ export function Plan() {
             grows={false}
           />
           <Results />
-          <Plots />
+          <Show part={plots} />
         </section>
       </main>
     </>

@@ -87,29 +87,10 @@ function current() {
 }
 
 export function PoseRow() {
-  const now = planKept.value ? current() : null;
   return (
     <section class="pose" aria-label="Pose at the cursor">
       <h2>Pose</h2>
-      {now ? (
-        <>
-          <Value name="x" value={fixed(now.x, 3)} />
-          <Value name="z" value={fixed(now.z, 3)} unit="m" />
-          <Value name="nose-up" value={`${fixed(-degrees(now.pitch), 1)}°`} />
-          {legs(now.q).map((leg, k) => (
-            <span class={`leg ${LEGS[k]}`} key={LEGS[k]}>
-              <i title={`${LEGS[k]} legs`} />
-              <span class="sr">{LEGS[k]} legs</span>
-              <Value name="thigh" value={leg.thigh} />
-              <Value name="calf" value={leg.calf} />
-              <Value name="force" value={leg.force} unit="N" />
-            </span>
-          ))}
-          <IconButton action={() => void copy()} label="Copy the pose" icon="copy" off={false} />
-        </>
-      ) : (
-        <span class="none">no pose yet</span>
-      )}
+      <Numbers />
       <div class="grow" />
       <span class="classes" aria-hidden="true">
         {[...CLASS_NAMES].reverse().map((name) => (
@@ -121,6 +102,28 @@ export function PoseRow() {
       </span>
       <PlotMenu />
     </section>
+  );
+}
+
+function Numbers() {
+  const now = planKept.value ? current() : null;
+  if (!now) return <span class="none">no pose yet</span>;
+  return (
+    <>
+      <Value name="x" value={fixed(now.x, 3)} />
+      <Value name="z" value={fixed(now.z, 3)} unit="m" />
+      <Value name="nose-up" value={`${fixed(-degrees(now.pitch), 1)}°`} />
+      {legs(now.q).map((leg, k) => (
+        <span class={`leg ${LEGS[k]}`} key={LEGS[k]}>
+          <i title={`${LEGS[k]} legs`} />
+          <span class="sr">{LEGS[k]} legs</span>
+          <Value name="thigh" value={leg.thigh} />
+          <Value name="calf" value={leg.calf} />
+          <Value name="force" value={leg.force} unit="N" />
+        </span>
+      ))}
+      <IconButton action={() => void copy()} label="Copy the pose" icon="copy" off={false} />
+    </>
   );
 }
 

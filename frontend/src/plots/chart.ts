@@ -3,6 +3,7 @@
 import uPlot from "uplot";
 import { fixed } from "../geometry/format";
 import { decimate } from "./decimate";
+import { type LimitLine, limitText } from "./limits";
 import type { Color, Line, Panel } from "./lines";
 
 export const LEFT = 34;
@@ -246,24 +247,34 @@ export class Chart {
         bbox.top + bbox.height * (1 - HALF) + 6 * ratio,
       );
     }
-    if (panel.limit !== undefined) this.limit(u, panel.limit, ratio);
+    this.limits(u, panel.limits ?? [], ratio);
     if (panel.cross) this.cross(u, panel.cross, ratio);
     ctx.restore();
   }
 
-  private limit(u: uPlot, limit: number, ratio: number): void {
+  private limits(u: uPlot, limits: readonly LimitLine[], ratio: number): void {
     const { ctx, bbox } = u;
-    const y = Math.round(u.valToPos(limit, "y0", true)) + 0.5;
     ctx.strokeStyle = this.colors.bad;
     ctx.fillStyle = this.colors.bad;
     ctx.lineWidth = ratio;
     ctx.setLineDash([2 * ratio, 3 * ratio]);
-    ctx.beginPath();
-    ctx.moveTo(bbox.left, y);
-    ctx.lineTo(bbox.left + bbox.width, y);
-    ctx.stroke();
     ctx.textAlign = "right";
-    ctx.fillText(`limit ${fixed(limit, 1)}`, bbox.left + bbox.width - 2 * ratio, y + 13 * ratio);
+    let [above, right] = [Number.NEGATIVE_INFINITY, 0];
+    for (const limit of limits) {
+      const y = Math.round(u.valToPos(limit.value, "y0", true)) + 0.5;
+      ctx.beginPath();
+      ctx.moveTo(bbox.left, y);
+      ctx.lineTo(bbox.left + bbox.width, y);
+      ctx.stroke();
+      // Limits close to each other have their names side by side, low ones above their line.
+      if (y - above > 13 * ratio) right = bbox.left + bbox.width - 2 * ratio;
+      const text = limitText(limit);
+      const low = y + 16 * ratio > bbox.top + bbox.height;
+      ctx.fillText(text, right, low ? y - 4 * ratio : y + 13 * ratio);
+      right -= ctx.measureText(text).width + 8 * ratio;
+      above = y;
+    }
+    ctx.setLineDash([]);
   }
 
   /** Where B fell: a cross at the end of its line. */

@@ -2,6 +2,9 @@
 
 import type { Drive, Plan, Rollout } from "../api/types";
 import { delay, interpolate, poseTimes } from "../geometry/frames";
+import type { RobotShape } from "../geometry/robot";
+
+import type { LimitLine } from "./limits";
 
 export type LineKind = "band" | "line" | "dash";
 export type Color = "tx" | "tx2" | "tx3" | "front" | "rear" | "third" | "fourth";
@@ -27,7 +30,8 @@ export interface Panel {
   /** Least spans of the halves' value axes. */
   spans: number[];
   caption?: string;
-  limit?: number;
+  /** Motors' torques that lines must stay below. */
+  limits?: LimitLine[];
   range?: [number, number];
   /** Where B ended early. */
   cross?: { time: number; value: number };
@@ -37,8 +41,8 @@ export interface Source {
   plan: Plan | null;
   run: Drive | null;
   runB: Rollout | null;
-  legLimit: number;
-  wheelLimit: number;
+  /** Of the front and the rear motors. */
+  limits: RobotShape["limits"] | null;
 }
 
 export const PANELS = {

@@ -4,6 +4,7 @@ import type { Drive, Plan } from "../api/types";
 import { degrees } from "../geometry/format";
 import { interpolate, planar } from "../geometry/frames";
 import { MARGINS, type MarginName } from "../profile-editor/margins";
+import { limitLines } from "./limits";
 import {
   type Color,
   desired,
@@ -125,7 +126,9 @@ function torquePanel(source: Source, time: Float64Array): Panel {
   const { plan, run } = source;
   const lines: Line[] = [];
   const torque = run?.series.torque;
+  let limits = source.limits ? limitLines(source.limits, ["thigh", "calf"]) : [];
   if (run && torque) {
+    if (source.limits) limits = limitLines(source.limits, ["thigh", "calf", "wheel"]);
     const of = (columns: number[]) => sampled(time, run, (i) => largest(torque[i]!, columns));
     lines.push(
       {
@@ -151,9 +154,13 @@ function torquePanel(source: Source, time: Float64Array): Panel {
       },
     );
   } else if (plan) {
-    const values = planned(time, plan, (i) => source.legLimit - plan.poses[i]!.margins.torque);
+    // A plan tells how far the motor with least to spare is from its limit.
+    const alike = limits.length === 1;
+    limits = limits.slice(-1);
+    const limit = limits[0]?.value ?? Number.NaN;
+    const values = planned(time, plan, (i) => limit - plan.poses[i]!.margins.torque);
     lines.push({
-      label: "static, largest",
+      label: alike ? "static, largest" : "limit less least margin",
       color: "tx",
       kind: "band",
       values,
@@ -167,9 +174,7 @@ function torquePanel(source: Source, time: Float64Array): Panel {
     time,
     halves: [lines],
     spans: [10],
-    ...(Number.isFinite(source.legLimit)
-      ? { limit: source.legLimit, range: [0, source.legLimit * 1.08] }
-      : {}),
+    ...(limits[0] ? { limits, range: [0, limits[0].value * 1.08] } : {}),
   };
 }
 

@@ -1,7 +1,7 @@
 /** A panel on screen: header with the values at the clock, chart, cursor, zoom. */
 
-import { useComputed } from "@preact/signals";
-import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
+import { type ReadonlySignal, useComputed, useSignalEffect } from "@preact/signals";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import { fixed } from "../geometry/format";
 import { interpolate } from "../geometry/frames";
 import { plan } from "../state/planning";
@@ -15,27 +15,29 @@ import { alonePlot } from "./room";
 import { timeWindow, zoomTime } from "./window";
 
 interface PlotProps {
-  panel: Panel;
-  tint: Tint | null;
+  panel: ReadonlySignal<Panel>;
+  tint: ReadonlySignal<Tint | null>;
 }
 
 /** Bands and lines are laid out once; another layout needs another chart. */
 const layoutOf = (panel: Panel) =>
-  `${panel.halves.map((h) => h.map((l) => l.kind + l.color).join()).join("/")}|${panel.limit}`;
+  panel.halves.map((h) => h.map((l) => l.kind + l.color).join()).join("/");
 
 export function Plot({ panel, tint }: PlotProps) {
   const holder = useRef<HTMLDivElement>(null);
-  const chart = useRef<Chart | null>(null);
-  const window = timeWindow.value;
-  const alone = alonePlot.value === panel.id;
-  const layout = layoutOf(panel);
+  const chart = useRef<{ chart: Chart; layout: string } | null>(null);
+  const layout = useComputed(() => layoutOf(panel.value)).value;
   const shade = theme.value;
+  // These are the same for all that a plot may show.
+  const { id, title, unit } = panel.peek();
+  const alone = alonePlot.value === id;
 
   useLayoutEffect(() => {
     const element = holder.current!;
     const { clientWidth: w, clientHeight: h } = element;
-    const made = new Chart(element, w, h, { panel, window, tint }, palette());
-    chart.current = made;
+    const state = { panel: panel.peek(), window: timeWindow.peek(), tint: tint.peek() };
+    const made = new Chart(element, w, h, state, palette());
+    chart.current = { chart: made, layout };
     const observer = new ResizeObserver(() =>
       made.resize(element.clientWidth, element.clientHeight),
     );
@@ -47,16 +49,19 @@ export function Plot({ panel, tint }: PlotProps) {
     };
   }, [layout, shade]);
 
-  useEffect(() => {
-    chart.current?.update({ panel, window, tint });
-  }, [panel, window, tint]);
+  // What is drawn changes with every answer; the elements around it do not.
+  useSignalEffect(() => {
+    const state = { panel: panel.value, window: timeWindow.value, tint: tint.value };
+    // Another layout gets another chart, which begins with what there is then.
+    if (chart.current?.layout === layoutOf(state.panel)) chart.current.chart.update(state);
+  });
 
   return (
-    <section class="plot" aria-label={panel.title}>
+    <section class="plot" aria-label={title}>
       <header>
         <h3>
-          {panel.title}
-          {panel.unit !== "%" && <small>{panel.unit}</small>}
+          {title}
+          {unit !== "%" && <small>{unit}</small>}
         </h3>
         <Values panel={panel} />
         <span class="plot-tools">
@@ -65,11 +70,11 @@ export function Plot({ panel, tint }: PlotProps) {
           <button
             type="button"
             class="t ico"
-            aria-label={alone ? "Show all plots" : `Maximise ${panel.title}`}
-            title={alone ? "Show all plots (Escape)" : `Maximise ${panel.title}`}
+            aria-label={alone ? "Show all plots" : `Maximise ${title}`}
+            title={alone ? "Show all plots (Escape)" : `Maximise ${title}`}
             aria-pressed={alone}
             onClick={() => {
-              alonePlot.value = alone ? null : panel.id;
+              alonePlot.value = alone ? null : id;
             }}
           >
             <Icon name={alone ? "restore" : "maximise"} />
@@ -85,13 +90,14 @@ export function Plot({ panel, tint }: PlotProps) {
 }
 
 /** Numbers at the clock, in the colours of their lines. */
-function Values({ panel }: { panel: Panel }) {
+function Values({ panel }: { panel: ReadonlySignal<Panel> }) {
   const t = shownTime.value;
-  const lines = panel.halves.flat().filter((line) => line.read);
+  const { halves, time } = panel.value;
+  const lines = halves.flat().filter((line) => line.read);
   return (
     <div class="vals" aria-hidden="true">
       {lines.map((line) => {
-        const value = interpolate(panel.time, line.raw ?? line.values, t);
+        const value = interpolate(time, line.raw ?? line.values, t);
         return (
           <span key={line.label} class={`v ${line.color}`}>
             <i />

@@ -1,6 +1,6 @@
 /** The row of plots, all on one clock. */
 
-import { computed, signal } from "@preact/signals";
+import { computed, type ReadonlySignal } from "@preact/signals";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import { hasFailed } from "../api/types";
 import { live, livePlan } from "../state/live";
@@ -9,25 +9,15 @@ import { plannedEnd, shownRun } from "../state/playback";
 import { progress, run, runB, running, runPlan } from "../state/rollouts";
 import { compare, robot } from "../state/setup";
 import type { Tint } from "./chart";
-import { type Panel, type PanelId, type Source, timeAxis } from "./lines";
+import { PANELS, type Panel, type PanelId, type Source, timeAxis } from "./lines";
 import { buildPanel } from "./panels";
 import { Plot } from "./plot";
-import { alonePlot, roomFor, rowWidth } from "./room";
-
-/** In the order of the row; the last ones fall away where there is no room for them. */
-export const shownPanels = signal<readonly PanelId[]>([
-  "pitch",
-  "thigh",
-  "calf",
-  "torque",
-  "margins",
-]);
+import { alonePlot, roomFor, rowWidth, shownPanels } from "./room";
 
 /** While a rollout runs, its lines grow on the plan's bands. */
 const growing = computed(() => running.value === "a");
 
 const source = computed<Source>(() => {
-  const limit = robot.value?.limit;
   const result = growing.value ? null : run.value;
   // A cancelled run stays as far as it came, until there is another.
   const part = growing.value || (!run.value && shownRun.value !== null);
@@ -37,17 +27,23 @@ const source = computed<Source>(() => {
     plan: (drive && driven) ?? plan.value,
     run: drive,
     runB: compare.value && result ? runB.value : null,
-    legLimit: limit?.leg ?? Number.NaN,
-    wheelLimit: limit?.wheel ?? Number.NaN,
+    limits: robot.value?.limits ?? null,
   };
 });
 
-const panels = computed(() => {
-  const time = timeAxis(source.value);
-  const alone = alonePlot.value;
-  const ids = alone ? [alone] : shownPanels.value.slice(0, roomFor(rowWidth.value));
-  return ids.map((id) => buildPanel(id, source.value, time));
-});
+const time = computed(() => timeAxis(source.value));
+
+/** Each plot's content, computed while it is on screen. */
+const panels = Object.fromEntries(
+  (Object.keys(PANELS) as PanelId[]).map((id) => [
+    id,
+    computed(() => buildPanel(id, source.value, time.value)),
+  ]),
+) as Record<PanelId, ReadonlySignal<Panel>>;
+
+const shown = computed<readonly PanelId[]>(() =>
+  alonePlot.value ? [alonePlot.value] : shownPanels.value.slice(0, roomFor(rowWidth.value)),
+);
 
 const tint = computed<Tint | null>(() => {
   const shown = source.value.plan;
@@ -67,9 +63,20 @@ const tint = computed<Tint | null>(() => {
   return null;
 });
 
+/** Why there is nothing to plot, if so. */
+const nothing = computed(() => {
+  const { plan, run } = source.value;
+  if (run || plan?.poses.length) return "";
+  return plan
+    ? "No pose was found, so there is nothing to plot."
+    : "Tracking plots appear when there is a plan.";
+});
+/** What is plotted is a rollout of an older plan. */
+const older = computed(() => Boolean(run.value && !shownRun.value && !growing.value));
+
 /** The margins tell more in their heading than the others. */
-const columns = (shown: readonly Panel[]) =>
-  shown.map((panel) => `minmax(0, ${panel.id === "margins" ? 1.3 : 1}fr)`).join(" ");
+const columns = (ids: readonly PanelId[]) =>
+  ids.map((id) => `minmax(0, ${id === "margins" ? 1.3 : 1}fr)`).join(" ");
 
 export function Plots() {
   const row = useRef<HTMLDivElement>(null);
@@ -81,26 +88,21 @@ export function Plots() {
     observer.observe(element);
     return () => observer.disconnect();
   }, []);
-  const { plan: shown, run: drive } = source.value;
-  if (!drive && !shown?.poses.length) {
-    const why = shown
-      ? "No pose was found, so there is nothing to plot."
-      : "Tracking plots appear when there is a plan.";
+  if (nothing.value) {
     return (
       <div class="plots none" ref={row}>
-        {why}
+        {nothing.value}
       </div>
     );
   }
-  const dim = run.value && !shownRun.value && !growing.value;
   return (
     <div
       ref={row}
-      class={dim ? "plots older" : "plots"}
-      style={{ "--columns": columns(panels.value) }}
+      class={older.value ? "plots older" : "plots"}
+      style={{ "--columns": columns(shown.value) }}
     >
-      {panels.value.map((panel) => (
-        <Plot key={panel.id} panel={panel} tint={tint.value} />
+      {shown.value.map((id) => (
+        <Plot key={id} panel={panels[id]} tint={tint} />
       ))}
     </div>
   );

@@ -1,8 +1,17 @@
-/** How many plots have room beside each other. */
+/** Which plots are shown, and how many of them have room beside each other. */
 
 import { signal } from "@preact/signals";
 import { oneArea } from "../state/view";
 import type { PanelId } from "./lines";
+
+/** In the order of the row; the last ones fall away where there is no room for them. */
+export const shownPanels = signal<readonly PanelId[]>([
+  "pitch",
+  "thigh",
+  "calf",
+  "torque",
+  "margins",
+]);
 
 /** The plot that has the row to itself. */
 export const alonePlot = signal<PanelId | null>(null);

@@ -5,6 +5,7 @@ import { plan } from "../state/planning";
 import { runPlan } from "../state/rollouts";
 import { saveFile } from "../ui/save-file";
 import { palette } from "./chart";
+import { limitText } from "./limits";
 import type { Line, Panel } from "./lines";
 import { timeWindow } from "./window";
 
@@ -22,9 +23,14 @@ const escaped = (text: string) =>
 export function asCsv(panel: Panel): string {
   const lines = panel.halves.flat();
   const unitOf = (line: Line) => (line.raw ? (line.read?.unit ?? panel.unit) : panel.unit);
-  const head = ["time_s", ...lines.map((line) => `${line.label} [${unitOf(line) || "1"}]`)];
+  const limits = panel.limits ?? [];
+  const head = [
+    "time_s",
+    ...lines.map((line) => `${line.label} [${unitOf(line) || "1"}]`),
+    ...limits.map((limit) => `${limit.of} limit [${panel.unit}]`),
+  ];
   const rows = [...panel.time].map((t, i) =>
-    [t, ...lines.map((line) => (line.raw ?? line.values)[i]!)]
+    [t, ...lines.map((line) => (line.raw ?? line.values)[i]!), ...limits.map((l) => l.value)]
       .map((v) => (Number.isNaN(v) ? "" : String(Number(v.toPrecision(9)))))
       .join(","),
   );
@@ -46,7 +52,8 @@ function half(panel: Panel, lines: readonly Line[], top: number, bottom: number)
   const colors = palette();
   const [from, to] = timeWindow.peek();
   const seen = lines.flatMap((line) => [...line.values].filter((v) => Number.isFinite(v)));
-  if (panel.limit !== undefined) seen.push(panel.limit);
+  const limits = panel.limits ?? [];
+  seen.push(...limits.map((limit) => limit.value));
   if (seen.length === 0) return "";
   const [least, most] = [
     seen.reduce((a, b) => Math.min(a, b)),
@@ -75,11 +82,16 @@ function half(panel: Panel, lines: readonly Line[], top: number, bottom: number)
     const dash = line.kind === "dash" ? ' stroke-dasharray="6 3"' : "";
     return `<path d="${d}" fill="none" stroke="${colors[line.color]}" stroke-width="${band ? 6 : 1.6}" stroke-opacity="${band ? 0.34 : 1}" stroke-linejoin="round"${dash}/>`;
   });
-  const limit =
-    panel.limit === undefined
-      ? ""
-      : `<path d="M${EDGE.left} ${py(panel.limit).toFixed(1)}H${right}" stroke="${colors.bad}" stroke-dasharray="2 3"/>`;
-  return [...grid, ...drawn, limit].join("");
+  const bounds = limits.map((limit, k) => {
+    const y = py(limit.value);
+    // Names of limits close to each other stand side by side.
+    const x = right - 4 - (k % 2) * (right - EDGE.left) * 0.25;
+    return (
+      `<path d="M${EDGE.left} ${y.toFixed(1)}H${right}" stroke="${colors.bad}" stroke-dasharray="2 3"/>` +
+      `<text x="${x}" y="${(y - 4).toFixed(1)}" text-anchor="end" fill="${colors.bad}">${escaped(limitText(limit))}</text>`
+    );
+  });
+  return [...grid, ...drawn, ...bounds].join("");
 }
 
 /** The panel as a picture of its own, in the page's colours. */

@@ -11,10 +11,11 @@ export const editingDimension = signal<{ segment: number; which: "run" | "rise" 
 
 export function DimensionField() {
   const editing = editingDimension.value;
+  if (!editing) return null;
   const points = drawing.value.points;
-  const a = editing && points[editing.segment];
-  const b = editing && points[editing.segment + 1];
-  if (!editing || !a || !b) return null;
+  const a = points[editing.segment];
+  const b = points[editing.segment + 1];
+  if (!a || !b) return null;
   const { px, py } = projection.value;
   const box = canvasBox.value;
   const run = editing.which === "run";

@@ -113,14 +113,8 @@ export function Refusal() {
 
 /** Once, on the first visit, in the sky, where nothing is to be reached; not under a verdict. */
 export function FirstHint() {
-  const points = drawing.value.points;
-  if (
-    hintSeen.value ||
-    plan.value?.status !== "feasible" ||
-    selection.value.length > 0 ||
-    points.length < 4
-  )
-    return null;
+  if (hintSeen.value || selection.value.length > 0) return null;
+  if (plan.value?.status !== "feasible" || drawing.value.points.length < 4) return null;
   if (activity.value !== "idle" || run.value || !planKept.value) return null;
   return (
     <div class="hint">

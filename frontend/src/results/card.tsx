@@ -60,7 +60,7 @@ function useRoom() {
 export function Card({ result }: { result: Rollout }) {
   const card = useRoom();
   const other = compare.value ? runB.value : null;
-  const all = figures(other ? 2 : 1, robot.value?.limit);
+  const all = figures(other ? 2 : 1, robot.value?.limits);
   const sentences = result.outcome !== "success" || runPlan.value?.certificate?.motion;
   const needed = AROUND + (sentences ? SENTENCES : 0) + (all.length + (other ? 1 : 0)) * ROW;
   const low = needed > room.value;

@@ -32,25 +32,30 @@ export interface Figure {
 /** More than this, and the robot was not tracking any more [rad]. */
 const LOST = (10 * Math.PI) / 180;
 
-type Limit = RobotShape["limit"];
+type Limits = RobotShape["limits"];
 
-const ofLegs = ({ thigh, calf }: Limit) =>
-  thigh === calf ? fixed(thigh, 1) : `${fixed(thigh, 1)}, ${fixed(calf, 1)}`;
+const ofLegs = (limits: Limits) =>
+  [...new Set(limits.flatMap(({ thigh, calf }) => [thigh, calf]))]
+    .map((limit) => fixed(limit, 1))
+    .join(", ");
 
 /** What a motor lacks to its limit where it counts as being there [Nm]. */
 const NEAR = 0.05;
 
-/** Whether a thigh or calf gave all that its motor can; joints come as thigh, calf, wheel. */
-const atLimit = ({ series }: Rollout, { thigh, calf }: Limit): boolean =>
-  (series.torque ?? []).some((joints) =>
-    joints.some((torque, k) => k % 3 < 2 && Math.abs(torque) >= [thigh, calf][k % 3]! - NEAR),
+/** Whether a thigh or calf gave all that its motor can. */
+function atLimit({ series }: Rollout, [front, rear]: Limits): boolean {
+  // Joints come as thigh, calf, wheel of FL, FR, RL, RR.
+  const most = [front, front, rear, rear].flatMap(({ thigh, calf }) => [thigh, calf, Infinity]);
+  return (series.torque ?? []).some((joints) =>
+    joints.some((torque, k) => Math.abs(torque) >= most[k]! - NEAR),
   );
+}
 
 const maybe = (value: number | null | undefined, digits: number, unit = "") =>
   value === null || value === undefined ? "–" : fixed(value, digits) + unit;
 
 /** Of one rollout, or of several to compare: only then their outcomes are among the figures. */
-export function figures(count: number, limit: Limit | undefined): Figure[] {
+export function figures(count: number, limits: Limits | undefined): Figure[] {
   const outcome: Figure = {
     title: "Outcome",
     of: (_m, r) => OUTCOMES[r.outcome],
@@ -84,10 +89,10 @@ export function figures(count: number, limit: Limit | undefined): Figure[] {
     },
     {
       title: "Peak torque",
-      ...(limit ? { limit: `of ${ofLegs(limit)}` } : {}),
+      ...(limits ? { limit: `of ${ofLegs(limits)}` } : {}),
       hint: "Largest of thighs and calves, of what their motors can give",
       of: (m) => `${fixed(m.torque_peak, 1)} Nm`,
-      bad: (_m, r) => limit !== undefined && atLimit(r, limit),
+      bad: (_m, r) => limits !== undefined && atLimit(r, limits),
     },
     { title: "Energy", of: (m) => `${fixed(m.energy, 0)} J` },
     {

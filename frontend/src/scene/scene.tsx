@@ -1,11 +1,13 @@
 /** The 3-D scene: viser's page in a frame, with our header. */
 
+import { computed } from "@preact/signals";
 import { useRef } from "preact/hooks";
 import { hasFailed } from "../api/types";
 import { fixed } from "../geometry/format";
 import { PanelTools } from "../plan/panel-tools";
+import { dragging } from "../profile-editor/gestures";
 import { connected } from "../state/connection";
-import { isEmpty } from "../state/drawing";
+import { held, isEmpty } from "../state/drawing";
 import { livePlan } from "../state/live";
 import { plan } from "../state/planning";
 import { duration, shownRun, shownTime } from "../state/playback";
@@ -15,6 +17,7 @@ import { IconButton } from "../ui/icon-button";
 import { Menu, MenuItem } from "../ui/menu";
 import { useRoving } from "../ui/roving";
 import { session, setCamera } from "./drive";
+import { leaveTime } from "./leave-time";
 import { SceneLegend } from "./legend";
 import { saveScene } from "./picture";
 import { recording, recordVideo, stopVideo } from "./video";
@@ -25,6 +28,11 @@ const CAMERAS: [string, string][] = [
   ["front", "Front"],
   ["iso", "Three-quarter"],
 ];
+
+/** Something is being dragged, and the page has to follow. */
+const handAtWork = () => dragging.peek() !== null || held.peek();
+
+const moves = computed(() => duration.value > 0);
 
 export function Scene() {
   const address = session.value?.scene;
@@ -74,7 +82,7 @@ export function Scene() {
           icon="download"
           off={!address}
         />
-        <RecordButton off={!address || duration.value <= 0} />
+        <RecordButton off={!address || !moves.value} />
         <button
           type="button"
           class={legendOpen.value ? "t ico on" : "t ico"}
@@ -97,6 +105,7 @@ export function Scene() {
             src={`${address}?embedded=1&hideViserLogo`}
             title="3-D scene"
             allow="fullscreen"
+            onLoad={(event) => leaveTime(event.currentTarget.contentWindow!, handAtWork)}
           />
         )}
         {!isEmpty.value && connected.value && <Tag />}

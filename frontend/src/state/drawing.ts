@@ -47,6 +47,9 @@ let chosen = choices.peek();
 
 export const canUndo = computed(() => past.value.length > 0);
 export const canRedo = computed(() => future.value.length > 0);
+/** Parts of the drawing that a drag of its corners leaves as they are. */
+export const drawnName = computed(() => drawing.value.name);
+export const drawnFriction = computed(() => drawing.value.friction);
 export const isEmpty = computed(() => drawing.value.points.length < 2);
 
 export const isEdited = computed(() => {

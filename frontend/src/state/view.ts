@@ -31,6 +31,8 @@ export const theme = signal<Theme>(
 );
 export const tool = signal<Tool>("select");
 export const layers = signal<ReadonlySet<Layer>>(new Set(Object.keys(LAYERS) as Layer[]));
+/** The table of the profile's points is open. */
+export const pointsOpen = signal(false);
 export const tab = signal<Tab>("editor");
 
 export const hintSeen = signal(stored("hint") === "seen");

@@ -14,9 +14,6 @@ import { Menu } from "../ui/menu";
 import { saveFile } from "../ui/save-file";
 
 export function DownloadMenu() {
-  const shown = plan.value;
-  const result = run.value;
-  const formats = settings.value?.exports;
   const button = (
     <>
       <Icon name="download" />
@@ -37,34 +34,41 @@ export function DownloadMenu() {
       buttonClass={isNarrow.value ? "btn sq" : "btn"}
       panelClass="downloads"
       align="right"
-      disabled={isEmpty.value && !result}
+      disabled={isEmpty.value && !run.value}
     >
-      {(close) => (
-        <>
-          {!isEmpty.value && <Profile close={close} />}
-          {shown && (
-            <Exports
-              title="Plan"
-              kind="plans"
-              id={shown.id}
-              formats={formats?.plan ?? []}
-              close={close}
-            />
-          )}
-          {result ? (
-            <Exports
-              title={runOf.value ? `Rollout of the ${runOf.value}` : "Rollout"}
-              kind="rollouts"
-              id={result.id}
-              formats={formats?.rollout ?? []}
-              close={close}
-            />
-          ) : (
-            <div class="note">Run a rollout to download its series and replay.</div>
-          )}
-        </>
-      )}
+      {(close) => <Everything close={close} />}
     </Menu>
+  );
+}
+
+function Everything({ close }: { close: () => void }) {
+  const shown = plan.value;
+  const result = run.value;
+  const formats = settings.value?.exports;
+  return (
+    <>
+      {!isEmpty.value && <Profile close={close} />}
+      {shown && (
+        <Exports
+          title="Plan"
+          kind="plans"
+          id={shown.id}
+          formats={formats?.plan ?? []}
+          close={close}
+        />
+      )}
+      {result ? (
+        <Exports
+          title={runOf.value ? `Rollout of the ${runOf.value}` : "Rollout"}
+          kind="rollouts"
+          id={result.id}
+          formats={formats?.rollout ?? []}
+          close={close}
+        />
+      ) : (
+        <div class="note">Run a rollout to download its series and replay.</div>
+      )}
+    </>
   );
 }
 

@@ -1,7 +1,7 @@
 /** Friction: typed, stepped, or dragged by its label; the plan follows. */
 
 import { fixed } from "../geometry/format";
-import { commit, draft, drawing } from "../state/drawing";
+import { commit, draft, drawing, drawnFriction } from "../state/drawing";
 import { Icon } from "../ui/icon";
 import { NumberField } from "../ui/number-field";
 
@@ -11,7 +11,6 @@ const MOST = 2;
 const PER_PIXEL = 0.005;
 
 export function Friction() {
-  const value = drawing.value.friction;
   const set = (next: number) =>
     draft({ friction: Math.round(Math.min(MOST, Math.max(LEAST, next)) * 1000) / 1000 });
   const step = (by: number) => () => {
@@ -34,7 +33,7 @@ export function Friction() {
       </small>
       <NumberField
         label="Friction coefficient"
-        value={value}
+        value={drawnFriction.value}
         min={LEAST}
         max={MOST}
         step={0.01}

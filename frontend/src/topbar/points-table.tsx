@@ -1,6 +1,5 @@
 /** The terrain as a table of x and z: to type, to paste into, to take along as CSV or YAML. */
 
-import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { fixed } from "../geometry/format";
 import { ImportProblem } from "../import/import-problem";
@@ -8,12 +7,11 @@ import { importProblem, takeText } from "../import/take";
 import { addVertex, moveVertices, removeVertices } from "../profile-editor/edits";
 import { names } from "../profile-editor/vertices";
 import { commit, draft, drawing } from "../state/drawing";
+import { pointsOpen } from "../state/view";
 import { Icon } from "../ui/icon";
 import { IconButton } from "../ui/icon-button";
 import { NumberField } from "../ui/number-field";
 import { saveFile } from "../ui/save-file";
-
-export const pointsOpen = signal(false);
 
 const number = (v: number) => String(Number(v.toFixed(4)));
 
@@ -30,10 +28,6 @@ export function asYaml(): string {
 }
 
 export function PointsTable() {
-  return pointsOpen.value ? <Sheet /> : null;
-}
-
-function Sheet() {
   const dialog = useRef<HTMLDialogElement>(null);
   useEffect(() => dialog.current?.showModal(), []);
   const { points, name } = drawing.value;

@@ -6,11 +6,11 @@ import { ImportProblem } from "../import/import-problem";
 import { importProblem, takeFile } from "../import/take";
 import { clear, drawing, isEmpty } from "../state/drawing";
 import { terrains } from "../state/setup";
+import { pointsOpen } from "../state/view";
 import { Icon } from "../ui/icon";
 import { Menu } from "../ui/menu";
 import { NameField } from "../ui/name-field";
 import { GenerateForm } from "./generate-form";
-import { pointsOpen } from "./points-table";
 import {
   openStored,
   removeStored,

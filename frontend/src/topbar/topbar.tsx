@@ -3,7 +3,7 @@
 import { useState } from "preact/hooks";
 import type { RobotDocument } from "../api/types";
 import { fixed } from "../geometry/format";
-import { drawing, isEdited } from "../state/drawing";
+import { drawnName, isEdited } from "../state/drawing";
 import { allRobots, robotEdits, robotName } from "../state/setup";
 import { theme, toggleTheme } from "../state/view";
 import { Icon, Logo } from "../ui/icon";
@@ -26,8 +26,7 @@ export function TopBar() {
       <TerrainMenu
         button={
           <>
-            <small class="quiet">Terrain</small>{" "}
-            <b title={drawing.value.name}>{drawing.value.name}</b>
+            <small class="quiet">Terrain</small> <b title={drawnName.value}>{drawnName.value}</b>
             {isEdited.value && <span class="dot" title="Edited, not saved" />}
             <Icon name="down" />
           </>

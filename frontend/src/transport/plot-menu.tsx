@@ -1,7 +1,7 @@
 /** Which plots the dock shows. */
 
 import { PANELS, type PanelId } from "../plots/lines";
-import { shownPanels } from "../plots/plots";
+import { shownPanels } from "../plots/room";
 import { Icon } from "../ui/icon";
 import { Menu } from "../ui/menu";
 

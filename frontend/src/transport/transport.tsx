@@ -1,5 +1,6 @@
 /** Play, step and speed; timeline and margins on one axis. */
 
+import { computed } from "@preact/signals";
 import { fixed } from "../geometry/format";
 import { plan } from "../state/planning";
 import {
@@ -19,8 +20,10 @@ import { MarginRows } from "./margin-rows";
 import { SpeedLegend } from "./speed-row";
 import { Ticks, Timeline } from "./timeline";
 
+const nothing = computed(() => duration.value <= 0);
+
 export function Transport() {
-  const none = duration.value <= 0;
+  const none = nothing.value;
   return (
     <div class="time">
       <div class="tr-bar" role="group" aria-label="Playback">

@@ -1,12 +1,15 @@
 /** The workspace Robot: what it is, every number of it, and what it climbs beside another one. */
 
+import { useSignalEffect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { isField } from "../profile-editor/commands";
 import { redo, undo } from "../state/drawing";
+import { droppedRobot } from "../state/dropped";
 import { giveUp } from "./drag";
 import { Library } from "./library";
 import { Numbers } from "./numbers";
 import { Preview } from "./preview";
+import { readFile } from "./shelf";
 import { SideView } from "./side-view";
 import { Toolbar } from "./toolbar";
 
@@ -27,6 +30,12 @@ export function RobotRoom() {
     addEventListener("keydown", onKey);
     return () => removeEventListener("keydown", onKey);
   }, []);
+  useSignalEffect(() => {
+    const file = droppedRobot.value;
+    if (!file) return;
+    droppedRobot.value = null;
+    void readFile(file);
+  });
   return (
     <main class="robot-room">
       <Library />

@@ -1,0 +1,77 @@
+"""Parts of the page: those that come later, and the scene, which shares a thread with it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from playwright.sync_api import expect
+
+from .conftest import PATIENCE, Product
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Route
+
+pytestmark = pytest.mark.browser
+
+ROOMS = {"robot": "2", "map": "3", "runs": "4"}
+
+
+def test_a_part_that_did_not_come_says_so_and_comes_when_asked_again(product: Product) -> None:
+    page = product.page
+    away = [True]
+
+    def answer(route: Route) -> None:
+        if away[0]:
+            route.abort()
+        else:
+            route.continue_()
+
+    page.route("**/assets/map-*.js", answer)
+    product.open()
+    page.keyboard.press("3")
+    told = page.get_by_role("alert").filter(has_text="The map could not be loaded")
+    expect(told).to_be_visible(timeout=PATIENCE)
+    assert product.status == "feasible"
+    away[0] = False
+    told.get_by_role("button", name="Try again").click()
+    expect(page.get_by_text("How far can it go?")).to_be_visible(timeout=PATIENCE)
+
+
+def test_workspaces_that_were_never_open_need_no_service(product: Product) -> None:
+    page = product.page
+    product.open()
+    # Their files come while the page idles.
+    page.wait_for_function(
+        """rooms => rooms.every(room => performance.getEntriesByType("resource")
+            .some(e => e.name.includes(`/assets/${room}-`) && e.responseEnd > 0))""",
+        arg=["robot", "map", "runs", "points-table", "cut-dialog", "designs"],
+        timeout=PATIENCE,
+    )
+    page.context.set_offline(True)
+    for name, key in ROOMS.items():
+        page.keyboard.press(key)
+        expect(page.locator(f".app[data-workspace={name}] .room > main:visible")).to_be_visible()
+
+
+# In the scene's frame: one frame that takes 300 ms, and how long the next one waits after it.
+NEXT_FRAME = """() => new Promise(done => {
+  requestAnimationFrame(() => {
+    const begun = performance.now();
+    while (performance.now() < begun + 300);
+    const ended = performance.now();
+    requestAnimationFrame(() => done(performance.now() - ended));
+  });
+})"""
+
+
+def test_the_scene_leaves_the_page_half_of_the_time_of_a_drag(product_with_scene: Product) -> None:
+    product = product_with_scene.open()
+    frame = product.page.frame_locator("iframe").first
+    frame.locator("canvas").first.wait_for(state="attached", timeout=PATIENCE)
+    inside = next(each for each in product.page.frames if "/scene/" in each.url)
+    box = product.vertex(2).locator("rect").bounding_box()
+    assert box is not None
+    product.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    product.page.mouse.down()
+    assert inside.evaluate(NEXT_FRAME) > 250
