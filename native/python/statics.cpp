@@ -20,6 +20,16 @@ std::vector<Contact> contacts(const Points& at, const Points& normals, double fr
     return out;
 }
 
+std::array<Contact, 2> two_contacts(const Points& at, const Points& normals) {
+    const std::vector<Contact> both = contacts(at, normals, 0.0);
+    if (both.size() != 2) throw nb::value_error("two contacts, please");
+    return {both[0], both[1]};
+}
+
+auto given(const std::array<ContactForce, 2>& forces) {
+    return give(std::vector<double>{forces[0].tangential, forces[0].normal, forces[1].tangential, forces[1].normal}, {2, 2});
+}
+
 }  // namespace
 
 void bind_statics(nb::module_& m) {
@@ -34,13 +44,17 @@ void bind_statics(nb::module_& m) {
         return com_margin({interval.first, interval.second}, com_x);
     }, nb::arg("interval"), nb::arg("com_x"));
     m.def("least_friction", [](const Points& at, const Points& normals, double com_x, double ample) {
-        const std::vector<Contact> given = contacts(at, normals, 0.0);
-        if (given.size() != 2) throw nb::value_error("two contacts, please");
         std::array<ContactForce, 2> forces;
-        const double needed = least_friction({given[0], given[1]}, com_x, ample, forces);
-        return std::pair(needed, give(std::vector<double>{forces[0].tangential, forces[0].normal, forces[1].tangential, forces[1].normal}, {2, 2}));
+        const double needed = least_friction(two_contacts(at, normals), com_x, ample, forces);
+        return std::pair(needed, given(forces));
     }, nb::arg("points"), nb::arg("normals"), nb::arg("com_x"), nb::arg("ample") = 0.0,
        "Friction needed, and forces (2, 2): tangential and normal of either contact, in weights.");
+    m.def("held_within", [](const Points& at, const Points& normals, double com_x, double ample) {
+        std::array<ContactForce, 2> forces;
+        const bool held = held_within(two_contacts(at, normals), com_x, ample, forces);
+        return std::pair(held, given(forces));
+    }, nb::arg("points"), nb::arg("normals"), nb::arg("com_x"), nb::arg("ample"),
+       "Whether so much friction holds the CoM, and the forces (2, 2) of `least_friction` where it does.");
     m.def("friction_needed", [](const Points& at, const Points& normals, double com_x) {
         return friction_needed(contacts(at, normals, 0.0), com_x);
     });

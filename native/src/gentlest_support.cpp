@@ -10,6 +10,7 @@ namespace stairwright {
 namespace {
 
 constexpr double kPinched = 1.6;      // weights; wheels that press harder pinch something between them
+constexpr double kNotHeld = 100.0;    // weights; more than any forces that hold the robot
 // Shares of the friction that forces may take without harm, tried in turn.
 constexpr std::array<double, 2> kAmple = {0.75, 0.98};
 
@@ -44,8 +45,9 @@ Support gentlest_support(const Faces& front, const Faces& rear, double com_x, do
             for (int j = rear.count - 1; j >= 0; --j) {
                 std::array<ContactForce, 2> forces;
                 const std::array<Contact, 2> faces = {front.at[i], rear.at[j]};
-                const double needed = least_friction(faces, com_x, ample, forces);
-                const double score = needed <= ample ? forces[0].normal + forces[1].normal : 100.0 + needed;
+                const bool holds = held_within(faces, com_x, ample, forces);
+                if (!holds && least < kNotHeld) continue;
+                const double score = holds ? forces[0].normal + forces[1].normal : kNotHeld + least_friction(faces, com_x, ample, forces);
                 if (score >= least - 1e-9) continue;
                 least = score;
                 out = {forces, faces, true};
@@ -64,7 +66,7 @@ Support resting_support(const Faces& front, const Faces& rear, double com_x, dou
             for (int j = 0; j < std::min(rear.count, 2); ++j) {
                 std::array<ContactForce, 2> forces;
                 const std::array<Contact, 2> faces = {front.at[i], rear.at[j]};
-                if (least_friction(faces, com_x, ample, forces) > ample) continue;
+                if (!held_within(faces, com_x, ample, forces)) continue;
                 double size = 0.0;
                 for (const ContactForce& f : forces) size += f.tangential * f.tangential + f.normal * f.normal;
                 if (size >= least - 1e-9) continue;

@@ -21,8 +21,8 @@ LegPoints forward(const Leg& leg, const Body& body, JointAngles q) {
     return out;
 }
 
-LegPoints place_leg(const Leg& leg, const Body& body, Turn pitch, Vec2 wheel) {
-    const Vec2 at = hip(leg, body, pitch);
+LegPoints place_leg(const Leg& leg, Vec2 trunk, Turn pitch, Vec2 wheel) {
+    const Vec2 at = hip(leg, trunk, pitch);
     return {at, at + knee_offset(leg, wheel - at), wheel};
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <optional>
 
 namespace stairwright {
 
@@ -130,40 +131,71 @@ double friction_needed(std::span<const Contact> contacts, double com_x) {
     return low + unit * static_cast<double>(enough);
 }
 
-double least_friction(const std::array<Contact, 2>& contacts, double com_x, double ample, std::array<ContactForce, 2>& forces) {
+namespace {
+
+// Forces of two contacts that hold a CoM, in weights: base + factor * inner for any factor of a range.
+struct TwoForces {
+    std::array<ContactForce, 2> base, inner;
+
+    Interval factors(double friction) const { return squeeze_range(base, inner, friction); }
+    std::array<ContactForce, 2> gentlest(Interval range) const {
+        const double factor = std::min(std::max(0.0, range.lower), range.upper);
+        std::array<ContactForce, 2> out;
+        for (int k = 0; k < 2; ++k)
+            out[k] = {base[k].tangential + factor * inner[k].tangential, base[k].normal + factor * inner[k].normal};
+        return out;
+    }
+};
+
+// Nothing where both contacts are in one place.
+std::optional<TwoForces> two_forces(const std::array<Contact, 2>& contacts, double com_x) {
     const Vec2 line = contacts[0].point - contacts[1].point;
     const double gap = norm(line);
-    if (gap < 1e-9) return kInfinity;
+    if (gap < 1e-9) return std::nullopt;
     const Vec2 u = {line.x / gap, line.z / gap};
     const double front = (com_x - contacts[1].point.x) / gap;  // across the line of contacts: lever `gap`
     const std::array<double, 2> across = {front, -front + u.x};
-    std::array<ContactForce, 2> base, inner;
+    TwoForces out;
     for (int k = 0; k < 2; ++k) {
         const Vec2 n = contacts[k].normal, along = k == 0 ? -u : u;
         const Vec2 f = {-across[k] * u.z + 0.5 * u.z * u.x, across[k] * u.x + 0.5 * u.z * u.z};
-        base[k] = {cross(f, n), dot(f, n)};
-        inner[k] = {cross(along, n), dot(along, n)};
+        out.base[k] = {cross(f, n), dot(f, n)};
+        out.inner[k] = {cross(along, n), dot(along, n)};
     }
-    if (squeeze_range(base, inner, 1e4).empty()) return kInfinity;
+    return out;
+}
+
+}  // namespace
+
+double least_friction(const std::array<Contact, 2>& contacts, double com_x, double ample, std::array<ContactForce, 2>& forces) {
+    const auto two = two_forces(contacts, com_x);
+    if (!two || two->factors(1e4).empty()) return kInfinity;
     double low = 0.0, high = 8.0;
-    Interval range = squeeze_range(base, inner, high);
+    Interval range = two->factors(high);
     while (range.empty()) {
         low = high, high *= 2.0;
-        range = squeeze_range(base, inner, high);
+        range = two->factors(high);
     }
     for (int k = 0; k < 40 && high - low >= 1e-7; ++k) {
         const double middle = 0.5 * (low + high);
-        const Interval tried = squeeze_range(base, inner, middle);
+        const Interval tried = two->factors(middle);
         if (tried.empty())
             low = middle;
         else
             high = middle, range = tried;
     }
-    if (ample > high) range = squeeze_range(base, inner, ample);
-    const double factor = std::min(std::max(0.0, range.lower), range.upper);
-    for (int k = 0; k < 2; ++k)
-        forces[k] = {base[k].tangential + factor * inner[k].tangential, base[k].normal + factor * inner[k].normal};
+    if (ample > high) range = two->factors(ample);
+    forces = two->gentlest(range);
     return high;
+}
+
+bool held_within(const std::array<Contact, 2>& contacts, double com_x, double ample, std::array<ContactForce, 2>& forces) {
+    const auto two = two_forces(contacts, com_x);
+    if (!two) return false;
+    const Interval range = two->factors(ample);
+    if (range.empty()) return false;
+    forces = two->gentlest(range);
+    return true;
 }
 
 namespace {
@@ -173,24 +205,19 @@ double moment(Vec2 r, Vec2 f) { return r.z * f.x - r.x * f.z; }
 
 }  // namespace
 
-LegTorques static_torques(const Leg& leg, const LegPoints& p, const WheelLoad& load) {
-    // A joint must balance everything below it.
+LegLevers leg_levers(const Leg& leg, const LegPoints& p) {
     const Vec2 thigh_line = p.knee - p.hip, calf_line = p.wheel - p.knee;
     const Vec2 thigh_com = p.hip + link_turn(leg.thigh, thigh_line) * leg.thigh.com;
     const Vec2 calf_com = p.knee + link_turn(leg.calf, calf_line) * leg.calf.com;
-    const auto weight = [&](double mass, Vec2 at, Vec2 joint) { return mass * kGravity * (at.x - joint.x); };
-    LegTorques out;
-    out.wheel = load.moment;
-    out.calf = moment(p.wheel - p.knee, load.force) + load.moment + weight(leg.calf.mass, calf_com, p.knee) +
-               weight(leg.wheel.mass, p.wheel, p.knee);
-    out.thigh = moment(p.wheel - p.hip, load.force) + load.moment + weight(leg.thigh.mass, thigh_com, p.hip) +
-                weight(leg.calf.mass, calf_com, p.hip) + weight(leg.wheel.mass, p.wheel, p.hip);
-    return out;
+    const auto weight = [](double mass, Vec2 at, Vec2 joint) { return mass * kGravity * (at.x - joint.x); };
+    return {p.wheel - p.hip, calf_line,
+            weight(leg.thigh.mass, thigh_com, p.hip) + weight(leg.calf.mass, calf_com, p.hip) + weight(leg.wheel.mass, p.wheel, p.hip),
+            weight(leg.calf.mass, calf_com, p.knee) + weight(leg.wheel.mass, p.wheel, p.knee)};
 }
 
 LegTorques static_torques(const Leg& leg, const LegPoints& p, const Contact& contact, const ContactForce& f) {
     const Vec2 force = world_force(contact, f);
-    return static_torques(leg, p, {force, moment(contact.point - p.wheel, force)});
+    return static_torques(leg_levers(leg, p), {force, moment(contact.point - p.wheel, force)});
 }
 
 }  // namespace stairwright

@@ -16,6 +16,7 @@ from stairwright._core import (
     com_interval,
     com_margin,
     friction_needed,
+    held_within,
     least_friction,
 )
 
@@ -110,6 +111,19 @@ def test_least_friction_forces_balance_and_agree_with_the_interval(a, b, com):
     assert np.all(np.abs(forces[:, 0]) <= need * forces[:, 1] + 1e-6)
     if np.abs(forces).max() < 0.4 * RAY_LIMIT:
         assert friction_needed(points, normals, com) <= need + 1e-4
+
+
+@settings(max_examples=100, deadline=None)
+@given(contact, contact, st.floats(-0.5, 0.5), st.floats(0.05, 1.5))
+def test_what_is_held_within_a_friction_needs_no_more(a, b, com, ample):
+    points, normals = unpack([a, b])
+    need, expected = least_friction(points, normals, com, ample)
+    if abs(need - ample) < 1e-6:  # decided by rounding
+        return
+    held, forces = held_within(points, normals, com, ample)
+    assert held == (need < ample)
+    if held:
+        assert forces.tolist() == expected.tolist()
 
 
 def test_nothing_holds_a_robot_between_frictionless_walls():

@@ -24,7 +24,8 @@ struct ReachRange {
     double least = 0.0, most = 0.0;  // m
 };
 
-inline Vec2 hip(const Leg& leg, const Body& body, Turn pitch) { return Vec2{body.x, body.z} + pitch * leg.hip; }
+inline Vec2 hip(const Leg& leg, Vec2 trunk, Turn pitch) { return trunk + pitch * leg.hip; }
+inline Vec2 hip(const Leg& leg, const Body& body, Turn pitch) { return hip(leg, Vec2{body.x, body.z}, pitch); }
 
 // Knee relative to the hip for a wheel at `reach` from it, by the leg's knee side; the reach is clamped.
 inline Vec2 knee_offset(const Leg& leg, Vec2 reach) {
@@ -53,8 +54,11 @@ inline Turn link_turn(const Link& link, Vec2 line) {
 
 // Hip, knee and wheel of a leg at joint angles `q`.
 LegPoints forward(const Leg& leg, const Body& body, JointAngles q);
-// Hip and knee for a given wheel centre.
-LegPoints place_leg(const Leg& leg, const Body& body, Turn pitch, Vec2 wheel);
+// Hip and knee for a given wheel centre and centre of the trunk.
+LegPoints place_leg(const Leg& leg, Vec2 trunk, Turn pitch, Vec2 wheel);
+inline LegPoints place_leg(const Leg& leg, const Body& body, Turn pitch, Vec2 wheel) {
+    return place_leg(leg, Vec2{body.x, body.z}, pitch, wheel);
+}
 
 // Distances from hip to wheel that the calf's range allows.
 ReachRange reach_range(const Leg& leg);

@@ -60,6 +60,10 @@ inline Vec2 world_force(const Contact& contact, const ContactForce& f) {
 // the least friction.
 double least_friction(const std::array<Contact, 2>& contacts, double com_x, double ample, std::array<ContactForce, 2>& forces);
 
+// Whether two contacts hold a CoM at `com_x` with no more than `ample` friction, and the forces of `least_friction` where
+// they do: told without looking for the friction needed.
+bool held_within(const std::array<Contact, 2>& contacts, double com_x, double ample, std::array<ContactForce, 2>& forces);
+
 struct LegTorques {
     double thigh = 0.0, calf = 0.0, wheel = 0.0;  // Nm
 };
@@ -70,8 +74,19 @@ struct WheelLoad {
     double moment = 0.0;
 };
 
-// Static torques of one leg under the load on its wheel.
-LegTorques static_torques(const Leg& leg, const LegPoints& points, const WheelLoad& load);
+// A leg in one pose as far as its torques go: from each joint to the wheel's centre [m], and what its own weight asks of
+// the joint [Nm].
+struct LegLevers {
+    Vec2 thigh, calf;
+    double thigh_weight = 0.0, calf_weight = 0.0;
+};
+LegLevers leg_levers(const Leg& leg, const LegPoints& points);
+
+// Static torques of one leg under the load on its wheel: a joint must balance everything below it.
+inline LegTorques static_torques(const LegLevers& levers, const WheelLoad& load) {
+    const auto joint = [&](Vec2 r, double weight) { return r.z * load.force.x - r.x * load.force.z + load.moment + weight; };
+    return {joint(levers.thigh, levers.thigh_weight), joint(levers.calf, levers.calf_weight), load.moment};
+}
 // Static torques of one leg whose wheel carries `force` [N] at `contact`. The wheel's motor sits in the calf, so for
 // the leg's joints the wheel is one body with it.
 LegTorques static_torques(const Leg& leg, const LegPoints& points, const Contact& contact, const ContactForce& force);

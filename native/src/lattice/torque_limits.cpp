@@ -14,7 +14,7 @@ constexpr double kKept = 101.0;  // quality from here on: as much as a path may 
 
 }  // namespace
 
-std::uint8_t TorqueLimits::quality(const Problem& problem, const Cell& cell, std::size_t number, const ComIntervals& com, const Body& body,
+std::uint8_t TorqueLimits::quality(const Problem& problem, const Cell& cell, std::size_t number, const ComIntervals& com, Vec2 trunk,
                         Turn pitch, double com_x) {
     std::optional<WheelLoads>& loads = loads_[number];
     const double weight = problem.robot.mass * kGravity;
@@ -22,15 +22,18 @@ std::uint8_t TorqueLimits::quality(const Problem& problem, const Cell& cell, std
         const WheelPlaces s = {problem.s[cell.front], problem.s[cell.rear]};
         loads.emplace(path_, s, friction_, lag_, stairwright::Interval{com.friction.lower, com.friction.upper}, weight);
     }
-    double taken = 0.0;  // the largest share
-    const std::array<Vec2, 2> wheels = {problem.centres[cell.front], problem.centres[cell.rear]};
+    std::array<LegLevers, 2> levers;
     for (const int pair : {kFront, kRear}) {
         const Leg& leg = problem.robot.legs[pair].leg;
-        const LegPoints points = place_leg(leg, body, pitch, wheels[pair]);
-        for (int way = 0; way < loads->ways(); ++way) {
-            const auto load = loads->at(way, com_x);
-            if (!load) continue;
-            const LegTorques torques = static_torques(leg, points, (*load)[pair]);
+        levers[pair] = leg_levers(leg, place_leg(leg, trunk, pitch, problem.centres[pair == kFront ? cell.front : cell.rear]));
+    }
+    double taken = 0.0;  // the largest share
+    for (int way = 0; way < loads->ways(); ++way) {
+        const auto load = loads->at(way, com_x);
+        if (!load) continue;
+        for (const int pair : {kFront, kRear}) {
+            const Leg& leg = problem.robot.legs[pair].leg;
+            const LegTorques torques = static_torques(levers[pair], (*load)[pair]);
             taken = std::max({taken, std::abs(torques.thigh) / leg.thigh_motor.torque, std::abs(torques.calf) / leg.calf_motor.torque,
                               std::abs(torques.wheel) / leg.wheel_motor.torque});
             if (taken > share_) return 0;

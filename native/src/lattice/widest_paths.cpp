@@ -189,9 +189,9 @@ bool WidestPaths::widen(const Problem& problem, const Cell& cell, const ComInter
         const int at = wider.at[k];
         std::uint8_t least = wider.width[k];
         if (torques_) {
-            const double sine = wider.sin[k], cosine = wider.cos[k];
-            const Body body = {front.x + wider.x[k], front.z + wider.z[k], std::atan2(sine, cosine)};
-            least = std::min(least, torques_->quality(problem, cell, number, com, body, {cosine, sine}, wider.com[k]));
+            const Vec2 trunk = {front.x + wider.x[k], front.z + wider.z[k]};
+            const Turn pitch = {wider.cos[k], wider.sin[k]};
+            least = std::min(least, torques_->quality(problem, cell, number, com, trunk, pitch, wider.com[k]));
             if (least <= ways[at]) continue;
         }
         ways[at] = least;

@@ -48,13 +48,15 @@ void torque_residuals(const SmoothingProblem& problem, std::size_t node, const P
 void torque_limit_residuals(const SmoothingProblem& problem, std::size_t node, const Posture& posture, double* out) {
     const MarginTerm& term = problem.objective.torque_room;
     std::fill(out, out + 6, 0.0);
+    std::array<LegLevers, 2> levers;
+    for (const int pair : {kFront, kRear}) levers[pair] = leg_levers(problem.robot.legs[pair].leg, posture.legs[pair]);
     for (const WheelLoads& loads : problem.loads[node]) {
         for (int way = 0; way < loads.ways(); ++way) {
             const auto load = loads.at(way, posture.com.x);
             if (!load) continue;
             for (const int pair : {kFront, kRear}) {
                 const Leg& leg = problem.robot.legs[pair].leg;
-                const LegTorques torques = static_torques(leg, posture.legs[pair], (*load)[pair]);
+                const LegTorques torques = static_torques(levers[pair], (*load)[pair]);
                 const auto lacking = [&](double torque, const Motor& motor) {
                     return hinge(1.0 - std::abs(torque) / motor.torque, term, problem.objective.torque_hard);
                 };
