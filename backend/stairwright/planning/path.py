@@ -11,11 +11,11 @@ import numpy as np
 from stairwright.errors import InputError
 from stairwright.planning.certificate.certify import with_dynamics
 from stairwright.planning.infeasibility.diagnosis import no_standing_pose
-from stairwright.planning.path_planner import Blocked, PathPlanner, Solved, path_planner
+from stairwright.planning.path_planner import THIN, Blocked, PathPlanner, Solved, path_planner
 from stairwright.planning.plan import Plan, PlanTiming, Problem
 from stairwright.planning.smoothing.path_document import make_plan
 from stairwright.planning.standing import NoStandingPose
-from stairwright.planning.strategy import THIN, solve
+from stairwright.planning.strategy import solve
 from stairwright.planning.threads import search_threads
 from stairwright.planning.timing.fast import hastened
 from stairwright.planning.tolerance import Tolerance
@@ -63,7 +63,8 @@ def plan_path(
         make_plan, terrain, friction=friction, weights=weights, begun=begun, tolerance=tolerance
     )
     try:
-        planners = [path_planner(terrain, one, least, searched) for one in robots]
+        fast = timing == "fast"
+        planners = [path_planner(terrain, one, least, searched, fast=fast) for one in robots]
     except NoStandingPose as error:
         return document(robot, problem=no_standing_pose(terrain, robot, error))
     except InputError as error:

@@ -6,6 +6,7 @@ In which order they are tried is the strategy's (`strategy.py`).
 from __future__ import annotations
 
 import math
+import time as clock
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -27,18 +28,23 @@ from stairwright.planning.path_problem import PathProblem
 from stairwright.planning.plan import Certificate
 from stairwright.planning.room import IN_SEARCH, Room
 from stairwright.planning.smoothing.node_margins import BEYOND_REPAIR, Motor
-from stairwright.planning.smoothing.path_document import PathPoses
+from stairwright.planning.smoothing.path_document import PathPoses, make_plan
 from stairwright.planning.smoothing.path_timing import path_parameter
 from stairwright.planning.smoothing.refine import Refined, refine
 from stairwright.planning.smoothing.repair import STAGES, repair
 from stairwright.planning.standing import StandingPose, find_standing_poses
 from stairwright.planning.threads import still_wanted
+from stairwright.planning.timing.fast import TimingProblem
 from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
 
 Ints = NDArray[np.int64]
+
+THIN = 0.01  # m; CoM margin of a path that is compared with others
+THIN_IF_FAST = 0.015  # m; of one that is to be driven fast, for inertia takes some of it
+STRAIGHTER = 3.4  # times the weight of smoothness
 
 
 @dataclass(frozen=True)
@@ -112,9 +118,9 @@ Outcomes = dict[tuple[Attempt, bool], Solved | Blocked]
 
 
 def path_planner(
-    terrain: Terrain, robot: Robot, friction: float, weights: PathWeights
+    terrain: Terrain, robot: Robot, friction: float, weights: PathWeights, *, fast: bool = False
 ) -> PathPlanner:
-    """The planner for `terrain` and `robot`.
+    """The planner for `terrain` and `robot`; with `fast` for a path that is to be driven fast.
 
     Raises:
         InputError: If the profile is too short for a wheel.
@@ -122,13 +128,15 @@ def path_planner(
     """
     path = wheel_path(terrain, robot.wheel.radius)
     ends = find_standing_poses(terrain, robot, path)
-    return PathPlanner(terrain, robot, path, _core.Terrain(path.vertices), ends, friction, weights)
+    ground = _core.Terrain(path.vertices)
+    return PathPlanner(terrain, robot, path, ground, ends, friction, weights, fast=fast)
 
 
 @dataclass
 class PathPlanner(PathProblem):
     """A problem and the ways to its answer."""
 
+    fast: bool = False  # whether the path is to be driven fast
     searches: Searches = field(default_factory=dict)
     tried: Outcomes = field(default_factory=dict, init=False)
 
@@ -159,7 +167,8 @@ class PathPlanner(PathProblem):
 
         With weights of the user's the lattice is searched for them and for the default ones, and
         the path that costs less is taken: heavy weights lead the lattice, whose costs are rougher
-        than those of the smoothing, to places that the smoothing cannot make as good.
+        than those of the smoothing, to places that the smoothing cannot make as good. Where a path
+        is to be driven fast, each is smoothed in two ways, and the soonest is taken.
         """
         still_wanted()
         finding = self.find(how.fine, how.bounds, not how.probe, how.roll_back)
@@ -167,19 +176,32 @@ class PathPlanner(PathProblem):
             return Blocked(None, finding.quality > 0)
         if finding.s is None:
             return Blocked(finding.reached, False)
-        answer = self.finish(finding)
         if self.unweighted is None:
-            return answer
+            return self.finish(finding)
         usual = self.unweighted.find(how.fine, how.bounds, roll_back=how.roll_back)
-        if usual.s is None:
-            return answer
-        return min(answer, self.finish(usual), self.unweighted.finish(usual), key=self.cost)
+        ways = [finding] if usual.s is None else [finding, usual]
+        answers = [self.finish(way) for way in ways]
+        if self.fast:
+            answers += [self.straighter.finish(way) for way in ways]
+            return min(answers, key=self._slowness)
+        answers += [self.unweighted.finish(way) for way in ways[1:]]
+        return min(answers, key=self.cost)
 
     def cost(self, answer: Solved | Blocked) -> float:
         """What the weights make of a path; infinite where there is none."""
         if isinstance(answer, Blocked):
             return np.inf
         return self._path_cost(answer.nodes)[0]
+
+    def _slowness(self, answer: Solved | Blocked) -> tuple[bool, float]:
+        """Orders paths that are to be driven fast: by their least time [s], behind all others thin
+        ones by their cost, for it is room that they lack and not time.
+        """
+        if isinstance(answer, Blocked) or answer.margin <= self.thin:
+            return True, self.cost(answer)
+        poses, begun = self.poses(answer.nodes), clock.perf_counter()
+        plan = make_plan(self.terrain, self.robot, self.friction, self.weights, begun, poses)
+        return False, TimingProblem.of(plan, self.weights.aggressiveness).least_time()
 
     def cost_terms(self, nodes: Refined) -> dict[str, float]:
         """The quantity that each weight makes small, by the weight's name; see `PathWeights`."""
@@ -210,6 +232,19 @@ class PathPlanner(PathProblem):
         of that.
         """
         return replace(self, room=room, in_search=in_search, searches={})
+
+    @property
+    def thin(self) -> float:
+        """CoM margin up to which a path is compared with others [m]."""
+        return THIN_IF_FAST if self.fast else THIN
+
+    @cached_property
+    def straighter(self) -> PathPlanner:
+        """The same problem with more smoothness, for paths that are to be driven fast: whether less
+        bent is sooner, too, depends on the room that it costs.
+        """
+        smoothness = STRAIGHTER * self.weights.smoothness
+        return replace(self, weights=self.weights.model_copy(update={"smoothness": smoothness}))
 
     @cached_property
     def unweighted(self) -> PathPlanner | None:

@@ -25,7 +25,6 @@ from .lattice.search import Place
 from .path_planner import Attempt, Blocked, PathPlanner, Solved
 from .threads import race
 
-THIN = 0.01  # m; CoM margin of a path that is compared with others
 HEAVY = 0.85  # of a motor's torque; a path that takes more is compared with one that spares motors
 COARSE = 1.7  # lattice refinement of all but the first and the finest attempt
 
@@ -110,8 +109,11 @@ def _search(planner: PathPlanner, pool: Executor, any_path: bool = False) -> Sol
     """The three steps."""
     tried: Tried = {}
     _make(planner, pool, [AT_ONCE], tried)
-    best = _best(tried)
-    enough = any_path or (best and (_sound(best) or (best.margin > THIN and not planner.torques)))
+    thin = planner.thin
+    best = _best(tried, thin)
+    enough = any_path or (
+        best and (_sound(best, thin) or (best.margin > thin and not planner.torques))
+    )
     if best is not None and enough:
         return best  # what is heavy is searched for anew within torques
     if best is None:
@@ -127,7 +129,7 @@ def _search(planner: PathPlanner, pool: Executor, any_path: bool = False) -> Sol
         obstructions = ()
 
     _make(planner, pool, [FORGIVING] if best else [FORGIVING, POSSIBLE], tried, first=any_path)
-    best = _best(tried)
+    best = _best(tried, thin)
     if best is not None:
         return best
     forgiving = tried[FORGIVING]
@@ -138,7 +140,7 @@ def _search(planner: PathPlanner, pool: Executor, any_path: bool = False) -> Sol
         # Where forgiving bounds let a search through, rolling back would be the same path again.
         last = [MOST_FORGIVING, FINER] + ([] if forgiving.opened else [ROLLING_BACK])
         _make(planner, pool, last, tried, first=True)
-        best = _best(tried)
+        best = _best(tried, thin)
         if best is not None:
             return best
     blocked = _blocked(tried, obstructions or ((forgiving.reached,) if forgiving.reached else ()))
@@ -168,15 +170,15 @@ def _make(
                 break
 
 
-def _sound(path: Solved) -> bool:
+def _sound(path: Solved, thin: float) -> bool:
     """Whether a path is neither thin nor heavy, so that none is compared with it."""
-    return path.margin > THIN and path.torque_share <= HEAVY
+    return path.margin > thin and path.torque_share <= HEAVY
 
 
-def _best(tried: Tried) -> Solved | None:
+def _best(tried: Tried, thin: float) -> Solved | None:
     """A sound path if there is one, with the most CoM margin; of such the one found first."""
     paths = [answer for answer in tried.values() if isinstance(answer, Solved)]
-    return max(paths, key=lambda path: (_sound(path), path.margin), default=None)
+    return max(paths, key=lambda path: (_sound(path, thin), path.margin), default=None)
 
 
 def _opened(tried: Tried) -> bool:

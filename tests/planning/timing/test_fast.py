@@ -8,8 +8,10 @@ from numpy.typing import NDArray
 
 import stairwright as sw
 from stairwright.errors import InputError
+from stairwright.planning import path_planner
 from stairwright.planning.plan import Plan
 from stairwright.planning.timing.fast import hastened
+from stairwright.terrain.stairs import stair
 
 Floats = NDArray[np.float64]
 G = 9.81
@@ -37,6 +39,15 @@ def test_it_is_sooner_and_says_what_binds(steady: Plan, fast: Plan) -> None:
 
 def test_a_path_searched_for_speed_is_faster_than_a_steady_one(steady: Plan, fast: Plan) -> None:
     assert fast.timing.total < 0.9 * hastened(steady, fast.weights["aggressiveness"]).timing.total
+
+
+@pytest.mark.slow
+def test_of_two_smoothings_the_sooner_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    flight = stair(0.18, 0.28, 5, direction="down", approach=1.18, platform=1.0)
+    found = sw.plan(flight, "go2w", 0.6, timing="fast")
+    monkeypatch.setattr(path_planner, "STRAIGHTER", 1.0)
+    alone = sw.plan(flight, "go2w", 0.6, timing="fast")
+    assert found.timing.total < 0.95 * alone.timing.total
 
 
 def test_harder_is_sooner() -> None:

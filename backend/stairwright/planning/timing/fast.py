@@ -59,6 +59,10 @@ class TimingProblem:
         steps = 2.0 * self.motion.step / (speeds[:-1] + speeds[1:])
         return np.concatenate([[0.0], np.cumsum(steps)])
 
+    def least_time(self) -> float:
+        """From the first pose to the last at best [s], before the certificate is asked."""
+        return float(self.times(fastest(self))[-1])
+
     def pose_times(self, squares: Floats) -> Floats:
         """When each pose is reached (p,) [s]."""
         return np.interp(self.poses, self.motion.way, self.times(squares))
