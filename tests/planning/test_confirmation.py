@@ -58,7 +58,7 @@ def test_where_any_path_will_do_a_thin_one_is_not_compared(margin, compared):
             made.append(which)
             return Solved(SimpleNamespace(), SimpleNamespace())
 
-        planner = SimpleNamespace(attempt=attempt, torques=False)
+        planner = SimpleNamespace(attempt=attempt, torques=False, thin=0.01)
         return solve(planner, in_this_thread(), **how), made
 
     with pytest.MonkeyPatch.context() as patch:
