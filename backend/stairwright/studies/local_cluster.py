@@ -114,15 +114,19 @@ def main() -> None:
         "cert": security.tls_client_cert,
         "key": security.tls_client_key,
     }
-    with Dask(
-        n_workers=workers,
-        threads_per_worker=1,
-        processes=True,
-        host="127.0.0.1",
-        security=security,
-        dashboard_address="127.0.0.1:0",
-        silence_logs=50,
-    ) as cluster:
+    try:
+        cluster = Dask(
+            n_workers=workers,
+            threads_per_worker=1,
+            processes=True,
+            host="127.0.0.1",
+            security=security,
+            dashboard_address="127.0.0.1:0",
+            silence_logs=50,
+        )
+    except RuntimeError as error:  # a worker that was killed while it started
+        sys.exit(f"the processes for studies did not start: {error}")
+    with cluster:
         print(json.dumps({"address": cluster.scheduler_address, **told}), flush=True)
         sys.stdin.read()
 
