@@ -44,7 +44,7 @@ class Bracket:
         elif high == self._first:
             step = high - 1
         else:  # in strides that double, but not past half of the way
-            step = max(2 * high - self._first - 2, high // 2)
+            step = max(2 * high - self._first, high // 2)
         step = min(max(step, low + 1), high - 1)
         return (step,) if step < high - 1 or self._told(high + 1) else (step, high + 1)
 
