@@ -7,7 +7,10 @@ from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from stairwright.planning.infeasibility.bracket import Bracket
 from stairwright.planning.infeasibility.confirmation import _settled
 from stairwright.planning.path_planner import Solved
 from stairwright.planning.strategy import AT_ONCE, solve
@@ -37,6 +40,8 @@ class Asked:
         {*range(12, 61)},  # less than quick attempts take
         {*range(31, 61)},  # more
         {*range(14, 61)} - {18},  # with a gap
+        {9, *range(12, 61)},  # far less
+        {60},  # nothing but all that there may be
     ],
 )
 def test_no_amount_is_asked_about_twice(enough):
@@ -45,8 +50,37 @@ def test_no_amount_is_asked_about_twice(enough):
     low, high = (round(math.log(ratio, 1.02)) for ratio in (cause.lower, cause.upper))
     assert high == low + 1
     assert low not in enough
-    assert {high, high + 1} <= enough
+    assert {high, min(high + 1, 60)} <= enough
     assert len(quantity.steps) == len(set(quantity.steps))
+
+
+@given(
+    st.integers(1, 70).flatmap(
+        lambda most: st.tuples(
+            st.just(most), st.integers(1, most), st.integers(1, 71), st.integers(1, 70)
+        )
+    )
+)
+def test_a_bracket_closes_round_what_works_whatever_is_asked_first(drawn):
+    most, first, least, hole = drawn
+    enough = {*range(least, most + 1)} - {hole}
+    bracket = Bracket(most)
+    asked = (first,)
+    while asked:
+        for step in asked:
+            assert 0 < step <= most
+            assert step not in bracket.known
+            bracket.known[step] = step in enough
+            if bracket.known[step]:
+                break
+        asked = bracket.next_steps()
+    assert len(bracket.known) <= 24
+    if bracket.high is None:
+        assert most not in enough
+    else:
+        assert bracket.high in enough
+        assert bracket.low == bracket.high - 1 not in enough
+        assert min(bracket.high + 1, most) in enough
 
 
 @pytest.mark.parametrize(("margin", "compared"), [(0.005, 2), (0.5, 1)])

@@ -14,6 +14,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
+from stairwright.planning.infeasibility.bracket import Bracket
 from stairwright.planning.infeasibility.relaxation import Candidate
 from stairwright.planning.lattice.body_lattice import EXACT
 from stairwright.planning.lattice.pieces import pieces
@@ -30,7 +31,7 @@ _MORE = (0, 2, 6, 14, 26, 46, 70)
 _BETWEEN = 2  # of them is left out where not even a search that forgives nothing finds a way
 _RIVALS = 2  # candidates for which planning is tried
 _RISES = 6  # times that motors are made stronger, by as much as the path lacks that came of it
-_LOOKS = 10  # times that all of planning is asked, so that an answer comes in time
+_LOOKS = 14  # times that all of planning is asked, so that an answer comes in time
 
 
 @dataclass(frozen=True)
@@ -127,48 +128,28 @@ def _settled(
     planner: PathPlanner, candidate: Candidate, low: int, high: int, pool: Executor
 ) -> Cause | None:
     """The step between a plan and none; quick attempts have one at `high`, none at `low`."""
-    most = _steps(candidate.most)
 
     def quick(step: int) -> bool:
         return candidate.solves(planner, _ratio(candidate, step))
 
-    def fully(step: int) -> bool:
+    def feasible(step: int) -> bool:
         return candidate.feasible(planner, _ratio(candidate, step))
 
-    low, high = _bisected(quick, low, high)
-    known = {0: False}  # what all of planning says, which may differ from quick attempts
-    stride = 1
+    _, high = _bisected(quick, low, high)
+    bracket = Bracket(_steps(candidate.most))
+    asked: tuple[int, ...] = (high,)
     for _ in range(_LOOKS):
-        middle, more = (low + high) // 2, min(high + 1, most)
-        close = high - low == 1
-        asked = (low, high, more) if close else (low, high)
-        new = [step for step in dict.fromkeys(asked) if step not in known]
-        if not (close or new):
-            new = [middle]
-        with race(pool, fully, new) as answers:
-            for step, feasible in zip(new, answers, strict=False):
-                known[step] = feasible
-                if feasible == (step == low):
-                    break  # it lies elsewhere
-        if known[low]:
-            failed = max(step for step, feasible in known.items() if step < low and not feasible)
-            low, high = max(failed, low - stride), low
-            stride *= 2
-        elif not known[high] or (close and not known[more]):
-            low = more if known[high] else high
-            if low == most:
-                return None
-            solved = (step for step, feasible in known.items() if step > low and feasible)
-            high = min(*solved, low + stride, most)
-            stride *= 2
-        elif middle in known and not close:
-            low, high = (low, middle) if known[middle] else (middle, high)
-        elif close:
-            return Cause(candidate, _ratio(candidate, low), _ratio(candidate, high))
-    # There was not the time to ask on.
-    high = min((step for step, feasible in known.items() if feasible), default=0)
-    low = max((step for step, feasible in known.items() if step < high and not feasible), default=0)
-    return Cause(candidate, _ratio(candidate, low), _ratio(candidate, high)) if high else None
+        with race(pool, feasible, asked) as answers:
+            for step, works in zip(asked, answers, strict=False):
+                bracket.known[step] = works
+                if works:
+                    break
+        asked = bracket.next_steps()
+        if not asked:
+            break
+    if bracket.high is None:
+        return None
+    return Cause(candidate, _ratio(candidate, bracket.low), _ratio(candidate, bracket.high))
 
 
 def _bisected(enough: Callable[[int], bool], low: int, high: int) -> tuple[int, int]:
