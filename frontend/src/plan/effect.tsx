@@ -1,4 +1,4 @@
-/** What changed weights bring: five quantities of the plan, with default weights and now. */
+/** What changed weights bring: quantities of the plan, with default weights and now. */
 
 import type { Plan } from "../api/types";
 import { fixed } from "../geometry/format";
@@ -11,6 +11,7 @@ import { Switch } from "../ui/switch";
 
 interface Quantity {
   title: string;
+  hint?: string;
   unit: string;
   /** Part of the name of the weight that is meant to improve it. */
   weight: string;
@@ -30,6 +31,9 @@ const isThin = (kind: (typeof MARGINS)[number]) => (shown: Plan) =>
   marginClass(kind, worst(shown.poses, kind.name)) < 2;
 const least = (kind: (typeof MARGINS)[number]) => (shown: Plan) =>
   kind.read(worst(shown.poses, kind.name), shown);
+
+const told = (value: number | null | undefined, digits: number) =>
+  typeof value === "number" ? fixed(value, digits) : "–";
 
 const QUANTITIES: readonly Quantity[] = [
   { title: "CoM margin", unit: "mm", weight: "com", of: least(COM), thin: isThin(COM) },
@@ -60,6 +64,22 @@ const QUANTITIES: readonly Quantity[] = [
     unit: "s",
     weight: "speed",
     of: (shown) => fixed(shown.timing.total, 1),
+    thin: () => false,
+  },
+  {
+    title: "Energy",
+    hint: "Work of the motors' static torques along the plan, without losses",
+    unit: "J",
+    weight: "energy",
+    of: (shown) => told(shown.energy, 0),
+    thin: () => false,
+  },
+  {
+    title: "Cost of transport",
+    hint: "That energy per weight and way",
+    unit: "",
+    weight: "energy",
+    of: (shown) => told(shown.cost_of_transport, 2),
     thin: () => false,
   },
 ];
@@ -99,7 +119,9 @@ export function Effect() {
             const wanted = raised(each.weight) && each.of(now) !== each.of(before);
             return (
               <tr key={each.title}>
-                <th scope="row">{each.title}</th>
+                <th scope="row" title={each.hint}>
+                  {each.title}
+                </th>
                 <td>{each.of(before)} →</td>
                 <td class={worse ? "x" : wanted ? "wanted" : ""}>
                   <b>{each.of(now)}</b> {each.unit}
