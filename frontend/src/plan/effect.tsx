@@ -2,7 +2,6 @@
 
 import type { Plan } from "../api/types";
 import { fixed } from "../geometry/format";
-import { weakestLeg } from "../geometry/robot";
 import { MARGINS, marginClass, worst } from "../profile-editor/margins";
 import { defaultPlan, ghostShown } from "../state/effect";
 import { plan, stale } from "../state/planning";
@@ -35,6 +34,12 @@ const least = (kind: (typeof MARGINS)[number]) => (shown: Plan) =>
 const told = (value: number | null | undefined, digits: number) =>
   typeof value === "number" ? fixed(value, digits) : "–";
 
+/** The limit of thigh and calf motors [Nm]; null where it is not the same for all. */
+function legLimit(): number | null {
+  const all = new Set(robot.value?.limits.flatMap(({ thigh, calf }) => [thigh, calf]));
+  return all.size === 1 ? [...all][0]! : null;
+}
+
 const QUANTITIES: readonly Quantity[] = [
   { title: "CoM margin", unit: "mm", weight: "com", of: least(COM), thin: isThin(COM) },
   {
@@ -52,11 +57,16 @@ const QUANTITIES: readonly Quantity[] = [
     thin: isThin(FRICTION),
   },
   {
-    title: "Static torque",
+    get title() {
+      return legLimit() === null ? "Torque left" : "Static torque";
+    },
     unit: "Nm",
     weight: "torque",
-    of: (shown) =>
-      fixed((robot.value ? weakestLeg(robot.value) : Number.NaN) - worst(shown.poses, "torque"), 1),
+    of: (shown) => {
+      const left = worst(shown.poses, "torque");
+      const limit = legLimit();
+      return fixed(limit === null ? left : limit - left, 1);
+    },
     thin: isThin(TORQUE),
   },
   {
