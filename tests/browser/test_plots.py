@@ -68,6 +68,8 @@ def test_a_changed_weight_says_what_it_brings(product: Product) -> None:
         "Friction needed",
         "Static torque",
         "Time",
+        "Energy",
+        "Cost of transport",
     ]
     before, now = rows[1].split("\t")[1:]
     assert int(now.split()[0]) >= int(before.split()[0])

@@ -265,3 +265,37 @@ def test_nothing_overflows(product: Product, size: ViewportSize) -> None:
     )
     page.set_viewport_size(DESK)
     assert wide == []
+
+
+# Of the side view: its width, that of the drawn robot, labels and what fingers can hit.
+DRAWN = """() => {
+  const box = e => { const b = e.getBoundingClientRect();
+    return { left: b.left, top: b.top, right: b.right, bottom: b.bottom }; };
+  const all = selector => [...document.querySelectorAll(`.side-view ${selector}`)].map(box);
+  return { view: all("svg")[0], dimensions: all(".dimension"), labels: all(".plate"),
+    grips: all(".dimension circle.hit, .dimension rect.hit, .pose-grip .hit") };
+}"""
+
+
+@pytest.mark.parametrize("name", sw.robots())
+def test_on_a_phone_the_drawing_fills_the_width_and_fingers_can_pull_it(
+    product: Product, name: str
+) -> None:
+    page = product.page
+    _choose(product, name)
+    page.set_viewport_size(PHONE)
+    page.wait_for_function("() => document.querySelector('.side-view svg').clientWidth < 400")
+    drawn = page.evaluate(DRAWN)
+    page.set_viewport_size(DESK)
+    view, labels = drawn["view"], drawn["labels"]
+    left = min(each["left"] for each in drawn["dimensions"])
+    right = max(each["right"] for each in drawn["dimensions"])
+    assert right - left > 0.7 * (view["right"] - view["left"])
+    assert all(view["left"] <= e["left"] and e["right"] <= view["right"] for e in labels)
+    for k, a in enumerate(labels):
+        for b in labels[k + 1 :]:
+            across = min(a["right"], b["right"]) - max(a["left"], b["left"])
+            assert across <= 1 or min(a["bottom"], b["bottom"]) - max(a["top"], b["top"]) <= 3
+    assert len(drawn["grips"]) > 10
+    for grip in drawn["grips"]:
+        assert min(grip["right"] - grip["left"], grip["bottom"] - grip["top"]) >= 24 - 1e-3

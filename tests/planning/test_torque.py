@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stairwright as sw
-from stairwright.export.static_torques import static_torques
+from stairwright.planning.static_torques import static_torques
 
 STEP = {"points": [[-2.0, 0.0], [0.0, 0.0], [0.0, 0.1], [2.5, 0.1]]}
 

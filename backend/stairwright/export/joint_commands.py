@@ -17,7 +17,7 @@ from stairwright.robot import spatial
 from stairwright.robot.description import Robot
 
 from .retiming import Limits, Retimed, retime
-from .static_torques import static_torques
+from stairwright.planning.static_torques import static_torques
 
 Floats = NDArray[np.float64]
 

@@ -151,7 +151,11 @@ class Binding(Model):
     progress: float = Field(description="[m]")
 
 
-@deferrable("poses")
+# May be made when it is first read, written or compared.
+Later = Annotated[float | None, PlainSerializer(Deferred.read, return_type=float | None)]
+
+
+@deferrable("poses", "energy", "cost_of_transport")
 class Plan(Model):
     """A plan (``stairwright/plan/1``); `id` is a hash of everything that went into it."""
 
@@ -175,6 +179,14 @@ class Plan(Model):
     certificate: Certificate | None = None
     knees: Knees | None = Field(None, description="where the robot's knees bend both ways")
     binding: Binding | None = Field(None, description="which margin is least")
+    energy: Later = Field(
+        None,
+        description="of a dense feasible plan: sum of |static torque x turn| over all joints and "
+        "poses, without dynamics, friction and losses [J]",
+    )
+    cost_of_transport: Later = Field(
+        None, description="that energy per weight and way; null where there is none"
+    )
     tolerance: Tolerance | None = Field(
         None,
         description="how far the world may be from what was drawn, where that was asked for; "

@@ -13,6 +13,7 @@ from stairwright.documents import Model
 from stairwright.errors import InputError
 from stairwright.library import load_robot, load_terrain
 from stairwright.planning.knees import configurations, knees_of
+from stairwright.planning.energy import with_energy
 from stairwright.planning.plan import Method, Plan, PlanTiming, plan_id
 from stairwright.planning.tolerance import Tolerance, parse_tolerance
 from stairwright.planning.weights import parse_weights
@@ -111,6 +112,7 @@ def plan(
         from stairwright.planning.poses.nominal import plan_nominal
 
         found = _first_feasible(plan_nominal(ground, one, mu, chosen) for one in configured)
+    found = with_energy(found)
     if len(configured) == 1 and configured[0] is machine:
         return found
     identity = plan_id(ground, machine, mu, method, found.weights, found.timing.rule, stood)

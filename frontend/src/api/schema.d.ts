@@ -2448,6 +2448,16 @@ export interface components {
             knees?: components["schemas"]["Knees"] | null;
             /** @description which margin is least */
             binding?: components["schemas"]["Binding"] | null;
+            /**
+             * Energy
+             * @description of a dense feasible plan: sum of |static torque x turn| over all joints and poses, without dynamics, friction and losses [J]
+             */
+            energy?: number | null;
+            /**
+             * Cost Of Transport
+             * @description that energy per weight and way; null where there is none
+             */
+            cost_of_transport?: number | null;
             /** @description how far the world may be from what was drawn, where that was asked for; margins are then those at the lowest friction */
             tolerance?: components["schemas"]["Tolerance"] | null;
         };

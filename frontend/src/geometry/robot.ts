@@ -155,10 +155,6 @@ function limitsOf({ leg, thigh, calf, wheel }: SentRobot["actuators"]): MotorLim
   };
 }
 
-/** The weakest of the legs' motors [Nm]. */
-export const weakestLeg = ({ limits }: RobotShape): number =>
-  Math.min(...limits.flatMap(({ thigh, calf }) => [thigh, calf]));
-
 /** A vector of the trunk frame in the world; pitch turns about +y, so nose-up is negative. */
 function toWorld(frame: Frame, u: number, v: number): Vec2 {
   const c = Math.cos(frame.pitch);

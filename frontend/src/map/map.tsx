@@ -82,8 +82,7 @@ function Body() {
       <div class="map-empty">
         <h3>How far can it go?</h3>
         <p>
-          Choose what varies on the left and press Run. Each cell is one plan; a coarse picture
-          comes first.
+          Choose what varies and press Run. Each cell is one plan; a coarse picture comes first.
         </p>
       </div>
     );

@@ -1,8 +1,7 @@
-/** What changed weights bring: five quantities of the plan, with default weights and now. */
+/** What changed weights bring: quantities of the plan, with default weights and now. */
 
 import type { Plan } from "../api/types";
 import { fixed } from "../geometry/format";
-import { weakestLeg } from "../geometry/robot";
 import { MARGINS, marginClass, worst } from "../profile-editor/margins";
 import { defaultPlan, ghostShown } from "../state/effect";
 import { plan, stale } from "../state/planning";
@@ -11,6 +10,7 @@ import { Switch } from "../ui/switch";
 
 interface Quantity {
   title: string;
+  hint?: string;
   unit: string;
   /** Part of the name of the weight that is meant to improve it. */
   weight: string;
@@ -31,6 +31,15 @@ const isThin = (kind: (typeof MARGINS)[number]) => (shown: Plan) =>
 const least = (kind: (typeof MARGINS)[number]) => (shown: Plan) =>
   kind.read(worst(shown.poses, kind.name), shown);
 
+const told = (value: number | null | undefined, digits: number) =>
+  typeof value === "number" ? fixed(value, digits) : "–";
+
+/** The limit of thigh and calf motors [Nm]; null where it is not the same for all. */
+function legLimit(): number | null {
+  const all = new Set(robot.value?.limits.flatMap(({ thigh, calf }) => [thigh, calf]));
+  return all.size === 1 ? [...all][0]! : null;
+}
+
 const QUANTITIES: readonly Quantity[] = [
   { title: "CoM margin", unit: "mm", weight: "com", of: least(COM), thin: isThin(COM) },
   {
@@ -48,11 +57,16 @@ const QUANTITIES: readonly Quantity[] = [
     thin: isThin(FRICTION),
   },
   {
-    title: "Static torque",
+    get title() {
+      return legLimit() === null ? "Torque left" : "Static torque";
+    },
     unit: "Nm",
     weight: "torque",
-    of: (shown) =>
-      fixed((robot.value ? weakestLeg(robot.value) : Number.NaN) - worst(shown.poses, "torque"), 1),
+    of: (shown) => {
+      const left = worst(shown.poses, "torque");
+      const limit = legLimit();
+      return fixed(limit === null ? left : limit - left, 1);
+    },
     thin: isThin(TORQUE),
   },
   {
@@ -60,6 +74,22 @@ const QUANTITIES: readonly Quantity[] = [
     unit: "s",
     weight: "speed",
     of: (shown) => fixed(shown.timing.total, 1),
+    thin: () => false,
+  },
+  {
+    title: "Energy",
+    hint: "Work of the motors' static torques along the plan, without losses",
+    unit: "J",
+    weight: "energy",
+    of: (shown) => told(shown.energy, 0),
+    thin: () => false,
+  },
+  {
+    title: "Cost of transport",
+    hint: "That energy per weight and way",
+    unit: "",
+    weight: "energy",
+    of: (shown) => told(shown.cost_of_transport, 2),
     thin: () => false,
   },
 ];
@@ -99,7 +129,9 @@ export function Effect() {
             const wanted = raised(each.weight) && each.of(now) !== each.of(before);
             return (
               <tr key={each.title}>
-                <th scope="row">{each.title}</th>
+                <th scope="row" title={each.hint}>
+                  {each.title}
+                </th>
                 <td>{each.of(before)} →</td>
                 <td class={worse ? "x" : wanted ? "wanted" : ""}>
                   <b>{each.of(now)}</b> {each.unit}

@@ -14,7 +14,7 @@ const FONT = "10px InterVariable, Inter, system-ui, sans-serif";
 /** Share of the height that each of two halves takes. */
 const HALF = 0.46;
 
-export type Palette = Record<Color | "line" | "bad" | "badSoft" | "acSoft" | "s0", string>;
+export type Palette = Record<Color | "line" | "bad" | "badSoft" | "acSoft" | "s0" | "bg", string>;
 
 export function palette(): Palette {
   const css = getComputedStyle(document.documentElement);
@@ -32,6 +32,7 @@ export function palette(): Palette {
     badSoft: of("--bad-soft"),
     acSoft: of("--ac-soft"),
     s0: of("--s0"),
+    bg: of("--bg1"),
   };
 }
 
@@ -254,27 +255,33 @@ export class Chart {
 
   private limits(u: uPlot, limits: readonly LimitLine[], ratio: number): void {
     const { ctx, bbox } = u;
-    ctx.strokeStyle = this.colors.bad;
     ctx.fillStyle = this.colors.bad;
-    ctx.lineWidth = ratio;
-    ctx.setLineDash([2 * ratio, 3 * ratio]);
+    ctx.lineJoin = "round";
     ctx.textAlign = "right";
     let [above, right] = [Number.NEGATIVE_INFINITY, 0];
     for (const limit of limits) {
       const y = Math.round(u.valToPos(limit.value, "y0", true)) + 0.5;
+      ctx.strokeStyle = this.colors.bad;
+      ctx.lineWidth = ratio;
+      ctx.setLineDash([2 * ratio, 3 * ratio]);
       ctx.beginPath();
       ctx.moveTo(bbox.left, y);
       ctx.lineTo(bbox.left + bbox.width, y);
       ctx.stroke();
+      ctx.setLineDash([]);
       // Limits close to each other have their names side by side, low ones above their line.
       if (y - above > 13 * ratio) right = bbox.left + bbox.width - 2 * ratio;
       const text = limitText(limit);
       const low = y + 16 * ratio > bbox.top + bbox.height;
-      ctx.fillText(text, right, low ? y - 4 * ratio : y + 13 * ratio);
+      const base = low ? y - 4 * ratio : y + 13 * ratio;
+      // Legible over the lines of the plot.
+      ctx.strokeStyle = this.colors.bg;
+      ctx.lineWidth = 3 * ratio;
+      ctx.strokeText(text, right, base);
+      ctx.fillText(text, right, base);
       right -= ctx.measureText(text).width + 8 * ratio;
       above = y;
     }
-    ctx.setLineDash([]);
   }
 
   /** Where B fell: a cross at the end of its line. */

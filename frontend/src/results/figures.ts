@@ -34,10 +34,9 @@ const LOST = (10 * Math.PI) / 180;
 
 type Limits = RobotShape["limits"];
 
-const ofLegs = (limits: Limits) =>
-  [...new Set(limits.flatMap(({ thigh, calf }) => [thigh, calf]))]
-    .map((limit) => fixed(limit, 1))
-    .join(", ");
+/** What the motors of the legs can give [Nm]: each limit that differs. */
+const ofLegs = (limits: Limits): string[] =>
+  [...new Set(limits.flatMap(({ thigh, calf }) => [thigh, calf]))].map((each) => fixed(each, 1));
 
 /** What a motor lacks to its limit where it counts as being there [Nm]. */
 const NEAR = 0.05;
@@ -61,6 +60,7 @@ export function figures(count: number, limits: Limits | undefined): Figure[] {
     of: (_m, r) => OUTCOMES[r.outcome],
     bad: (_m, r) => hasFailed(r),
   };
+  const motors = limits ? ofLegs(limits) : [];
   return [
     ...(count > 1 ? [outcome] : []),
     {
@@ -89,8 +89,9 @@ export function figures(count: number, limits: Limits | undefined): Figure[] {
     },
     {
       title: "Peak torque",
-      ...(limits ? { limit: `of ${ofLegs(limits)}` } : {}),
-      hint: "Largest of thighs and calves, of what their motors can give",
+      // Several are too long for the row.
+      ...(motors.length === 1 ? { limit: `of ${motors[0]}` } : {}),
+      hint: `Largest of thighs and calves; their motors give ${motors.join(" and ")} Nm`,
       of: (m) => `${fixed(m.torque_peak, 1)} Nm`,
       bad: (_m, r) => limits !== undefined && atLimit(r, limits),
     },

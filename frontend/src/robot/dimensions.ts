@@ -26,7 +26,8 @@ const TRUNK_HEIGHT = 96;
 /** How far beside a link its length is drawn [px]. */
 const LINK = 62;
 
-/** With less room beside the middle the trunk's height stands in the table alone [px]. */
+/** With less room beside the middle names are short, and the trunk's height stands in the table
+ * alone [px]. */
 const NARROW = 260;
 
 const unit = (a: Vec2, b: Vec2): Vec2 => {
@@ -65,7 +66,8 @@ export function dimensions(file: RobotDocument, bones: Skeleton, to: Projection)
       const name = i === 0 ? "thigh" : "calf";
       const aside: Vec2 = [-uy * side * LINK, ux * side * LINK];
       // Where both lines cross, before the one knee, their labels do not.
-      const label_at = i === 0 ? 0.3 : 0.7;
+      const apart = narrow ? 0.02 : 0.3;
+      const label_at = i === 0 ? apart : 1 - apart;
       return line(`${end}.${name}.length`, name, a, b, aside, undefined, 1, label_at);
     });
   const wheel = file.wheel.radius * to.scale;
@@ -84,10 +86,18 @@ export function dimensions(file: RobotDocument, bones: Skeleton, to: Projection)
       [-1, 0],
       1,
     ),
-    line("hips", "hip distance", rear[0]!, front[0]!, [0, top - rear[0]![1] - 26], [1, 0], 2),
+    line(
+      "hips",
+      narrow ? "hips" : "hip distance",
+      rear[0]!,
+      front[0]!,
+      [0, top - rear[0]![1] - 26],
+      [1, 0],
+      2,
+    ),
     line(
       "trunk.length",
-      "trunk length",
+      narrow ? "trunk" : "trunk length",
       [trunk[3]![0], trunk[3]![1]],
       [trunk[2]![0], trunk[2]![1]],
       [0, top - trunk[3]![1] - 56],
@@ -111,7 +121,8 @@ export function dimensions(file: RobotDocument, bones: Skeleton, to: Projection)
       [-34, 0],
       [0, -1],
       1,
-      0.4,
+      // Beside the wheel, where a narrow view has room for it.
+      narrow ? 0.16 : 0.4,
     ),
   ];
   return narrow ? out.filter((d) => d.id !== "trunk.height") : out;

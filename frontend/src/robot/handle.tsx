@@ -7,6 +7,9 @@ import { robotDocument } from "../state/setup";
 import { finish, selected, set } from "./edit";
 import { type Quantity, quantityOf } from "./quantities";
 
+/** What a finger can hit [px]. */
+export const TARGET = 24;
+
 interface HandleProps {
   id: string;
   class: string;

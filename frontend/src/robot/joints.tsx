@@ -4,7 +4,7 @@ import type { Vec2 } from "../api/types";
 import { degrees, fixed } from "../geometry/format";
 import { robotDocument } from "../state/setup";
 import { holdJoint, holdLimit } from "./drag";
-import { Handle, placeIn } from "./handle";
+import { Handle, placeIn, TARGET } from "./handle";
 import { rangeId } from "./quantities";
 import { bones, frame, projection } from "./view";
 
@@ -67,11 +67,8 @@ function Range({ end, joint }: { end: 0 | 1; joint: 0 | 1 }) {
           </Handle>
         );
       })}
-      <circle
-        class="pose"
-        cx={dot[0]}
-        cy={dot[1]}
-        r={5}
+      <g
+        class="pose-grip"
         onPointerDown={(event) => {
           event.currentTarget.closest("svg")!.setPointerCapture(event.pointerId);
           holdJoint(index, centre, zero, range, placeIn(event));
@@ -80,7 +77,9 @@ function Range({ end, joint }: { end: 0 | 1; joint: 0 | 1 }) {
         <title>
           {side} {name} {fixed(degrees(angle), 0)}°: drag to pose
         </title>
-      </circle>
+        <circle class="hit" cx={dot[0]} cy={dot[1]} r={TARGET / 2} />
+        <circle class="pose-dot" cx={dot[0]} cy={dot[1]} r={5} />
+      </g>
     </g>
   );
 }

@@ -8,7 +8,7 @@ import { Ranges } from "./captions";
 import { type Dimension, dimensions } from "./dimensions";
 import { hold, letGo, pull } from "./drag";
 import { selected } from "./edit";
-import { Handle, placeIn, told } from "./handle";
+import { Handle, placeIn, TARGET, told } from "./handle";
 import { Joints } from "./joints";
 import { quantityOf } from "./quantities";
 import { reachOutlines } from "./reach";
@@ -119,7 +119,9 @@ function Line({ of }: { of: Dimension }) {
   const value = q.read(robotDocument.value!) ?? 0;
   const text = `${of.label} ${(value * q.factor).toFixed(q.digits)}`;
   const wide = text.length * TEXT + 12;
-  const [x, y] = [ax + (bx - ax) * of.label_at, ay + (by - ay) * of.label_at];
+  const rim = wide / 2 + 3;
+  const x = Math.min(size.value.width - rim, Math.max(rim, ax + (bx - ax) * of.label_at));
+  const y = ay + (by - ay) * of.label_at;
   return (
     <Handle
       id={of.id}
@@ -129,8 +131,10 @@ function Line({ of }: { of: Dimension }) {
       <path class="ext" d={`M${from}L${[ax, ay]}M${to}L${[bx, by]}`} />
       <path class="hit" d={`M${[ax, ay]}L${[bx, by]}`} />
       <path class="measure" d={`M${[ax, ay]}L${[bx, by]}`} />
+      <circle class="hit" cx={bx} cy={by} r={TARGET / 2} />
       <circle class="end" cx={ax} cy={ay} r={3} />
       <circle class="end grip" cx={bx} cy={by} r={4.5} />
+      <rect class="hit" x={x - wide / 2} y={y - TARGET / 2} width={wide} height={TARGET} />
       <rect class="plate" x={x - wide / 2} y={y - 10} width={wide} height={20} rx={4} />
       <text x={x} y={y + 4} text-anchor="middle">
         {text}

@@ -34,8 +34,17 @@ const extent = computed(() => {
   const reach = shape.legs[0].thigh.length + shape.legs[0].calf.length;
   const corners = shape.outline.flat();
   const half = Math.max(...corners.map((p) => Math.abs(p[0])), file.hips.front[0]!);
-  return { half, reach, height: file.nominal_height, wheel: file.wheel.radius };
+  const joints = skeleton(shape, stance(file)).legs.flat();
+  const stands = Math.max(half, ...joints.map((p) => Math.abs(p[0]) + file.wheel.radius));
+  return { half, stands, reach, height: file.nominal_height };
 });
+
+/** Narrower, and the robot as it stands takes the width; its reach may leave the picture [px]. */
+const NARROW = 520;
+/** On a narrow side view its labels lie over the ends of the lines [px]. */
+const NARROW_SIDE = 66;
+
+export const isNarrowView = computed(() => size.value.width < NARROW);
 
 /** Ground line above the lower rim [px]. */
 const GROUND = 46;
@@ -46,9 +55,13 @@ const ABOVE = 60;
 export const projection = computed<Projection>(() => {
   const { width, height } = size.value;
   const of = extent.value;
-  const wide = of ? 2 * (of.half + 0.5 * of.reach) : 1;
+  const narrow = isNarrowView.value;
+  const wide = of ? 2 * (narrow ? of.stands : of.half + 0.5 * of.reach) : 1;
   const tall = of ? of.height + 0.5 * of.reach : 1;
-  const fitted = Math.min((width - 2 * SIDE) / wide, (height - GROUND - ABOVE) / tall);
+  const fitted = Math.min(
+    (width - 2 * (narrow ? NARROW_SIDE : SIDE)) / wide,
+    (height - GROUND - ABOVE) / tall,
+  );
   const scale = Math.max(20, fitted);
   const px = (x: number) => width / 2 + x * scale;
   const py = (z: number) => height - GROUND - z * scale;
