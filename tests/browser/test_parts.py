@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.browser
 
 ROOMS = {"robot": "2", "map": "3", "runs": "4"}
+# The files of these parts have come, as they do while the page idles.
+CAME = """parts => parts.every(part => performance.getEntriesByType("resource")
+  .some(e => e.name.includes(`/assets/${part}-`) && e.responseEnd > 0))"""
 
 
 def test_a_part_that_did_not_come_says_so_and_comes_when_asked_again(product: Product) -> None:
@@ -29,6 +32,8 @@ def test_a_part_that_did_not_come_says_so_and_comes_when_asked_again(product: Pr
 
     page.route("**/assets/map-*.js", answer)
     product.open()
+    # The last one: nothing comes by itself from then on.
+    page.wait_for_function(CAME, arg=["designs"], timeout=PATIENCE)
     page.keyboard.press("3")
     told = page.get_by_role("alert").filter(has_text="The map could not be loaded")
     expect(told).to_be_visible(timeout=PATIENCE)
@@ -41,13 +46,8 @@ def test_a_part_that_did_not_come_says_so_and_comes_when_asked_again(product: Pr
 def test_workspaces_that_were_never_open_need_no_service(product: Product) -> None:
     page = product.page
     product.open()
-    # Their files come while the page idles.
-    page.wait_for_function(
-        """rooms => rooms.every(room => performance.getEntriesByType("resource")
-            .some(e => e.name.includes(`/assets/${room}-`) && e.responseEnd > 0))""",
-        arg=["robot", "map", "runs", "points-table", "cut-dialog", "designs"],
-        timeout=PATIENCE,
-    )
+    later = ["robot", "map", "runs", "points-table", "cut-dialog", "designs"]
+    page.wait_for_function(CAME, arg=later, timeout=PATIENCE)
     page.context.set_offline(True)
     for name, key in ROOMS.items():
         page.keyboard.press(key)
