@@ -1,6 +1,6 @@
 """How long the poses take to follow a dragged corner, in real Chromium on the real server.
 
-    python benchmarks/drag.py [--url http://localhost:8000] [--seconds 6 | --quick] [--scene] [--json FILE]
+    python benchmarks/drag.py [--url URL] [--seconds 6 | --quick] [--scene] [--json FILE]
 
 Drags the upper corner of the 0.36 m stair and of five stairs at 60 moves a second. Per terrain:
 from the pointer's move to the end of the frame that shows its poses (median, 95th percentile), the

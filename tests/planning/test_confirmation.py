@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stairwright.planning.infeasibility.bracket import Bracket
-from stairwright.planning.infeasibility.confirmation import _settled
+from stairwright.planning.infeasibility.confirmation import _settled, alone
 from stairwright.planning.path_planner import Solved
 from stairwright.planning.strategy import AT_ONCE, solve
 from stairwright.planning.threads import in_this_thread
@@ -52,6 +52,12 @@ def test_no_amount_is_asked_about_twice(enough):
     assert low not in enough
     assert {high, min(high + 1, 60)} <= enough
     assert len(quantity.steps) == len(set(quantity.steps))
+
+
+def test_what_searches_missed_is_found_by_asking_all_of_planning():
+    cause = alone(None, Asked({*range(9, 61)}), 1.02**40, in_this_thread())
+    assert round(math.log(cause.upper, 1.02)) == 9
+    assert alone(None, Asked(set()), 1.02**40, in_this_thread()) is None
 
 
 @given(

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from stairwright.planning.plan import Plan
 from stairwright.planning.poses.interpolation import reference
+from stairwright.planning.static_torques import static_torques
 from stairwright.robot import spatial
 from stairwright.robot.description import Robot
 
 from .retiming import Limits, Retimed, retime
-from stairwright.planning.static_torques import static_torques
 
 Floats = NDArray[np.float64]
 

@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.planning.plan import Plan, Pose
+from stairwright.planning.static_torques import static_torques
 from stairwright.robot import spatial
 from stairwright.robot.description import JOINTS, Robot
 from stairwright.robot.mujoco_model import build_spec
 
 from .columns import FRAMES, UNITS, plan_arrays
-from stairwright.planning.static_torques import static_torques
 
 Floats = NDArray[np.float64]
 # Servos that hold a pose between two faces must hold the force inside it too: at the robot's own

@@ -12,8 +12,8 @@ from stairwright.arguments import as_friction
 from stairwright.documents import Model
 from stairwright.errors import InputError
 from stairwright.library import load_robot, load_terrain
-from stairwright.planning.knees import configurations, knees_of
 from stairwright.planning.energy import with_energy
+from stairwright.planning.knees import configurations, knees_of
 from stairwright.planning.plan import Method, Plan, PlanTiming, plan_id
 from stairwright.planning.tolerance import Tolerance, parse_tolerance
 from stairwright.planning.weights import parse_weights

@@ -124,6 +124,17 @@ def strengthened(
     return None
 
 
+def alone(planner: PathPlanner, candidate: Candidate, ratio: float, pool: Executor) -> Cause | None:
+    """The least factor with which there is a plan, where all of planning has one with `ratio`.
+
+    Searches that stand in for planning may have missed it.
+    """
+    step = _steps(ratio)
+    if not candidate.feasible(planner, _ratio(candidate, step)):
+        return None
+    return _settled(planner, candidate, 0, step, pool)
+
+
 def _settled(
     planner: PathPlanner, candidate: Candidate, low: int, high: int, pool: Executor
 ) -> Cause | None:

@@ -19,6 +19,7 @@ from stairwright.planning.infeasibility.confirmation import (
     Beyond,
     Cause,
     Ranked,
+    alone,
     confirmed,
     strengthened,
 )
@@ -83,6 +84,10 @@ def _cause(
         candidates = [one for one in candidates if one not in tried]
         if not tried or not candidates:
             break
+    if planner.friction < AMPLE:
+        answer = alone(planner, candidates_of(planner)[0], AMPLE / planner.friction, pool)
+        if answer is not None:
+            return answer
     for change in large_changes(planner):  # where no single change of grip or robot is enough
         _, answer = _answered(planner, [change], places, pool, meanwhile)
         if answer is not None:
