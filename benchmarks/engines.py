@@ -84,7 +84,7 @@ class EngineRun(Run):
             if score.diverged(world.qpos, world.qvel):
                 break
             self.target[:] = self.follower.advance(self.places, moving, self.dt)
-            self.way = self.follower.way
+            self.position = self.follower.position
             wanted = self.steered.step(world.qpos, world.qvel, self.target)
             self.places[:] = self.steered.places
             rates = np.ascontiguousarray(world.qvel[6:])

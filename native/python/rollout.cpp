@@ -62,7 +62,7 @@ void bind_follower(nb::module_& m) {
         .def("advance", [](PlanFollower& self, const In<double, nb::shape<4>>& places, bool moving, double dt) {
             return row(self.advance({places(0), places(1), places(2), places(3)}, moving, dt));
         }, nb::arg("places"), nb::arg("moving"), nb::arg("dt"), nb::rv_policy::automatic, "The next set point (33,).")
-        .def_prop_ro("way", &PlanFollower::way)
+        .def_prop_ro("position", &PlanFollower::position)
         .def_prop_ro("rate", &PlanFollower::rate)
         .def_prop_ro("lag", &PlanFollower::lag)
         .def_prop_ro("target", [](const PlanFollower& f) { return row(f.target()); }, nb::rv_policy::automatic);
@@ -164,7 +164,7 @@ void bind_rollout(nb::module_& m) {
         .def_prop_ro("stop", [](const Rollout& r) { return static_cast<int>(r.executor().stop()); },
                      "Why the robot has given up: 0 it has not, 1 no progress, 2 tilted.")
         .def_prop_ro("stopped_at", [](const Rollout& r) { return r.executor().stopped_at(); }, "Since when [s].")
-        .def_prop_ro("way", [](const Rollout& r) { return r.executor().follower().way(); })
+        .def_prop_ro("position", [](const Rollout& r) { return r.executor().follower().position(); })
         .def_prop_ro("target", [](const Rollout& r) { return row(r.executor().target()); }, nb::rv_policy::automatic)
         .def_prop_ro("score", [](const Rollout& r) { return r.score(); })
         .def_prop_ro("judged", &judged, nb::rv_policy::automatic,

@@ -56,7 +56,9 @@ def run_governor(lag: float, steps: int = 3000):
     plan, target = follower(line, 0.012), np.empty(WIDTH)
     rates = []
     for _ in range(steps):
-        s = np.interp(plan.way, line.start + line.step * np.arange(len(line.rows)), line.rows[:, 0])
+        s = np.interp(
+            plan.position, line.start + line.step * np.arange(len(line.rows)), line.rows[:, 0]
+        )
         behind = s - line.rows[0, 0] - lag
         places = np.repeat(line.rows[0, :2] + behind, 2)
         target = plan.advance(places, True, 0.002)
@@ -69,7 +71,7 @@ def test_governor_keeps_time_with_a_robot_that_follows() -> None:
     assert rates.max() == pytest.approx(0.1, rel=1e-6)
     assert np.abs(np.diff(rates)).max() <= 1.0 * 0.002 + 1e-9
     assert target[RATES] == pytest.approx(timed.rate, rel=1e-6)
-    assert timed.way < line.end
+    assert timed.position < line.end
 
 
 def test_governor_waits_for_a_held_robot_and_retreats_with_a_sliding_one() -> None:
@@ -114,7 +116,7 @@ def test_accelerations_belong_to_the_speeds() -> None:
     line = track_of(sw.plan("curb-015", "a1_wheeled", method="critical"))
     plan, dt = follower(line, 0.01), 0.002
     places, rows = np.full(4, np.nan), []
-    while plan.way < line.end - 1e-9:
+    while plan.position < line.end - 1e-9:
         rows.append(plan.advance(places, True, dt))
     velocity, surge = (
         np.array(rows)[:, RATES + COM.start],

@@ -1,7 +1,7 @@
 """How fast the plan advances: its own timing, limits along it, and a maximum lead over the robot.
 
-What advances is the way: the plan's progress, and where the trunk swings above wheels that hardly
-roll, a share of the trunk's motion, so that a swing takes its time.
+What advances is the path position: the plan's progress, and where the trunk swings above wheels
+that hardly roll, a share of the trunk's motion, so that a swing takes its time.
 
 The plan runs on its own clock, because a purely measured progress stalls (the robot waits for the
 plan and the plan for the robot). A maximum lead holds it back: it slows down when it is ahead of
@@ -38,7 +38,7 @@ from stairwright.planning.poses.pose_reference import Reference
 from stairwright.planning.smoothing.path_timing import retimed
 from stairwright.planning.timing.limits import WHEEL_SPEED_SHARE
 from stairwright.planning.timing.moving_robot import REACH
-from stairwright.planning.timing.way import even_grid, slopes, way_of
+from stairwright.planning.timing.path_position import even_grid, path_positions, slopes
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
@@ -54,13 +54,13 @@ FAST_LEAD = 4.0  # of the usual lead, for plans that are driven fast
 
 @dataclass(frozen=True)
 class Track:
-    """A reference on an even grid of way, ready for the native core.
+    """A reference on an even grid of path positions, ready for the native core.
 
     Attributes:
         start: Way of the first row, which is its progress [m].
         step: Way between rows [m].
-        rows: (n, 41) set points; rates are per metre of way, accelerations per its square.
-        speeds: (n,) allowed speed along the way [m/s].
+        rows: (n, 41) set points; rates are per metre of path, accelerations per its square.
+        speeds: (n,) allowed speed along the path [m/s].
     """
 
     start: float
@@ -101,25 +101,25 @@ def track(
     Raises:
         InputError: If the poses are too far apart for any rollout to end.
     """
-    way = way_of(course)
-    first, last = float(way[0]), float(way[-1])
+    position = path_positions(course)
+    first, last = float(position[0]), float(position[-1])
     if not last - first <= LONGEST_WAY:
         text = f"the poses are {last - first:.3g} m apart in all; at most {LONGEST_WAY:g} m can be"
         raise InputError(f"{text} carried out", ("plan", "poses"))
-    grid = even_grid(way)
+    grid = even_grid(position)
     columns = course.planned
     rows = np.zeros((len(grid), WIDTH))
-    rows[:, :RATES] = np.stack([np.interp(grid, way, column) for column in columns.T], axis=1)
+    rows[:, :RATES] = np.stack([np.interp(grid, position, column) for column in columns.T], axis=1)
     reach = REACH if fast else RATE_REACH  # a fast plan keeps its limits over that
-    rates = slopes(grid, way, columns, reach)
+    rates = slopes(grid, position, columns, reach)
     rows[:, RATES:ACCELERATIONS] = rates
     rows[:, ACCELERATIONS : ACCELERATIONS + RATES] = slopes(grid, grid, rates, reach)
     places, com = np.ascontiguousarray(rows[:, WHEELS]), np.ascontiguousarray(rows[:, COM])
     weight = robot.mass * GRAVITY
     resting = _core.static_forces(path.native, weight, friction, places, com)
     rows[:, FORCES], rows[:, SHARE], rows[:, LEANS] = resting[:, :4], resting[:, 4], resting[:, 5:]
-    rows[:, PROGRESS] = np.interp(grid, way, course.progress)
-    time = np.interp(grid, way, course.time)
+    rows[:, PROGRESS] = np.interp(grid, position, course.progress)
+    time = np.interp(grid, position, course.time)
     if fast:
         speeds = 1.0 / slopes(grid, grid, time, reach)
         if settings.speed is not None:
@@ -147,7 +147,7 @@ def lead_of(plan: Plan, settings: ControllerSettings) -> float:
 
 
 def _planned(time: Floats, grid: Floats) -> Floats:
-    """Speed along the way (n,) by the plan's own times, the smaller one of either side."""
+    """Speed along the path (n,) by the plan's own times, the smaller one of either side."""
     step = np.diff(grid) / np.maximum(np.diff(time), 1e-9)
     speeds: Floats = np.minimum(np.append(step, step[-1]), np.append(step[0], step))
     return speeds
@@ -156,7 +156,7 @@ def _planned(time: Floats, grid: Floats) -> Floats:
 def _limited(
     speeds: Floats, grid: Floats, rows: Floats, robot: Robot, settings: ControllerSettings
 ) -> Floats:
-    """Allowed speed along the way (n,): timing, joint and wheel speed limits, acceleration."""
+    """Allowed speed along the path (n,): timing, joint and wheel speed limits, acceleration."""
     if settings.speed is not None:
         speeds = np.full(len(grid), settings.speed)
     joint_rates = np.abs(rows[:, RATES + JOINTS.start : RATES + JOINTS.stop]).max(axis=1)
@@ -188,8 +188,8 @@ def follower(line: Track, lead: float, row: int = 0) -> _core.PlanFollower:
     )
 
 
-def cruise(line: Track, way: float) -> Floats:
-    """(2,) speeds of the wheel pairs at `way` when nothing holds the plan back [m/s]."""
-    k = min(max(int((way - line.start) / line.step), 0), len(line.rows) - 1)
+def cruise(line: Track, position: float) -> Floats:
+    """(2,) speeds of the wheel pairs at `position` when nothing holds the plan back [m/s]."""
+    k = min(max(int((position - line.start) / line.step), 0), len(line.rows) - 1)
     speeds: Floats = line.speeds[k] * line.rows[k, RATES : RATES + 2]
     return speeds

@@ -89,7 +89,7 @@ class Run:
         self.track: Track = plan_track(plan, self.path, settings)
         self.limit = 2.5 * self.track.duration + 5.0
         self.sensors = Sensors(disturbance, self.dt, seed, plan.poses[0].x_c)
-        self.way = self.track.start
+        self.position = self.track.start
         self.follower = follower(self.track, lead_of(plan, settings))
         self.places = np.full(4, np.nan)
         self.target = np.zeros(self.track.rows.shape[1])
@@ -168,7 +168,7 @@ class Run:
             cause = self._chunk(steps * self.dt >= SETTLE)
             steps += CHUNK
             now = self.time = steps * self.dt
-            done = (self.way - self.track.start) / (self.track.end - self.track.start)
+            done = (self.position - self.track.start) / (self.track.end - self.track.start)
             if progress is not None:
                 progress(min(1.0, 0.999 * done))
             if observe is not None:
@@ -180,7 +180,7 @@ class Run:
                 if settled * self.dt > SETTLE and (self._at_rest() or settled * self.dt > 2.0):
                     cause = ("arrived", "")
                     break
-            elif not self._stopping() and watch.stuck(now, self.way):
+            elif not self._stopping() and watch.stuck(now, self.position):
                 cause = ("stuck", "")
                 break
             why = self._gave_up(now) or self._decide(watch)
@@ -295,7 +295,7 @@ class Run:
             if at < CHUNK:
                 self._touch(self.time + at * self.dt)
                 looked = True
-        self.way, self.target[:] = native.way, native.target
+        self.position, self.target[:] = native.position, native.target
         self.score[:] = score.numbers(native.score)
 
     def _plain_steps(self, moving: bool) -> None:
@@ -319,10 +319,10 @@ class Run:
         assert self.controller is not None
         t = self.track
         self.target[:] = self.follower.advance(self.places, moving, self.dt)
-        self.way = self.follower.way
-        if self.settings.form == "paper" and moving and self.way < t.end - 1e-9:
+        self.position = self.follower.position
+        if self.settings.form == "paper" and moving and self.position < t.end - 1e-9:
             # Eq 15 follows a speed and no place: held back by the lead it would never catch up.
-            self.target[RATES : RATES + 2] = cruise(t, self.way)
+            self.target[RATES : RATES + 2] = cruise(t, self.position)
         self.wanted[:] = self.controller.step(qpos, qvel, Setpoint.from_row(self.target))
         self.places[:] = self.controller.places
         data = self.data

@@ -22,14 +22,14 @@ double mix(double a, double b, double share) { return a + share * (b - a); }
 }  // namespace
 
 PlanFollower::PlanFollower(double start, double step, std::vector<Reference> rows, std::vector<double> speeds, double maximum_lead)
-    : start_(start), step_(step), maximum_lead_(maximum_lead), rows_(std::move(rows)), speeds_(std::move(speeds)), way_(start) {
+    : start_(start), step_(step), maximum_lead_(maximum_lead), rows_(std::move(rows)), speeds_(std::move(speeds)), position_(start) {
     if (rows_.size() < 2 || speeds_.size() != rows_.size()) throw std::invalid_argument("a plan needs two rows, and a speed for each");
     if (!(step > 0.0) || !(maximum_lead > 0.0)) throw std::invalid_argument("step and maximum_lead must be positive");
 }
 
-PlanFollower::Spot PlanFollower::spot(double way) const {
+PlanFollower::Spot PlanFollower::spot(double position) const {
     const std::size_t last = rows_.size() - 1;
-    const double at = std::min(std::max((way - start_) / step_, 0.0), static_cast<double>(last));
+    const double at = std::min(std::max((position - start_) / step_, 0.0), static_cast<double>(last));
     const std::size_t k = whole_part(at, last - 1);
     return {k, at - static_cast<double>(k)};
 }
@@ -52,7 +52,7 @@ double PlanFollower::wheel_lag(Spot at, const std::array<double, 4>& places) con
 }
 
 const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool moving, double dt, bool hanging) {
-    const Spot now = spot(way_);
+    const Spot now = spot(position_);
     lag_ = wheel_lag(now, places);
     const double most = hanging ? std::min(kHangingLead, maximum_lead_) : maximum_lead_;
     double rate = 0.0;
@@ -66,10 +66,10 @@ const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool
     const double reach = std::max(kRateAcceleration, planned_acceleration(now)) * dt;
     rate = std::min(std::max(rate, rate_ - 4 * reach), rate_ + reach);
     const double end = start_ + step_ * static_cast<double>(rows_.size() - 1);
-    const double way = std::min(std::max(way_ + rate * dt, start_), end);
-    rate_ = (way - way_) / dt;
-    way_ = way;
-    set_target(spot(way_));
+    const double position = std::min(std::max(position_ + rate * dt, start_), end);
+    rate_ = (position - position_) / dt;
+    position_ = position;
+    set_target(spot(position_));
     return target_;
 }
 

@@ -13,10 +13,10 @@ constexpr double kMostRoll = 0.20;    // rad
 
 }  // namespace
 
-Stop SafeStop::watch(double way, bool advancing, double pitch_error, double roll, double dt) {
+Stop SafeStop::watch(double position, bool advancing, double pitch_error, double roll, double dt) {
     if (why_ != Stop::none) return why_;
     waited_ = advancing ? waited_ + dt : 0.0;
-    if (way > best_ + kProgress) best_ = way, waited_ = 0.0;
+    if (position > best_ + kProgress) best_ = position, waited_ = 0.0;
     if (waited_ > kPatience) why_ = Stop::no_progress;
     if (std::abs(pitch_error) > kMostPitch || std::abs(roll) > kMostRoll) why_ = Stop::tilted;
     return why_;

@@ -33,14 +33,14 @@ STAIRWRIGHT_INLINE float missing(float margin, float wanted) {
     return larger(0.0F, wanted - larger(-0.06F, margin)) / wanted;
 }
 
-// cost[k] = way[k] + what pose k costs, whose CoM is at com[k].
+// cost[k] = to_come[k] + what pose k costs, whose CoM is at com[k].
 STAIRWRIGHT_VECTOR_CLONES
-void add_costs(const CostTerms r, const int count, const float* __restrict com, const float* __restrict way,
+void add_costs(const CostTerms r, const int count, const float* __restrict com, const float* __restrict to_come,
                const float* __restrict tables, const float* __restrict base, float* __restrict cost) {
     for (int k = 0; k < count; ++k) {
         const float h = missing(smaller(com[k] - r.low, r.high - com[k]), r.wanted);
         const float g = missing(smaller(com[k] - r.reserve_low, r.reserve_high - com[k]), r.wanted);
-        cost[k] = way[k] + 0.5F * tables[k] + base[k] + r.heavy * (h * h + g * g);
+        cost[k] = to_come[k] + 0.5F * tables[k] + base[k] + r.heavy * (h * h + g * g);
     }
 }
 
@@ -55,9 +55,9 @@ double CheapestPaths::move_cost(const Problem& problem, const Cell& cell, int mo
     return length * factor / (2.0 * problem.lattice.step);
 }
 
-// Costs of ways to the poses of a cell in `range`: of the `way` there and of the pose. Narrower ones are infeasible.
+// Costs of paths to the poses of a cell in `range`: the cost `to_come` there and the pose's own. Narrower ones are infeasible.
 void CheapestPaths::pose_costs(const Problem& problem, const Cell& cell, const ComIntervals& com, const std::uint8_t* width,
-                               FlatRange range, const float* way, PoseBuffer& poses, float* out) const {
+                               FlatRange range, const float* to_come, PoseBuffer& poses, float* out) const {
     const Lattice& lattice = problem.lattice;
     const LegTable &front = problem.legs[kFront], &rear = problem.legs[kRear];
     const TrunkTable& trunk = problem.trunk;
@@ -100,14 +100,14 @@ void CheapestPaths::pose_costs(const Problem& problem, const Cell& cell, const C
             for_each_bit(wide, [&](int x) {
                 poses.at[count] = row + x;
                 poses.com[count] = first + static_cast<float>(x) * advance + terms.per_mass * (fm[x] + rm[x]);
-                poses.way[count] = way[row + x];
+                poses.to_come[count] = to_come[row + x];
                 poses.tables[count] = fc[x] + rc[x] + tc[x];
                 poses.base[count] = base;
-                count += way[row + x] < kInfeasible;
+                count += to_come[row + x] < kInfeasible;
             });
         }
     }
-    add_costs(shared, count, poses.com.data(), poses.way.data(), poses.tables.data(), poses.base.data(), poses.cost.data());
+    add_costs(shared, count, poses.com.data(), poses.to_come.data(), poses.tables.data(), poses.base.data(), poses.cost.data());
     for (int k = 0; k < count; ++k) out[poses.at[k]] = poses.cost[k];
 }
 

@@ -44,7 +44,7 @@ struct WidestPaths::Wider {
     std::vector<std::int32_t> at;          // position in the cell's volume
     std::vector<float> com;                // x of the CoM [m]
     std::vector<float> x, z, cos, sin;     // of the trunk from the front wheel [m], of its pitch
-    std::vector<std::uint8_t> width;       // of the way
+    std::vector<std::uint8_t> width;       // of the path
     std::vector<std::uint8_t> clear;       // whether the legs keep clear of each other
 };
 
@@ -153,20 +153,20 @@ int WidestPaths::collect(const Problem& problem, const Cell& cell, FlatRange ran
     return count;
 }
 
-// Widens the ways to poses of a cell to what `result` holds in `range`; true if any grew.
+// Widens the paths to poses of a cell to what `result` holds in `range`; true if any grew.
 bool WidestPaths::widen(const Problem& problem, const Cell& cell, const ComIntervals& com, std::size_t number,
                         FlatRange range, const std::uint8_t* result, Wider& wider) {
-    std::uint8_t* ways = width(number);
-    const int found = collect(problem, cell, range, result, ways, wider);
+    std::uint8_t* widths = width(number);
+    const int found = collect(problem, cell, range, result, widths, wider);
     rate(com, problem.least_com_margin, wider.com.data(), found, wider.width.data());
     bool changed = false;
     int count = 0;
     for (int k = 0; k < found; ++k) {
         const int at = wider.at[k];
-        const std::uint8_t least = std::min(wider.width[k], result[at]), so_far = ways[at];
+        const std::uint8_t least = std::min(wider.width[k], result[at]), so_far = widths[at];
         if (least <= so_far) continue;
         if (so_far > 0 && !torques_) {  // possible, as is known
-            ways[at] = least;
+            widths[at] = least;
             best[number] = std::max(best[number], least);
             changed = true;
             continue;
@@ -192,9 +192,9 @@ bool WidestPaths::widen(const Problem& problem, const Cell& cell, const ComInter
             const Vec2 trunk = {front.x + wider.x[k], front.z + wider.z[k]};
             const Turn pitch = {wider.cos[k], wider.sin[k]};
             least = std::min(least, torques_->quality(problem, cell, number, com, trunk, pitch, wider.com[k]));
-            if (least <= ways[at]) continue;
+            if (least <= widths[at]) continue;
         }
-        ways[at] = least;
+        widths[at] = least;
         best[number] = std::max(best[number], least);
         first[number] = std::min(first[number], at);
         last[number] = std::max(last[number], at + 1);

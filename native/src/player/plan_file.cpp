@@ -159,7 +159,7 @@ PlanFile read_plan_file(std::istream& text) {
     out.robot = robot(lines);
     out.gains = gains(lines);
     out.motors = motors(lines);
-    out.way = lines.number("way"), out.step = lines.number("step"), out.lead = lines.number("lead");
+    out.position = lines.number("way"), out.step = lines.number("step"), out.lead = lines.number("lead");
     out.settle = lines.number("settle");
     const Numbers grip = lines.numbers("grip", 2), hold = lines.numbers("hold", 2);
     out.grip_need = grip[0], out.grip_enough = grip[1];

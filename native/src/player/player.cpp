@@ -60,13 +60,13 @@ const char* name(Phase phase) {
 
 Player::Player(PlanFile file, const Limits& limits)
     : file_(std::move(file)), limits_(limits), path_(file_.terrain, file_.robot.legs[0].wheel.radius),
-      executor_({file_.robot, path_, file_.friction, file_.gains}, {file_.way, file_.step, file_.rows, file_.speeds, file_.lead},
+      executor_({file_.robot, path_, file_.friction, file_.gains}, {file_.position, file_.step, file_.rows, file_.speeds, file_.lead},
                 file_.grip_need, false),
       command_(damping(file_)), damped_(command_) {}
 
 double Player::done() const {
     const double whole = file_.step * static_cast<double>(file_.rows.size() - 1);
-    return (executor_.follower().way() - file_.way) / whole;
+    return (executor_.follower().position() - file_.position) / whole;
 }
 
 std::array<double, 2> Player::largest_torques() const {
@@ -200,7 +200,7 @@ const LowCommand& Player::step(const LowState& state) {
     if (const auto creep = executor_.take_creep()) estimator_->believe_creep(*creep);
     if (const std::string why = beyond_limits(now); !why.empty()) return damp(why), command_;
     tell(command, now);
-    if (phase_ == Phase::settling && executor_.follower().way() > file_.way) phase_ = Phase::driving;
+    if (phase_ == Phase::settling && executor_.follower().position() > file_.position) phase_ = Phase::driving;
     if (phase_ == Phase::settling || phase_ == Phase::driving) decide();
     if (phase_ == Phase::driving && executor_.follower().arrived()) {
         rested_ += dt;

@@ -68,7 +68,7 @@ def test_pieces_of_neighbours_do_not_overlap(monkeypatch):
     found = smoothed(planner)
     ways = []
     monkeypatch.setattr(
-        repairs, "_way", lambda q, found, begin, end, *_: ways.append((begin, end)) or (0, 0)
+        repairs, "_local_path", lambda q, found, begin, end, *_: ways.append((begin, end)) or (0, 0)
     )
     monkeypatch.setattr(repairs, "_smoothed", lambda q, old, way: old)
     travel = found.s.mean(axis=1) - found.s[0].mean()

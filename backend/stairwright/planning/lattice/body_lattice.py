@@ -65,7 +65,7 @@ class Bounds(NamedTuple):
 # the lattice may take from a pose that is really possible (loose: smoothing must repair it); or so
 # much less that a search without success settles the matter (loosest; smoothing repairs many of its
 # finds, and sooner than a finer lattice would spare it the work); or what lies between (looser).
-# Where the bare bounds of lattice poses (exact) leave a way, 19 of 20 become plans.
+# Where the bare bounds of lattice poses (exact) leave a path, 19 of 20 become plans.
 STRICT = Bounds(
     trunk=0.006, links=0.006, legs=_core.LEGS_GAP, reach=0.003, thigh=0.0, com=0.005, torque=0.95
 )
@@ -86,9 +86,9 @@ class LatticePath:
     """What the search found.
 
     Attributes:
-        s: (n, 2) arc lengths of front and rear wheel; None if there is no way.
+        s: (n, 2) arc lengths of front and rear wheel; None if there is no path.
         body: (n, 3) trunk poses.
-        quality: Least quality on the widest way (0 without one).
+        quality: Least quality on the widest path (0 without one).
         reached: (2,) arc lengths of the pair farthest along that was reached, None if none was.
         back: Whether wheels had to roll back.
     """

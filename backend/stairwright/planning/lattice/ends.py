@@ -1,4 +1,4 @@
-"""Where ways begin and end: poses of a cell near a standing pose, with the widest way."""
+"""Where paths begin and end: poses of a cell near a standing pose, with the widest path."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def arrival(
 
 
 def widest_pose(lat: Lattice, widest: _core.WidestPaths, c: int) -> Ints:
-    """The pose of cell `c` with the widest way to it."""
+    """The pose of cell `c` with the widest path to it."""
     widths = _window(lat, widest.width(c))
     return _place(widths, int(widths.argmax()))
 

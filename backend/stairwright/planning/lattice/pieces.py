@@ -1,4 +1,4 @@
-"""Questions about a piece of a course: a way from start to goal leads through it, or there is none.
+"""Questions about a piece of a course: a path to the goal leads through it, or there is none.
 
 A piece is longer than any two places of the wheels are apart. On a long course it tells sooner that
 nothing leads past an obstruction, and whether a change would.
@@ -18,7 +18,7 @@ from stairwright.planning.path_problem import PathProblem
 from stairwright.planning.standing import StandingPose, scale
 
 _BEHIND, _BEYOND = 0.3, 1.0  # m; behind the rear and ahead of the front wheel, for legs of 0.4 m
-_EDGE = 0.2  # m; a way that ends this near to a piece's open end ends where nobody has asked
+_EDGE = 0.2  # m; a path that ends this near to a piece's open end ends where nobody has asked
 _MOST = 0.6  # of a course; larger pieces are not sooner asked than all of it
 
 
@@ -70,7 +70,7 @@ def passes(
     roll_back: bool = False,
     searches: Searches | None = None,
 ) -> bool:
-    """Whether a way leads through `piece`.
+    """Whether a path leads through `piece`.
 
     Args:
         q: The question.
@@ -91,11 +91,11 @@ def passes(
 def stops(
     q: PathProblem, place: Place, bounds: Bounds, fine: float, searches: Searches | None = None
 ) -> tuple[Place, ...]:
-    """Where ways end that begin at any pose behind `place`, and so on from there.
+    """Where paths end that begin at any pose behind `place`, and so on from there.
 
     Returns:
         Arc lengths of front and rear wheel, in order, as far as a window of the course reaches;
-        empty where a way leads to its end.
+        empty where a path leads to its end.
     """
     end = q.ends[1]
     piece = _round(q, place)

@@ -1,4 +1,4 @@
-"""One lattice problem from start to goal: tables, cells, and the way through them."""
+"""One lattice problem from start to goal: tables, cells, and the path through them."""
 
 from __future__ import annotations
 
@@ -96,18 +96,18 @@ class Search:
         partial: bool = False,
         torque: float | None = None,
     ) -> LatticePath:
-        """The way from start to goal at `friction`, wide at the `reserve` friction if possible.
+        """The path from start to goal at `friction`, wide at the `reserve` friction if possible.
 
         Args:
             friction: Coulomb friction.
             reserve: Lower friction that is kept where the terrain allows it.
             com: Least CoM margin [m].
-            cheap: Also trace the smoothest way; otherwise only the verdict is given, without regard
-                to the reserve.
-            roll_back: Let wheels roll back where there is no way forward only.
+            cheap: Also trace the smoothest path; otherwise only the verdict is given, without
+                regard to the reserve.
+            roll_back: Let wheels roll back where no path rolls forward only.
             open_start: Any pose with the rear wheels at the first sample will do; not with `cheap`.
             open_end: Any pose with the front wheels at the last sample will do.
-            partial: Where there is no way to the goal, trace the one that gets farthest.
+            partial: Where there is no path to the goal, trace the one that gets farthest.
             torque: Largest share of the motors' torques that a pose may take; any by default.
         """
         lat = self.lattice
@@ -165,11 +165,11 @@ class Search:
     def stops(
         self, friction: float, com: float, open_end: bool, torque: float | None = None
     ) -> list[Place]:
-        """Where ways end that begin at any pose with the rear wheels at the first sample, and so on
-        from where the front wheels ended; see `find`.
+        """Where paths end that begin at any pose with the rear wheels at the first sample, and so
+        on from where the front wheels ended; see `find`.
 
         Returns:
-            Arc lengths of front and rear wheel, in order; empty where a way leads to the end.
+            Arc lengths of front and rear wheel, in order; empty where a path leads to the end.
         """
         cells, problem = self._cells(friction, 0.0, com), self._problem(com)
         windows = _windows(problem, cells)
@@ -199,7 +199,7 @@ class Search:
         return widest
 
     def _goals(self, cells: Cells, open_end: bool) -> tuple[Longs, Ints | None]:
-        """Cells in which ways end, and their pose unless any will do."""
+        """Cells in which paths end, and their pose unless any will do."""
         if open_end:
             return np.flatnonzero(cells.front == len(self.s) - 1), None
         goals = np.flatnonzero(self._only(cells, self.end))

@@ -17,7 +17,7 @@ from stairwright.planning.standing import StandingPose, scale
 
 WINDOW = 5.0  # m, for legs of 0.4 m
 _LAST = 5.5  # m; what is left of a course when the last window takes it all
-_LAST_ASKED = 12.0  # m; the same where only the question is whether there is a way: no costs there
+_LAST_ASKED = 12.0  # m; the same where only the question is whether there is a path: no costs there
 _AHEAD = 1.8  # m of a window that are searched again by the next
 
 
@@ -35,9 +35,9 @@ def find_path(
     partial: bool = False,
     searches: Searches | None = None,
 ) -> LatticePath:
-    """The way from the first standing pose to the second; see `Search.find` for the arguments.
+    """The path from the first standing pose to the second; see `Search.find` for the arguments.
 
-    With `partial` it is the way as far as it goes where there is none to the end.
+    With `partial` it is the path as far as it goes where there is none to the end.
     """
     begin, end = q.ends
     size = scale(q.robot)

@@ -68,11 +68,11 @@ def refine(
     spacing: NodeSpacing = COARSE,
     held: int = 1,
 ) -> Refined:
-    """Turn a way into dense, smooth nodes.
+    """Turn a lattice path into dense, smooth nodes.
 
     Args:
-        q: The question.
-        ends: Where the way begins and ends.
+        q: The problem.
+        ends: Where the path begins and ends.
         s: (n, 2) arc lengths of front and rear wheel [m].
         body: (n, 3) trunk poses.
         spacing: How nodes are laid.

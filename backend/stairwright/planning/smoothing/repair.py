@@ -63,10 +63,10 @@ def repair(q: PathProblem, found: Refined, bad: Ints, stage: Stage) -> Refined:
         if deep or high - low > stage.longest * size:
             continue
         begin, inner = max(begin, last), (max(inner[0], last), inner[1])
-        way = _way(q, found, begin, end, *inner, stage.fine)
-        if way is None:
+        path = _local_path(q, found, begin, end, *inner, stage.fine)
+        if path is None:
             continue
-        piece = _smoothed(q, found.part(begin, end + 1), way)
+        piece = _smoothed(q, found.part(begin, end + 1), path)
         if piece is not None:
             parts += [found.part(last, begin), piece]
             last = end + 1
@@ -89,7 +89,7 @@ def _nodes(u: Floats, low: float, high: float) -> tuple[int, int]:
     return max(0, int(np.searchsorted(u, low)) - 1), min(int(np.searchsorted(u, high)), len(u) - 1)
 
 
-def _way(
+def _local_path(
     q: PathProblem, found: Refined, begin: int, end: int, a: int, b: int, fine: float | None
 ) -> tuple[Floats, Floats] | None:
     """Arc lengths and trunk poses from node `begin` to node `end`, new ones between `a` and `b`."""
@@ -111,13 +111,13 @@ def _way(
     )
 
 
-def _smoothed(q: PathProblem, old: Refined, way: tuple[Floats, Floats]) -> Refined | None:
-    """The way as nodes, if they are better than the `old` ones."""
+def _smoothed(q: PathProblem, old: Refined, path: tuple[Floats, Floats]) -> Refined | None:
+    """The path as nodes, if they are better than the `old` ones."""
     ends = (old.standing_pose(0), old.standing_pose(-1))
     pieces = []
     for spacing in _SPACINGS:
         still_wanted()
-        pieces.append(refine(q, ends, *way, spacing, _HELD))
+        pieces.append(refine(q, ends, *path, spacing, _HELD))
         if not len(pieces[-1].margins.bad):
             return pieces[-1]
     best = max(pieces, key=lambda one: one.margins.worst)

@@ -17,11 +17,11 @@ from stairwright.terrain.wheel_path import wheel_path
 
 from .limits import LimitName, Limits, Pace, limits_of
 from .moving_robot import MovingRobot, moving_robot
-from .way import way_of
+from .path_position import path_positions
 
 Floats = NDArray[np.float64]
 
-SLOWEST = 0.01  # m/s along the way, where a plan starts and ends
+SLOWEST = 0.01  # m/s along the path, where a plan starts and ends
 _ROUNDS = 8  # of slowing down where a plan would not be certified
 _SLOWER = 0.8  # each time
 _BINDS = 0.02  # of a cap or of a row's room
@@ -34,7 +34,7 @@ class TimingProblem:
     Attributes:
         motion: Along the path.
         limits: Of speed and acceleration.
-        poses: (p,) way of the plan's poses [m].
+        poses: (p,) position of the plan's poses [m].
     """
 
     motion: MovingRobot
@@ -51,7 +51,7 @@ class TimingProblem:
         progress = [pose.progress for pose in plan.poses]
         effort = np.interp(motion.progress, progress, standing_effort(plan))
         limits = limits_of(motion, robot, path, plan.friction, effort, Pace.of(aggressiveness))
-        return cls(motion, limits, np.interp(progress, line.progress, way_of(line)))
+        return cls(motion, limits, np.interp(progress, line.progress, path_positions(line)))
 
     def times(self, squares: Floats) -> Floats:
         """When each sample is reached (n,) [s]: constant acceleration between two."""
@@ -65,7 +65,7 @@ class TimingProblem:
 
     def pose_times(self, squares: Floats) -> Floats:
         """When each pose is reached (p,) [s]."""
-        return np.interp(self.poses, self.motion.way, self.times(squares))
+        return np.interp(self.poses, self.motion.position, self.times(squares))
 
 
 def hastened(plan: Plan, aggressiveness: float) -> Plan:
@@ -85,7 +85,7 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
         squares = fastest(problem)
     times = problem.pose_times(squares).tolist()
     names = binding(problem, squares)
-    places = np.searchsorted(problem.motion.way, problem.poses).clip(0, len(names) - 1)
+    places = np.searchsorted(problem.motion.position, problem.poses).clip(0, len(names) - 1)
     timed = [
         pose.model_copy(update={"time": time}) for pose, time in zip(plan.poses, times, strict=True)
     ]
@@ -100,7 +100,7 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
 def slow_down(problem: TimingProblem, found: Dynamics, squares: Floats) -> None:
     """Lower caps where the certificate's own dynamics find too much asked for.
 
-    Rows hold at samples of the way, with differences over a part of it; the certificate judges
+    Rows hold at samples of the path, with differences over a part of it; the certificate judges
     poses, with differences over a time.
     """
     passed, caps = problem.times(squares), problem.limits.caps
@@ -117,7 +117,7 @@ def slow_down(problem: TimingProblem, found: Dynamics, squares: Floats) -> None:
 
 
 def fastest(problem: TimingProblem) -> Floats:
-    """Squared speeds (n,) along the way [m^2/s^2], from rest to rest."""
+    """Squared speeds (n,) along the path [m^2/s^2], from rest to rest."""
     caps = np.minimum.reduce(list(problem.limits.caps.values()))
     return _core.fastest_squares(problem.limits.rows, caps, problem.motion.step)
 

@@ -1,4 +1,4 @@
-"""What bounds speed x = (dw/dt)^2 and acceleration u = d2w/dt2 along the way w, linear in both.
+"""What bounds speed x = (dw/dt)^2 and acceleration u = d2w/dt2 of path position w, linear in both.
 
 A row (a, b, c) allows what keeps ``a x + b u + c >= 0``; standing (0, 0) is always allowed, for the
 path is certified at rest.
@@ -84,7 +84,7 @@ def limits_of(
     """Limits along `motion`.
 
     Args:
-        motion: Of the robot along the way.
+        motion: Of the robot along the path.
         robot: Who moves.
         path: Its wheel-centre curve.
         friction: Coulomb friction of all faces.
@@ -116,7 +116,7 @@ def _accelerations(motion: MovingRobot, pace: Pace) -> Iterator[Floats]:
     most[COM] = pace.acceleration
     most[PITCH] = pace.pitch_acceleration
     most[JOINTS] = pace.joint_acceleration
-    room = np.ones(len(motion.way))
+    room = np.ones(len(motion.position))
     for k in np.flatnonzero(np.isfinite(most)):
         yield from _both_ways(motion.first[:, k] / most[k], motion.second[:, k] / most[k], room)
 

@@ -1,4 +1,4 @@
-"""The robot along a path, and what moving along it takes: derivatives by the way."""
+"""The robot along a path, and what moving along it takes: derivatives by it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from stairwright.planning.poses.pose_reference import Reference
 
-from .way import even_grid, slopes, way_of
+from .path_position import even_grid, path_positions, slopes
 
 Floats = NDArray[np.float64]
 
@@ -18,17 +18,17 @@ REACH = 0.0125  # m; derivatives are differences over this far, both ways
 
 @dataclass(frozen=True)
 class MovingRobot:
-    """A motion on an even grid of way (n,) [m].
+    """A motion on an even grid of path positions (n,) [m].
 
     Attributes:
-        way: (n,) [m].
+        position: (n,) [m].
         progress: (n,) the plan's [m].
         values: (n, 11) wheels, joints, pitch, CoM, trunk: `Reference.planned`.
-        first: (n, 11) their derivatives by the way.
+        first: (n, 11) their derivatives by it.
         second: (n, 11) second derivatives.
     """
 
-    way: Floats
+    position: Floats
     progress: Floats
     values: Floats
     first: Floats
@@ -37,17 +37,17 @@ class MovingRobot:
     @property
     def step(self) -> float:
         """Between samples [m]."""
-        return float(self.way[1] - self.way[0])
+        return float(self.position[1] - self.position[0])
 
 
 def moving_robot(reference: Reference) -> MovingRobot:
     """The robot along `reference`."""
-    at = way_of(reference)
+    at = path_positions(reference)
     grid = even_grid(at)
     columns = reference.planned
     first = slopes(grid, at, columns, REACH)
     return MovingRobot(
-        way=grid,
+        position=grid,
         progress=np.interp(grid, at, reference.progress),
         values=np.column_stack([np.interp(grid, at, column) for column in columns.T]),
         first=np.ascontiguousarray(first),

@@ -13,7 +13,7 @@ namespace stairwright::control {
 
 class PlanFollower {
   public:
-    // Set points on an even grid of way, the first at `start`, with rates per metre of way and accelerations per its
+    // Set points on an even grid of path positions, the first at `start`, with rates per metre of path and accelerations per its
     // square, the allowed `speeds` there [m/s], and how far the plan may be ahead of the wheels [m].
     // Throws std::invalid_argument unless there are two rows at least and as many speeds.
     PlanFollower(double start, double step, std::vector<Reference> rows, std::vector<double> speeds, double maximum_lead);
@@ -23,8 +23,8 @@ class PlanFollower {
     const Reference& advance(const std::array<double, 4>& places, bool moving, double dt, bool hanging = false);
 
     const Reference& first() const { return rows_.front(); }
-    double way() const { return way_; }    // m
-    bool arrived() const { return way_ >= start_ + step_ * static_cast<double>(rows_.size() - 1) - 1e-9; }
+    double position() const { return position_; }  // along the path [m]
+    bool arrived() const { return position_ >= start_ + step_ * static_cast<double>(rows_.size() - 1) - 1e-9; }
     double rate() const { return rate_; }  // m/s
     double lag() const { return lag_; }    // of the wheels behind the plan [m]
     const Reference& target() const { return target_; }
@@ -34,7 +34,7 @@ class PlanFollower {
         std::size_t row;
         double share;
     };
-    Spot spot(double way) const;
+    Spot spot(double position) const;
     double wheel_lag(Spot at, const std::array<double, 4>& places) const;
     double planned_acceleration(Spot at) const;
     void set_target(Spot at);
@@ -42,7 +42,7 @@ class PlanFollower {
     double start_, step_, maximum_lead_;
     std::vector<Reference> rows_;
     std::vector<double> speeds_;
-    double way_, rate_ = 0.0, lag_ = 0.0;
+    double position_, rate_ = 0.0, lag_ = 0.0;
     Reference target_{};
 };
 

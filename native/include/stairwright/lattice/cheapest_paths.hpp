@@ -34,7 +34,7 @@ public:
     std::optional<std::vector<PathPose>> backtrack(const Problem& problem, std::span<const Cell> cells, std::size_t source,
                                                    std::size_t goal, const WindowPose& pose, std::size_t longest) const;
 
-    // The pose of a cell within `range` that is the cheapest; the first of them where none has a way.
+    // The pose of a cell within `range` that is the cheapest; the first of them where no path leads to any.
     WindowPose cheapest_pose(const Lattice& lattice, std::size_t cell, const WindowRange& range) const;
 
     bool reached(std::size_t cell) const { return low[cell] < high[cell]; }
@@ -49,18 +49,18 @@ public:
 private:
     // Poses of a cell that are wide enough.
     struct PoseBuffer {
-        explicit PoseBuffer(std::size_t n) : at(n), com(n), way(n), tables(n), base(n), cost(n) {}
+        explicit PoseBuffer(std::size_t n) : at(n), com(n), to_come(n), tables(n), base(n), cost(n) {}
 
         std::vector<std::int32_t> at;       // position in the cell's volume
         std::vector<float> com;             // x of the CoM [m]
-        std::vector<float> way;             // cost so far
+        std::vector<float> to_come;         // cost-to-come
         std::vector<float> tables, base;    // costs of legs and trunk, of height and pitch
         std::vector<float> cost;            // of all
     };
 
     double move_cost(const Problem& problem, const Cell& cell, int move) const;
     void pose_costs(const Problem& problem, const Cell& cell, const ComIntervals& com, const std::uint8_t* width,
-                    FlatRange range, const float* way, PoseBuffer& poses, float* out) const;
+                    FlatRange range, const float* to_come, PoseBuffer& poses, float* out) const;
     bool keep(std::size_t cell, FlatRange range, const float* result);
 
     int level_ = 0, moves_ = 0;

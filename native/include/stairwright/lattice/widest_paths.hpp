@@ -2,7 +2,7 @@
 //
 // A move takes one or both wheels to the next sample while the body shifts by up to two lattice steps in each
 // direction. The width of a pose is the least quality (CoM margin, at the reserved friction where that is possible; for
-// weak robots also what motors have to spare) on the best way to it: one byte a pose, 0 where there is no way.
+// weak robots also what motors have to spare) on the best path to it: one byte a pose, 0 where there is none.
 #pragma once
 
 #include <span>
@@ -20,7 +20,7 @@ struct SweepHistory {
 
     int visits = 0;                   // how often any cell was looked at
     std::vector<std::int32_t> grown;  // by cell: the visit at which its values last changed
-    std::vector<std::int32_t> seen;   // by cell: the visit at which ways into it were last looked for, -1: never
+    std::vector<std::int32_t> seen;   // by cell: the visit at which paths into it were last looked for, -1: never
 };
 
 class WidestPaths {
@@ -51,7 +51,7 @@ public:
     SweepHistory history;
 
 private:
-    // Poses of a cell to which a way leads that is wider than before.
+    // Poses of a cell to which a path leads that is wider than before.
     struct Wider;
     int collect(const Problem& problem, const Cell& cell, FlatRange range, const std::uint8_t* result,
                 const std::uint8_t* width, Wider& wider) const;

@@ -11,12 +11,12 @@ from stairwright.planning.poses.pose_reference import Reference
 
 Floats = NDArray[np.float64]
 
-STEP = 0.0025  # m of way between samples
-SWING = 0.3  # of the trunk's motion counts as way, where that is more than the progress
+STEP = 0.0025  # m of path between samples
+SWING = 0.3  # of the trunk's motion counts as rolling, where that is more than the progress
 TURN = 0.25  # m that a radian of the trunk's pitch counts as
 
 
-def way_of(reference: Reference) -> Floats:
+def path_positions(reference: Reference) -> Floats:
     """(n,) the plan's progress [m], and a share of the trunk's motion where that is more.
 
     So a trunk that swings above wheels that hardly roll takes its time. It rises strictly.
@@ -24,13 +24,15 @@ def way_of(reference: Reference) -> Floats:
     trunk = np.diff(reference.trunk, axis=0)
     moved = np.hypot(trunk[:, 0], trunk[:, 1]) + TURN * np.abs(trunk[:, 2])
     steps = np.maximum(np.diff(reference.progress), SWING * moved)
-    way: Floats = reference.progress[0] + np.concatenate([[0.0], np.cumsum(steps)])
-    return way
+    position: Floats = reference.progress[0] + np.concatenate([[0.0], np.cumsum(steps)])
+    return position
 
 
-def even_grid(way: Floats) -> Floats:
-    """(m,) from the first way to the last, about `STEP` apart [m]."""
-    return np.linspace(way[0], way[-1], max(3, math.ceil((way[-1] - way[0]) / STEP) + 1))
+def even_grid(position: Floats) -> Floats:
+    """(m,) from the first position to the last, about `STEP` apart [m]."""
+    return np.linspace(
+        position[0], position[-1], max(3, math.ceil((position[-1] - position[0]) / STEP) + 1)
+    )
 
 
 def slopes(grid: Floats, at: Floats, values: Floats, reach: float) -> Floats:
