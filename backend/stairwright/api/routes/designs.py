@@ -25,8 +25,8 @@ from stairwright.api.responses import fresh_json, models_json, not_modified
 from stairwright.api.services import Services
 from stairwright.api.study_bodies import DesignAnswer, DesignDocument
 from stairwright.documents import parse
-from stairwright.studies.design import resolved_design
 from stairwright.studies.design_document import Design
+from stairwright.studies.design_resolve import resolved_design
 from stairwright.studies.design_result import DesignResult
 from stairwright.studies.design_shelf import (
     DesignSummary,
