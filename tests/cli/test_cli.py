@@ -13,9 +13,11 @@ from pathlib import Path
 import pytest
 
 import stairwright as sw
+from stairwright import commands
 from stairwright.cli import main
 from stairwright.documents import load_mapping
 from stairwright.export.table import FORMATS
+from stairwright.jobs.failures import WorkerDied
 from stairwright.library import robots, terrains
 from stairwright.resources import data_folder
 
@@ -177,6 +179,16 @@ def test_what_cannot_be_done_is_status_1(tmp_path: Path) -> None:
 )
 def test_bad_input_is_status_2_and_one_line(arguments: tuple[str, ...]) -> None:
     assert run(*arguments, status=2) == ""
+
+
+def test_a_cluster_that_cannot_go_on_is_status_1_and_one_line(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def lists(_: object) -> None:
+        raise WorkerDied("the scheduler is gone")
+
+    monkeypatch.setitem(commands.COMMANDS, "terrains", lists)
+    run("terrains", status=1)
 
 
 @pytest.mark.parametrize("command", ["study", "robot import", "certify"])

@@ -11,6 +11,7 @@ and whoever may talk to a scheduler may run code.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import subprocess
 import sys
@@ -127,7 +128,8 @@ def main() -> None:
     except RuntimeError as error:  # a worker that was killed while it started
         sys.exit(f"the processes for studies did not start: {error}")
     with cluster:
-        print(json.dumps({"address": cluster.scheduler_address, **told}), flush=True)
+        with contextlib.suppress(BrokenPipeError):  # whoever asked has gone; so has the input
+            print(json.dumps({"address": cluster.scheduler_address, **told}), flush=True)
         sys.stdin.read()
 
 
