@@ -11,7 +11,7 @@ import pytest
 
 import stairwright as sw
 from stairwright.robot import kinematics
-from tests.conftest import TAB, Server
+from tests.conftest import TAB, Server, serve
 
 from .conftest import PATIENCE, PHONE, Product
 
@@ -27,6 +27,13 @@ OUTSIDE = """() => [...document.querySelectorAll('.runs button, .runs input, .ru
   .filter(e => { const r = e.getBoundingClientRect();
                  return r.width && (r.left < -1 || r.right > innerWidth + 1); })
   .map(e => e.outerHTML.slice(0, 80))"""
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A server of their own: what other tests pinned would be overlaid, too."""
+    with serve(tmp_path_factory.mktemp("runs") / "data") as running:
+        yield running
 
 
 @pytest.fixture(scope="module")
