@@ -1,12 +1,14 @@
-"""One cluster of this machine for all tests of studies: it takes seconds to start."""
+"""What tests of studies share: a cluster, which takes seconds to start, and a server."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+import httpx
 import pytest
 
 from stairwright.studies.cluster import ClusterEngine
+from tests.conftest import Server, serve
 
 
 @pytest.fixture(scope="session")
@@ -15,3 +17,17 @@ def cluster() -> Iterator[ClusterEngine]:
     engine = ClusterEngine(None, 4)
     yield engine
     engine.close()
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A server of a module's own, with one process for studies: it needs no cluster."""
+    variables = {"STAIRWRIGHT_STUDY_WORKERS": "1", "STAIRWRIGHT_STUDY_CELLS": "2000"}
+    with serve(tmp_path_factory.mktemp("studies") / "data", **variables) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def api(service: Server) -> Iterator[httpx.Client]:
+    with httpx.Client(base_url=f"{service.url}/api/v1", timeout=60) as client:
+        yield client

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from typing import Any
 
@@ -28,22 +28,6 @@ SMALL = _document(
     generation=3,
 )
 LONG = SMALL | {"designs": 400, "generation": 2, "seed": 1}
-
-
-@pytest.fixture(scope="module")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    """A server of these tests' own, with one process for studies: it needs no cluster."""
-    from tests.conftest import serve
-
-    variables = {"STAIRWRIGHT_STUDY_WORKERS": "1", "STAIRWRIGHT_STUDY_CELLS": "2000"}
-    with serve(tmp_path_factory.mktemp("designs") / "data", **variables) as running:
-        yield running
-
-
-@pytest.fixture(scope="module")
-def api(service: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=f"{service.url}/api/v1", timeout=60) as client:
-        yield client
 
 
 def _listed(api: httpx.Client, name: str) -> dict[str, Any]:

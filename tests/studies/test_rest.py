@@ -7,7 +7,7 @@ import json
 import signal
 import time
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
@@ -30,22 +30,6 @@ LONG = study(
     {"name": "stairs.rise", "from": 0.05, "to": 0.5, "count": 60},
     {"name": "stairs.run", "from": 0.22, "to": 0.4, "count": 20},
 )
-
-
-@pytest.fixture(scope="module")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    """A server of these tests' own, with one process for studies: it needs no cluster."""
-    from tests.conftest import serve
-
-    variables = {"STAIRWRIGHT_STUDY_WORKERS": "1", "STAIRWRIGHT_STUDY_CELLS": "2000"}
-    with serve(tmp_path_factory.mktemp("studies") / "data", **variables) as running:
-        yield running
-
-
-@pytest.fixture(scope="module")
-def api(service: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=f"{service.url}/api/v1", timeout=60) as client:
-        yield client
 
 
 def _wait(api: httpx.Client, name: str, until: tuple[str, ...] = ENDED) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from stairwright._core import GRAVITY
 from stairwright.documents import Deferred
 from stairwright.planning.plan import Plan
 from stairwright.planning.static_torques import static_torques
+from stairwright.robot import spatial
 from stairwright.terrain.wheel_path import wheel_path
 
 Floats = NDArray[np.float64]
@@ -25,10 +26,10 @@ def carrying_contacts(plan: Plan) -> Floats:
     """
     robot, poses = plan.robot_description, plan.poses
     path = wheel_path(plan.terrain, robot.wheel.radius)
-    way = np.array([pose.wheel_progress for pose in poses])
+    s = np.array([pose.wheel_progress for pose in poses])
     forces = np.array([pose.forces for pose in poses])
     # Of each pair the faces behind, at and ahead of its place: normals and forces (n, 2, 3, 2).
-    near = np.clip(way[..., None] + np.array([-TOUCH, 0.0, TOUCH]), 0.0, path.length)
+    near = np.clip(s[..., None] + np.array([-TOUCH, 0.0, TOUCH]), 0.0, path.length)
     normals = path.normals(near.ravel()).reshape(*near.shape, 2)
     forward = np.stack([normals[..., 1], -normals[..., 0]], axis=-1)
     force = forces[:, :, None, :1] * forward + forces[:, :, None, 1:] * normals
@@ -44,8 +45,7 @@ def carrying_contacts(plan: Plan) -> Floats:
 def joint_work(plan: Plan) -> Floats:
     """Work (n - 1, 12) that each motor does from pose to pose [J], in the contract's joint order.
 
-    Mean static torque of both poses times the joint's turn. A wheel rolls without slip: it turns by
-    its way along the wheel-centre curve over its radius, less what the calf turns.
+    Mean static torque of both poses times the joint's turn; wheels roll without slip.
 
     Args:
         plan: Its n poses have forces.
@@ -56,14 +56,8 @@ def joint_work(plan: Plan) -> Floats:
     q = np.array([pose.q for pose in poses])
     forces = np.array([pose.forces for pose in poses])
     torques = static_torques(robot, trunk, q, carrying_contacts(plan), forces)
-    angles = []
-    for pair in (0, 1):
-        thigh, calf = q[:, 2 * pair], q[:, 2 * pair + 1]
-        way = np.array([pose.wheel_progress[pair] for pose in poses])
-        rolled = way / robot.wheel.radius - (trunk[:, 2] + thigh + calf)
-        angles += 2 * [thigh, calf, rolled]  # the left and the right leg alike
-    turns = np.diff(np.stack(angles, axis=1), axis=0)
-    work: Floats = (torques[:-1] + torques[1:]) / 2 * turns
+    _, _, angles = spatial.lift(robot, trunk, q, np.array([pose.wheel_progress for pose in poses]))
+    work: Floats = (torques[:-1] + torques[1:]) / 2 * np.diff(angles, axis=0)
     return work
 
 

@@ -179,12 +179,12 @@ class PathPlanner(PathProblem):
         if self.unweighted is None:
             return self.finish(finding)
         usual = self.unweighted.find(how.fine, how.bounds, roll_back=how.roll_back)
-        ways = [finding] if usual.s is None else [finding, usual]
-        answers = [self.finish(way) for way in ways]
+        found = [finding] if usual.s is None else [finding, usual]
+        answers = [self.finish(path) for path in found]
         if self.fast:
-            answers += [self.straighter.finish(way) for way in ways]
+            answers += [self.straighter.finish(path) for path in found]
             return min(answers, key=self._slowness)
-        answers += [self.unweighted.finish(way) for way in ways[1:]]
+        answers += [self.unweighted.finish(path) for path in found[1:]]
         return min(answers, key=self.cost)
 
     def cost(self, answer: Solved | Blocked) -> float:

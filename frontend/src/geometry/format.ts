@@ -6,6 +6,10 @@ export function fixed(value: number, digits: number): string {
   return value < 0 && Number(text) !== 0 ? `−${text}` : text;
 }
 
+/** A number that may not be known. */
+export const maybe = (value: number | null | undefined, digits: number, unit = "") =>
+  value === null || value === undefined ? "–" : fixed(value, digits) + unit;
+
 export const degrees = (radians: number) => (radians * 180) / Math.PI;
 
 export const millimetres = (metres: number) => `${fixed(metres * 1000, 0)} mm`;

@@ -147,6 +147,11 @@ function loadBox(robot: RobotShape): Vec2[] | null {
   return box(robot.payload.place, size);
 }
 
+/** What the motors of thighs and calves can give [Nm]: each limit that differs. */
+export const legLimits = (limits: RobotShape["limits"]): number[] => [
+  ...new Set(limits.flatMap(({ thigh, calf }) => [thigh, calf])),
+];
+
 function limitsOf({ leg, thigh, calf, wheel }: SentRobot["actuators"]): MotorLimits {
   return {
     thigh: (thigh ?? leg)?.torque ?? Number.POSITIVE_INFINITY,

@@ -2,10 +2,10 @@
 
 import { Icon } from "../ui/icon";
 import { Menu, MenuItem } from "../ui/menu";
-import { count } from "./progress";
 import { axisKind } from "./quantities";
 import { earlier, openStudy, readList } from "./state";
 import type { StudyState } from "./studies";
+import { count } from "./work";
 
 export function Earlier() {
   if (earlier.value.length === 0) return null;

@@ -1,7 +1,8 @@
 /** What changed weights bring: quantities of the plan, with default weights and now. */
 
 import type { Plan } from "../api/types";
-import { fixed } from "../geometry/format";
+import { fixed, maybe } from "../geometry/format";
+import { legLimits } from "../geometry/robot";
 import { MARGINS, marginClass, worst } from "../profile-editor/margins";
 import { defaultPlan, ghostShown } from "../state/effect";
 import { plan, stale } from "../state/planning";
@@ -31,13 +32,10 @@ const isThin = (kind: (typeof MARGINS)[number]) => (shown: Plan) =>
 const least = (kind: (typeof MARGINS)[number]) => (shown: Plan) =>
   kind.read(worst(shown.poses, kind.name), shown);
 
-const told = (value: number | null | undefined, digits: number) =>
-  typeof value === "number" ? fixed(value, digits) : "–";
-
 /** The limit of thigh and calf motors [Nm]; null where it is not the same for all. */
 function legLimit(): number | null {
-  const all = new Set(robot.value?.limits.flatMap(({ thigh, calf }) => [thigh, calf]));
-  return all.size === 1 ? [...all][0]! : null;
+  const all = robot.value ? legLimits(robot.value.limits) : [];
+  return all.length === 1 ? all[0]! : null;
 }
 
 const QUANTITIES: readonly Quantity[] = [
@@ -81,7 +79,7 @@ const QUANTITIES: readonly Quantity[] = [
     hint: "Work of the motors' static torques along the plan, without losses",
     unit: "J",
     weight: "energy",
-    of: (shown) => told(shown.energy, 0),
+    of: (shown) => maybe(shown.energy, 0),
     thin: () => false,
   },
   {
@@ -89,7 +87,7 @@ const QUANTITIES: readonly Quantity[] = [
     hint: "That energy per weight and way",
     unit: "",
     weight: "energy",
-    of: (shown) => told(shown.cost_of_transport, 2),
+    of: (shown) => maybe(shown.cost_of_transport, 2),
     thin: () => false,
   },
 ];

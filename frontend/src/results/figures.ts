@@ -1,8 +1,8 @@
 /** The figures of a rollout: name, unit, value, and whether it is a bad one. */
 
 import { hasFailed, type Metrics, type Outcome, type Rollout } from "../api/types";
-import { degrees, fixed } from "../geometry/format";
-import type { RobotShape } from "../geometry/robot";
+import { degrees, fixed, maybe } from "../geometry/format";
+import { legLimits, type RobotShape } from "../geometry/robot";
 
 export const OUTCOMES: Record<Outcome, string> = {
   success: "Success",
@@ -34,10 +34,6 @@ const LOST = (10 * Math.PI) / 180;
 
 type Limits = RobotShape["limits"];
 
-/** What the motors of the legs can give [Nm]: each limit that differs. */
-const ofLegs = (limits: Limits): string[] =>
-  [...new Set(limits.flatMap(({ thigh, calf }) => [thigh, calf]))].map((each) => fixed(each, 1));
-
 /** What a motor lacks to its limit where it counts as being there [Nm]. */
 const NEAR = 0.05;
 
@@ -50,9 +46,6 @@ function atLimit({ series }: Rollout, [front, rear]: Limits): boolean {
   );
 }
 
-const maybe = (value: number | null | undefined, digits: number, unit = "") =>
-  value === null || value === undefined ? "–" : fixed(value, digits) + unit;
-
 /** Of one rollout, or of several to compare: only then their outcomes are among the figures. */
 export function figures(count: number, limits: Limits | undefined): Figure[] {
   const outcome: Figure = {
@@ -60,7 +53,7 @@ export function figures(count: number, limits: Limits | undefined): Figure[] {
     of: (_m, r) => OUTCOMES[r.outcome],
     bad: (_m, r) => hasFailed(r),
   };
-  const motors = limits ? ofLegs(limits) : [];
+  const motors = limits ? legLimits(limits).map((each) => fixed(each, 1)) : [];
   return [
     ...(count > 1 ? [outcome] : []),
     {

@@ -55,7 +55,8 @@ double CheapestPaths::move_cost(const Problem& problem, const Cell& cell, int mo
     return length * factor / (2.0 * problem.lattice.step);
 }
 
-// Costs of paths to the poses of a cell in `range`: the cost `to_come` there and the pose's own. Narrower ones are infeasible.
+// Costs of paths to the poses of a cell in `range`: the cost `to_come` there and the pose's own. Narrower ones are
+// infeasible.
 void CheapestPaths::pose_costs(const Problem& problem, const Cell& cell, const ComIntervals& com, const std::uint8_t* width,
                                FlatRange range, const float* to_come, PoseBuffer& poses, float* out) const {
     const Lattice& lattice = problem.lattice;

@@ -61,7 +61,6 @@ def study_document(following: Following) -> StudyDocument:
     record, job = following.record, following.job
     study = parse(Study, orjson.loads(record.document))
     here = f"/api/v1/studies/{record.id}"
-    total = max(1, following.total)
     axes = [
         AxisDocument(
             name=axis.name,
@@ -77,7 +76,7 @@ def study_document(following: Following) -> StudyDocument:
         state=job.state,
         done=following.done,
         total=following.total,
-        progress=1.0 if job.state == "done" else round(min(1.0, following.done / total), 4),
+        progress=1.0 if job.state == "done" else round(min(1.0, following.share), 4),
         eta=following.eta,
         stage=following.stage,
         created=record.created,

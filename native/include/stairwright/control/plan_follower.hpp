@@ -13,8 +13,9 @@ namespace stairwright::control {
 
 class PlanFollower {
   public:
-    // Set points on an even grid of path positions, the first at `start`, with rates per metre of path and accelerations per its
-    // square, the allowed `speeds` there [m/s], and how far the plan may be ahead of the wheels [m].
+    // Set points on an even grid of path positions, the first at `start`, with rates per metre of path and
+    // accelerations per its square, the allowed `speeds` there [m/s], and how far the plan may be ahead of the wheels
+    // [m].
     // Throws std::invalid_argument unless there are two rows at least and as many speeds.
     PlanFollower(double start, double step, std::vector<Reference> rows, std::vector<double> speeds, double maximum_lead);
 

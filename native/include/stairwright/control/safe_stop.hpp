@@ -13,8 +13,8 @@ enum class Stop {
 
 class SafeStop {
   public:
-    // One control step: the plan's path position [m] and whether it is to advance, pitch against the plan's and roll [rad].
-    // Returns why to stop; once given, an answer stays.
+    // One control step: the plan's path position [m] and whether it is to advance, pitch against the plan's and roll
+    // [rad]. Returns why to stop; once given, an answer stays.
     Stop watch(double position, bool advancing, double pitch_error, double roll, double dt);
 
     Stop why() const { return why_; }

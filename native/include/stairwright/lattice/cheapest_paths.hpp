@@ -53,7 +53,7 @@ private:
 
         std::vector<std::int32_t> at;       // position in the cell's volume
         std::vector<float> com;             // x of the CoM [m]
-        std::vector<float> to_come;         // cost-to-come
+        std::vector<float> to_come;         // cost so far (cost-to-come)
         std::vector<float> tables, base;    // costs of legs and trunk, of height and pitch
         std::vector<float> cost;            // of all
     };

@@ -18,8 +18,8 @@ class TorqueLimits {
     TorqueLimits(const WheelPath& path, double friction, double lag, double share, std::size_t cells)
         : path_(path), friction_(friction), lag_(lag), share_(share), loads_(cells) {}
 
-    // Quality of the pose with the trunk's centre at `trunk` and the wheels of `cell`, number `number`, whose CoM is at `com_x`: 0 where
-    // the motors do not hold it.
+    // Quality of the pose with the trunk's centre at `trunk` and the wheels of `cell`, number `number`, whose CoM is at
+    // `com_x`: 0 where the motors do not hold it.
     std::uint8_t quality(const Problem& problem, const Cell& cell, std::size_t number, const ComIntervals& com, Vec2 trunk,
                          Turn pitch, double com_x);
 

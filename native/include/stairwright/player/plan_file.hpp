@@ -38,7 +38,7 @@ struct PlanFile {
     control::Gains gains;
     std::vector<control::Reference> rows;
     std::vector<double> speeds;          // m/s, allowed at each row
-    double position = 0.0, step = 0.0;        // of the first row, and between rows [m]
+    double position = 0.0, step = 0.0;   // of the first row, and between rows [m]
     double lead = 0.0;                   // how far the plan may be ahead of the wheels [m]
     double settle = 0.0;                 // s at rest before the plan starts
     double grip_need = 0.0, grip_enough = 0.0;  // friction that is tested for, and what will do [1]
