@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import httpx
 import pytest
+from playwright.sync_api import expect
 
 from tests.conftest import TAB, Server, serve
 
@@ -102,14 +103,14 @@ def test_arrows_read_cells_and_space_keeps_one(room: Product) -> None:
     for key in ("ArrowLeft", "ArrowLeft", "ArrowLeft", "ArrowDown", "ArrowDown"):
         page.keyboard.press(key)
     said = canvas.locator("[aria-live]")
-    assert said.inner_text().startswith("rise 0.15 m, tread 0.26 m: feasible, com margin")
+    expect(said).to_have_text(re.compile("^rise 0.15 m, tread 0.26 m: feasible, com margin"))
     page.locator(".map-card").get_by_text("Feasible").wait_for()
     page.keyboard.press("Space")
     kept = page.locator(".kept")
     kept.get_by_text("Torque margin", exact=True).wait_for()
     page.keyboard.press("ArrowUp")
     page.keyboard.press("ArrowUp")
-    assert said.inner_text().startswith("rise 1.05 m, tread 0.26 m: not possible")
+    expect(said).to_have_text(re.compile("^rise 1.05 m, tread 0.26 m: not possible"))
     page.keyboard.press("Escape")
     assert page.locator(".map-card").count() == 0
     page.get_by_role("button", name="Let go of the cell").click()
