@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
@@ -115,10 +115,12 @@ def test_least_friction_forces_balance_and_agree_with_the_interval(a, b, com):
 
 @settings(max_examples=100, deadline=None)
 @given(contact, contact, st.floats(-0.5, 0.5), st.floats(0.05, 1.5))
+@example((0.0, -0.5, 0.0), (0.1875, 0.0, 1.0), 0.0, 1.0)  # the CoM right above the one wheel
 def test_what_is_held_within_a_friction_needs_no_more(a, b, com, ample):
     points, normals = unpack([a, b])
     need, expected = least_friction(points, normals, com, ample)
-    if abs(need - ample) < 1e-6:  # decided by rounding
+    beside = [least_friction(points, normals, com + d, ample)[0] for d in (-1e-6, 1e-6)]
+    if min(need, *beside) - 1e-6 < ample < max(need, *beside) + 1e-6:  # decided by rounding
         return
     held, forces = held_within(points, normals, com, ample)
     assert held == (need < ample)
