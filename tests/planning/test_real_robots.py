@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import pytest
 
 import stairwright as sw
@@ -22,10 +24,13 @@ def test_a_stair_is_climbed(robot):
     assert run.metrics.link_contacts == 0
 
 
+# Every other pair; `benchmarks/robots.py` asks them all.
+PAIRS = [pair for k, pair in enumerate(product(REAL, sorted(sw.terrains()))) if k % 2 == 0]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("terrain", sw.terrains())
-@pytest.mark.parametrize("robot", REAL)
-def test_every_preset_is_planned_or_refused_with_a_reason(terrain, robot):
+@pytest.mark.parametrize(("robot", "terrain"), PAIRS)
+def test_every_preset_is_planned_or_refused_with_a_reason(robot, terrain):
     plan = sw.plan(terrain, robot)
     if plan.feasible:
         assert sw.rollout(plan).outcome == "success"

@@ -254,7 +254,7 @@ def test_trials_report() -> None:
 def test_workers_change_nothing(solver: str) -> None:
     plan = sw.plan(FLAT, "a1_wheeled", method="nominal")
     settings = {"solver": solver, "speed": 0.3}
-    alone, shared = (trials(plan, 4, seed=1, workers=w, controller=settings) for w in (1, 2))
+    alone, shared = (trials(plan, 2, seed=1, workers=w, controller=settings) for w in (1, 2))
     assert alone.trials == shared.trials
 
 
