@@ -42,11 +42,13 @@ class Service:
                 return float(line.split()[1])
         raise KeyError(name)
 
-    def processes(self) -> list[int]:
-        """The server and everything below it."""
+    def processes(self, without: str = "") -> list[int]:
+        """The server and everything below it, but for commands that name `without` and theirs."""
         parents = {}
         for entry in Path("/proc").iterdir():
             with contextlib.suppress(OSError, ValueError):
+                if without and without in (entry / "cmdline").read_text():
+                    continue
                 fields = (entry / "stat").read_text().rpartition(")")[2].split()
                 parents[int(entry.name)] = int(fields[1])
         found = {self.process.pid}

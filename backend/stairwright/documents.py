@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Self, TypeVar
 
 import yaml
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Discriminator, Tag, ValidationError
 
 from .errors import InputError
 
@@ -26,6 +26,7 @@ _WORDINGS = {
         ("model_type", "model_attributes_type", "dict_type", "mapping_type"),
         "must be a mapping of names to values",
     ),
+    **dict.fromkeys(("tuple_type", "list_type"), "must be a list"),
 }
 
 
@@ -138,6 +139,15 @@ def deferrable(*names: str) -> Callable[[type[M]], type[M]]:
         return model
 
     return decorate
+
+
+def _number_or_other(value: Any) -> str:
+    return "~other" if isinstance(value, (list, tuple, Mapping, Model)) else "~number"
+
+
+# For a number or something of several: `Annotated[Annotated[float, NUMBER] | Annotated[..., OTHER],
+# EITHER]`. Tagged, or a bad value would be reported for both, under names of pydantic's own.
+NUMBER, OTHER, EITHER = Tag("~number"), Tag("~other"), Discriminator(_number_or_other)
 
 
 def parse(model: type[M], data: Any) -> M:

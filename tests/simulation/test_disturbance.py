@@ -224,3 +224,19 @@ def test_suspects_are_what_failed_trials_had_more_of() -> None:
     rows += [trial(-0.02, "fell"), trial(0.0035, "stuck")]
     assert suspects(rows) == {"x_offset": 0.9}
     assert suspects(rows[:5]) == {}
+
+
+@pytest.mark.parametrize(
+    ("given", "field"),
+    [
+        ({"payload": "heavy"}, ("payload",)),
+        ({"payload": {"mass": 1.0, "y": 3.0}}, ("payload", "y")),
+        ({"step_height_error": [0.01, 5.0]}, ("step_height_error", 1)),
+    ],
+)
+def test_a_bad_value_is_told_once_by_the_place_that_it_has(
+    given: dict[str, object], field: tuple[str | int, ...]
+) -> None:
+    with pytest.raises(InputError) as caught:
+        parse_disturbance(given)
+    assert caught.value.field == ("disturbance", *field)

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from stairwright.documents import Model
+from stairwright.documents import EITHER, NUMBER, OTHER, Model
 from stairwright.errors import InputError
 
 BENT = 0.05  # rad; a knee whose range contains a straight leg keeps this far from it in plans
@@ -18,6 +18,9 @@ Mass = Annotated[float, Field(ge=1e-6, le=1000.0)]
 Moment = Annotated[float, Field(ge=1e-12, le=1000.0)]
 Place = Annotated[float, Field(ge=-100.0, le=100.0)]
 Point = tuple[Place, Place]
+MassCentre = Annotated[
+    Annotated[float, Field(ge=0.0, le=1.0), NUMBER] | Annotated[Point, OTHER], EITHER
+]
 Angle = Annotated[float, Field(ge=-5 * math.pi, le=5 * math.pi)]
 Range = tuple[Angle, Angle]
 
@@ -114,7 +117,7 @@ class Link(Model):
     length: float = Field(ge=1e-3, le=1000.0, description="from joint to joint [m]")
     radius: Positive = Field(description="of the capsule [m]")
     mass: Mass = Field(description="[kg]")
-    com: Annotated[float, Field(ge=0.0, le=1.0)] | Point = Field(
+    com: MassCentre = Field(
         description="mass centre: a fraction of the length, or (x, z) in the link's frame [m]"
     )
     inertia: Inertia = Field(description="Ixx, Iyy, Izz about the mass centre [kg m^2]")

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import ConfigDict, Field
 
 from stairwright.arguments import as_model
-from stairwright.documents import Model
+from stairwright.documents import EITHER, NUMBER, OTHER, Model
 from stairwright.setting_groups import grouped
 
 GROUPS = {
@@ -21,6 +21,7 @@ GROUPS = {
 }
 
 Error = Annotated[float, Field(ge=-0.1, le=0.1)]  # m
+Errors = Annotated[Annotated[Error, NUMBER] | Annotated[list[Error], OTHER], EITHER]
 Friction = Annotated[float, Field(gt=0.0, le=5.0)]
 
 
@@ -64,6 +65,11 @@ class AddedPayload(Model):
     )
 
 
+Payload = Annotated[
+    Annotated[float, Field(ge=0.0, le=100.0), NUMBER] | Annotated[AddedPayload, OTHER], EITHER
+]
+
+
 class ImuErrors(Model):
     """Errors of the inertial sensor, beside those that the usual one has.
 
@@ -100,7 +106,7 @@ class Disturbance(Model):
         description="the true friction of the wheels FL, FR, RL, RR instead",
     )
     mass: float = _field(-0.5, 1.0, "1", "Mass", "share of the robot's mass, on the trunk")
-    payload: Annotated[float, Field(ge=0.0, le=100.0)] | AddedPayload = Field(
+    payload: Payload = Field(
         0.0,
         title="Payload",
         description="on top of the trunk's middle [kg], or a mass and its place",
@@ -115,10 +121,8 @@ class Disturbance(Model):
     com_x: float = _field(-0.2, 0.2, "m", "CoM forward", "the robot's CoM moves forward [m]")
     com_z: float = _field(-0.2, 0.2, "m", "CoM up", "the robot's CoM moves up [m]")
     height: float = _field(-0.2, 0.2, "m", "Rise", "added to the terrain's rise [m]")
-    step_height_error: Error | list[Error] = _deviation(
-        "Step heights", "each rise or descent is off"
-    )
-    face_place_error: Error | list[Error] = _deviation("Face places", "each face is moved along")
+    step_height_error: Errors = _deviation("Step heights", "each rise or descent is off")
+    face_place_error: Errors = _deviation("Face places", "each face is moved along")
     heading: float = _field(
         -0.5, 0.5, "rad", "Heading", "the robot starts turned to the left of the course [rad]"
     )
