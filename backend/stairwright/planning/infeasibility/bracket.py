@@ -71,7 +71,7 @@ class Bracket:
         if high == low + 1:
             doubted = (low,) if low in self.doubted else ()
             return doubted if self._told(high + 1) else (*doubted, high + 1)
-        # Down in strides until one does not work; then rather steps that work, which are told sooner.
+        # Down in strides until one does not work; then rather steps that do: they are told sooner.
         step = high - ((high - low + 2) // 3 if low > 0 else max(2, self._first // 4))
         return (min(max(step, low + 1), high - 1),)
 

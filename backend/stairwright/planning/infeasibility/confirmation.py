@@ -84,18 +84,18 @@ def confirmed(
             return None
         return candidate.attempt(planner, _ratio(candidate, step))
 
+    leading: tuple[Candidate, int] | None = None
     with race(pool, lead, tries) as ends:
         for (step, k), end in zip(tries, ends, strict=True):
             if isinstance(end, Solved):
+                leading = ranked[k][0], step
                 break
             if end is None:
                 continue
             if not (whole or tried or end.opened):
                 return Beyond(end.reached or planner.ends[0].wheels)
             tried = True
-        else:
-            return None
-    return _settled(planner, ranked[k][0], step, pool)
+    return leading and _settled(planner, *leading, pool)
 
 
 def strengthened(

@@ -12,7 +12,6 @@ from stairwright.planning.lattice.body_lattice import LOOSE, Bounds
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
 from stairwright.planning.path_planner import (
-    Attempt,
     Blocked,
     Outcomes,
     PathPlanner,
