@@ -80,9 +80,11 @@ class Deferred:
     It equals that value, and what is pickled or copied deeply is the value.
     """
 
-    def __init__(self, make: Callable[[], Any]) -> None:
+    def __init__(self, make: Callable[[], Any], source: Any = None) -> None:
+        """`source` is what `make` makes it of, for those who need no more than that."""
         self._make: Callable[[], Any] | None = make
         self._made: Any = None
+        self.source = source
 
     @property
     def value(self) -> Any:
@@ -90,7 +92,14 @@ class Deferred:
         make = self._make
         if make is not None:
             self._made, self._make = make(), None  # and what it is made of is let go
+            self.source = None
         return self._made
+
+    @staticmethod
+    def source_of(record: BaseModel, name: str) -> Any:
+        """What a field of a record is still to be made of; None where it is there, or untold."""
+        value = record.__dict__.get(name)
+        return value.source if isinstance(value, Deferred) else None
 
     @staticmethod
     def read(value: Any) -> Any:

@@ -97,31 +97,43 @@ Touches touches(const WheelPath& path, WheelPlaces s, double friction, double la
 }
 
 WheelLoads::WheelLoads(const WheelPath& path, WheelPlaces s, double friction, double lag, Interval com, double weight)
-    : first_(com.lower), step_((com.upper - com.lower) / (kSamples - 1)) {
-    const Touches at = touches(path, s, friction, lag);
-    const std::array<Vec2, 2> centres = {path.centre(s.front), path.centre(s.rear)};
-    count_ = at.count;
-    for (int way = 0; way < count_; ++way) {
-        for (int k = 0; k < kSamples; ++k) {
-            const Support support = resting_support(at.ways[way][kFront], at.ways[way][kRear], first_ + k * step_, friction);
-            Sample& sample = samples_[way][k];
-            sample.held = support.found;
-            for (const int pair : {kFront, kRear})
-                if (support.found) sample.loads[pair] = load_on_one(support.faces[pair], support.forces[pair], centres[pair], weight);
+    : first_(com.lower), step_((com.upper - com.lower) / (kSamples - 1)), friction_(friction), weight_(weight),
+      centres_{path.centre(s.front), path.centre(s.rear)}, touches_(touches(path, s, friction, lag)) {}
+
+void WheelLoads::make(int way, int first, int last) const {
+    for (int k = first; k <= last; ++k) {
+        const std::uint32_t bit = std::uint32_t{1} << k;
+        if (made_[way] & bit) continue;
+        made_[way] |= bit;
+        const std::array<Faces, 2>& faces = touches_.ways[way];
+        const Support support = resting_support(faces[kFront], faces[kRear], first_ + k * step_, friction_);
+        Samples& samples = samples_[way];
+        samples.held[k] = support.found ? 1.0 : 0.0;
+        for (const int pair : {kFront, kRear}) {
+            const WheelLoad load = support.found ? load_on_one(support.faces[pair], support.forces[pair], centres_[pair], weight_) : WheelLoad{};
+            samples.values[3 * pair][k] = load.force.x;
+            samples.values[3 * pair + 1][k] = load.force.z;
+            samples.values[3 * pair + 2][k] = load.moment;
         }
     }
 }
 
+const WheelLoads::Samples& WheelLoads::samples(int way, double low, double high) const {
+    const auto sample = [&](double com_x) { return std::min(static_cast<int>(whole_part(place(com_x))), kSamples - 2); };
+    make(way, sample(low), sample(high) + 1);
+    return samples_[way];
+}
+
 std::optional<std::array<WheelLoad, 2>> WheelLoads::at(int way, double com_x) const {
-    const double u = step_ > 0.0 ? std::clamp((com_x - first_) / step_, 0.0, kSamples - 1.0) : 0.0;
+    const double u = place(com_x);
     const int k = std::min(static_cast<int>(whole_part(u)), kSamples - 2);
+    make(way, k, k + 1);
     const double share = u - k;
-    const Sample &a = samples_[way][k], &b = samples_[way][k + 1];
-    if (!a.held || !b.held) return std::nullopt;
+    const Samples& samples = samples_[way];
+    if (samples.held[k] == 0.0 || samples.held[k + 1] == 0.0) return std::nullopt;
+    const auto value = [&](int n) { return samples.values[n][k] + share * (samples.values[n][k + 1] - samples.values[n][k]); };
     std::array<WheelLoad, 2> out;
-    for (const int pair : {kFront, kRear})
-        out[pair] = {a.loads[pair].force + share * (b.loads[pair].force - a.loads[pair].force),
-                     a.loads[pair].moment + share * (b.loads[pair].moment - a.loads[pair].moment)};
+    for (const int pair : {kFront, kRear}) out[pair] = {{value(3 * pair), value(3 * pair + 1)}, value(3 * pair + 2)};
     return out;
 }
 

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from stairwright.planning.infeasibility.bracket import Bracket
 from stairwright.planning.infeasibility.confirmation import _settled, alone
-from stairwright.planning.path_planner import Solved
-from stairwright.planning.strategy import AT_ONCE, solve
+from stairwright.planning.path_planner import Blocked, Solved
+from stairwright.planning.strategy import AT_ONCE, FINER, solve
 from stairwright.planning.threads import in_this_thread
 
 
@@ -25,32 +25,36 @@ class Asked:
     most: float = 1.02**60
     steps: list[int] = field(default_factory=list)
 
-    def solves(self, _planner, ratio):
-        return round(math.log(ratio, 1.02)) >= 24
+    doubted: set[int] = field(default_factory=set)  # of those that some attempts do not do with
 
     def feasible(self, _planner, ratio):
         self.steps.append(round(math.log(ratio, 1.02)))
         return self.steps[-1] in self.enough
+
+    def feasible_likewise(self, _planner, ratio):
+        return round(math.log(ratio, 1.02)) in self.enough - self.doubted
 
 
 @pytest.mark.parametrize(
     "enough",
     [
         {*range(24, 61)},
-        {*range(12, 61)},  # less than quick attempts take
-        {*range(31, 61)},  # more
+        {*range(12, 61)},  # less than the first
         {*range(14, 61)} - {18},  # with a gap
         {9, *range(12, 61)},  # far less
-        {60},  # nothing but all that there may be
+        {30, *range(33, 61)},  # more
+        {30, 60},  # nothing but all that there may be
     ],
 )
-def test_no_amount_is_asked_about_twice(enough):
-    quantity = Asked(enough)
-    cause = _settled(None, quantity, 20, 30, in_this_thread())
+@pytest.mark.parametrize("doubted", [set(), {*range(25)}, {22, 16, 13}])
+def test_all_of_planning_is_asked_on_both_sides_and_about_no_amount_twice(enough, doubted):
+    quantity = Asked(enough, doubted=doubted)
+    cause = _settled(None, quantity, 30, in_this_thread())
     low, high = (round(math.log(ratio, 1.02)) for ratio in (cause.lower, cause.upper))
     assert high == low + 1
     assert low not in enough
     assert {high, min(high + 1, 60)} <= enough
+    assert low in quantity.steps
     assert len(quantity.steps) == len(set(quantity.steps))
 
 
@@ -76,7 +80,7 @@ def test_a_bracket_closes_round_what_works_whatever_is_asked_first(drawn):
         for step in asked:
             assert 0 < step <= most
             assert step not in bracket.known
-            bracket.known[step] = step in enough
+            bracket.tell(step, step in enough)
             if bracket.known[step]:
                 break
         asked = bracket.next_steps()
@@ -87,6 +91,21 @@ def test_a_bracket_closes_round_what_works_whatever_is_asked_first(drawn):
         assert bracket.high in enough
         assert bracket.low == bracket.high - 1 not in enough
         assert min(bracket.high + 1, most) in enough
+
+
+def test_attempts_that_are_likely_to_lead_are_made_before_others():
+    made = []
+
+    def attempt(which):
+        made.append(which)
+        if which == FINER:
+            return Solved(SimpleNamespace(), SimpleNamespace())
+        return Blocked((0.0, 0.0), True)
+
+    planner = SimpleNamespace(attempt=attempt, torques=True, thin=0.01, unweighted=None)
+    found = solve(planner, in_this_thread(), any_path=True, likely=[FINER])
+    assert isinstance(found, Solved)
+    assert made == [AT_ONCE, FINER]
 
 
 @pytest.mark.parametrize(("margin", "compared"), [(0.005, 2), (0.5, 1)])

@@ -9,6 +9,7 @@ import pytest
 
 import stairwright as sw
 from stairwright.errors import InputError
+from stairwright.planning.smoothing.path_document import PathPoses
 from stairwright.studies import cell
 from stairwright.studies.grid import coarse_first, levels, number, place, point
 from stairwright.studies.question import Questions
@@ -84,6 +85,17 @@ def test_values_that_make_no_question_are_an_answer() -> None:
     record = cell.evaluate(made, (0.1, 0.8))
     assert record["state"] == REFUSED
     assert "run" in record["message"]
+
+
+def test_a_cell_makes_no_documents_of_poses(monkeypatch: pytest.MonkeyPatch) -> None:
+    def needless(_poses: PathPoses) -> list[object]:
+        raise AssertionError("nobody reads them")
+
+    monkeypatch.setattr(PathPoses, "documents", needless)
+    record = cell.evaluate(Questions(load_study(STEP)), (0.05, 0.3))
+    assert record["state"] == DONE
+    assert record["feasible"]
+    assert record["speed"] > 0.0
 
 
 def test_a_bug_is_recorded_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -79,13 +79,6 @@ class Margins:
         return Binding(quantity=name, value=float(values[k]), progress=float(progress[k]))
 
 
-def margins_along(
-    robot: Robot, friction: float, poses: Sequence[Pose]
-) -> dict[Quantity, tuple[Floats, float]]:
-    """Margins (n,) of poses, each with what it is measured against; see `Margins.measured`."""
-    return Margins.of(robot, friction, poses).measured()
-
-
 def binding_of(robot: Robot, friction: float, poses: Sequence[Pose]) -> Binding | None:
     """The margin that binds, and where; None without poses."""
     if not poses:

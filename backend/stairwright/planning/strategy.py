@@ -39,7 +39,9 @@ FINEST = Attempt(1.0, LOOSE)
 Tried = dict[Attempt, Solved | Blocked]
 
 
-def solve(planner: PathPlanner, pool: Executor, any_path: bool = False) -> Solved | Blocked:
+def solve(
+    planner: PathPlanner, pool: Executor, any_path: bool = False, likely: Sequence[Attempt] = ()
+) -> Solved | Blocked:
     """The first path that passes the certificate and is not needlessly thin, or what blocks it.
 
     Args:
@@ -47,16 +49,18 @@ def solve(planner: PathPlanner, pool: Executor, any_path: bool = False) -> Solve
         pool: Who makes the attempts of one step.
         any_path: Whether a thin or heavy path will do, with which none is compared: there is one
             just where there is one without.
+        likely: Attempts that found a path of a problem much like this one. Where any path will do
+            they are made before others that come to nothing.
     """
-    found = _search(planner, pool, any_path)
+    found = _search(planner, pool, any_path, likely)
     if isinstance(found, Solved):
         return found if any_path else _lighter(planner, found, pool)
     if found.weak and not planner.torques:
-        held = solve(planner.within_torques, pool, any_path)
+        held = solve(planner.within_torques, pool, any_path, likely)
         if isinstance(held, Solved):
             return held
         return replace(held, weak=held.weak or found.weak, share=min(held.share, found.share))
-    return solve(planner.unweighted, pool, any_path) if planner.unweighted else found
+    return solve(planner.unweighted, pool, any_path, likely) if planner.unweighted else found
 
 
 def _lighter(planner: PathPlanner, found: Solved, pool: Executor) -> Solved:
@@ -105,7 +109,9 @@ def roomy(planner: PathPlanner) -> Solved | Blocked:
     return found
 
 
-def _search(planner: PathPlanner, pool: Executor, any_path: bool = False) -> Solved | Blocked:
+def _search(
+    planner: PathPlanner, pool: Executor, any_path: bool = False, likely: Sequence[Attempt] = ()
+) -> Solved | Blocked:
     """The three steps."""
     tried: Tried = {}
     _make(planner, pool, [AT_ONCE], tried)
@@ -121,6 +127,10 @@ def _search(planner: PathPlanner, pool: Executor, any_path: bool = False) -> Sol
         assert isinstance(at_once, Blocked)
         if at_once.weak and not planner.torques:
             return at_once
+        for attempt in likely if any_path else ():
+            found = planner.attempt(attempt)
+            if isinstance(found, Solved):
+                return found
         obstructions, closed = _obstructions_ahead(planner, at_once, pool)
         if closed:
             blocked = Blocked(obstructions[0], False, stops=obstructions)
@@ -162,11 +172,16 @@ def _make(
     planner: PathPlanner, pool: Executor, attempts: Sequence[Attempt], tried: Tried,
     first: bool = False,
 ) -> None:  # fmt: skip
-    """Make some attempts together; with `first` only until one has a path."""
+    """Make some attempts together; with `first` only until one has a path.
+
+    Whether searches come through need not be probed once one has.
+    """
     with race(pool, planner.attempt, attempts) as answers:
         for attempt, answer in zip(attempts, answers, strict=False):
             tried[attempt] = answer
-            if first and isinstance(answer, Solved):
+            if isinstance(answer, Solved) and first:
+                break
+            if isinstance(answer, Blocked) and answer.opened and attempts[-1].probe:
                 break
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import Counter
 
 from stairwright.errors import InputError
-from stairwright.planning.binding import margins_along
 from stairwright.planning.plan import Plan
 from stairwright.planning.planner import plan as make_plan
+from stairwright.planning.smoothing.path_document import least_margins, way
 from stairwright.planning.threads import one_by_one
 from stairwright.simulation.intervals import clopper_pearson
 
@@ -82,16 +82,15 @@ def _of_plan(plan: Plan) -> Record:
             }
             if limit.quantity == "friction":
                 record["least_friction"] = limit.needed
-    if plan.feasible and plan.poses:
+    if plan.feasible:
         record |= _margins(plan)
-        record["speed"] = plan.poses[-1].progress / plan.timing.total
+        record["speed"] = way(plan) / plan.timing.total
     return record
 
 
 def _margins(plan: Plan) -> Record:
     """The least margin of each kind over all poses, and the one that is least for its size."""
-    along = margins_along(plan.robot_description, plan.friction, plan.poses)
-    least: dict[str, float] = {name: float(values.min()) for name, (values, _) in along.items()}
+    least = least_margins(plan)
     return {
         **{f"margin_{name}": value for name, value in least.items()},
         "least_friction": plan.friction - least["friction"],

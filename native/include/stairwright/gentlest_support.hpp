@@ -1,6 +1,8 @@
 // Which faces the wheels push on, and how hard: the gentlest way to hold the robot at rest.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <optional>
 
 #include "stairwright/wheel_contacts.hpp"
@@ -38,26 +40,38 @@ struct Touches {
 Touches touches(const WheelPath& path, WheelPlaces s, double friction, double lag);
 
 // Loads of one front and one rear wheel at a pair of places by the CoM's x, linear between a few samples of it, for
-// each way of touching the ground.
+// each way of touching the ground. Samples are made when they are first needed: not for several threads at once.
 class WheelLoads {
   public:
+    static constexpr int kSamples = 17;
+    // Of one way, by sample: force and moment of the front, then of the rear wheel, and whether forces hold the robot.
+    struct Samples {
+        std::array<std::array<double, kSamples>, 6> values;
+        std::array<double, kSamples> held;  // 1 or 0
+    };
+
     // For CoM positions in `com`; weight of the robot [N].
     WheelLoads(const WheelPath& path, WheelPlaces s, double friction, double lag, Interval com, double weight);
 
-    int ways() const { return count_; }
+    int ways() const { return touches_.count; }
     // Nothing where no forces hold the robot that way.
     std::optional<std::array<WheelLoad, 2>> at(int way, double com_x) const;
 
-  private:
-    static constexpr int kSamples = 17;
-    struct Sample {
-        std::array<WheelLoad, 2> loads;
-        bool held = false;
-    };
+    // Where a CoM lies among the samples: `first()` + k * `step()` is sample k; a step of 0 where there is but one place.
+    double first() const { return first_; }
+    double step() const { return step_; }
+    // Those of one way, made where CoM positions from `low` to `high` need them.
+    const Samples& samples(int way, double low, double high) const;
 
-    double first_ = 0.0, step_ = 0.0;  // m
-    int count_ = 0;
-    std::array<std::array<Sample, kSamples>, 3> samples_;
+  private:
+    double place(double com_x) const { return step_ > 0.0 ? std::clamp((com_x - first_) / step_, 0.0, kSamples - 1.0) : 0.0; }
+    void make(int way, int first, int last) const;
+
+    double first_ = 0.0, step_ = 0.0, friction_ = 0.0, weight_ = 0.0;
+    std::array<Vec2, 2> centres_;
+    Touches touches_;
+    mutable std::array<Samples, 3> samples_;
+    mutable std::array<std::uint32_t, 3> made_{};  // by way: bits of the samples that are made
 };
 
 }  // namespace stairwright

@@ -39,13 +39,29 @@ void rate(const ComIntervals& com, double least, const float* x, int count, std:
 }  // namespace
 
 struct WidestPaths::Wider {
-    explicit Wider(std::size_t n) : at(n), com(n), x(n), z(n), cos(n), sin(n), width(n), clear(n) {}
+    explicit Wider(std::size_t n) : at(n), com(n), x(n), z(n), cos(n), sin(n), width(n), clear(n), held(n) {}
+
+    TrunkPoses poses(int count) const { return {x.data(), z.data(), cos.data(), sin.data(), count}; }
+    // Makes pose `from` pose `to`.
+    void move(int from, int to) {
+        at[to] = at[from], com[to] = com[from], width[to] = width[from];
+        x[to] = x[from], z[to] = z[from], cos[to] = cos[from], sin[to] = sin[from];
+    }
+    // Leaves out poses whose legs are not clear of each other; how many of `count` are left.
+    int keep_clear(int count) {
+        int kept = 0;
+        for (int k = 0; k < count; ++k)
+            if (clear[k] != 0) move(k, kept++);
+        std::fill_n(clear.begin(), kept, std::uint8_t{1});
+        return kept;
+    }
 
     std::vector<std::int32_t> at;          // position in the cell's volume
     std::vector<float> com;                // x of the CoM [m]
     std::vector<float> x, z, cos, sin;     // of the trunk from the front wheel [m], of its pitch
     std::vector<std::uint8_t> width;       // of the path
     std::vector<std::uint8_t> clear;       // whether the legs keep clear of each other
+    std::vector<std::uint8_t> held;        // quality by what motors hold
 };
 
 WidestPaths::WidestPaths(const Lattice& lattice, std::size_t cells)
@@ -171,29 +187,21 @@ bool WidestPaths::widen(const Problem& problem, const Cell& cell, const ComInter
             changed = true;
             continue;
         }
-        wider.at[count] = at;
-        wider.width[count] = least;
-        wider.com[count] = wider.com[k];
-        wider.x[count] = wider.x[k];
-        wider.z[count] = wider.z[k];
-        wider.cos[count] = wider.cos[k];
-        wider.sin[count] = wider.sin[k];
-        ++count;
+        wider.width[k] = least;
+        wider.move(k, count++);
     }
     if (count == 0) return changed;
     const Vec2 front = problem.centres[cell.front], rear_wheel = problem.centres[cell.rear] - front;
-    legs_clear(problem.robot, problem.least_leg_distance, rear_wheel,
-               {wider.x.data(), wider.z.data(), wider.cos.data(), wider.sin.data(), count}, wider.clear.data());
+    legs_clear(problem.robot, problem.least_leg_distance, rear_wheel, wider.poses(count), wider.clear.data());
+    if (torques_) {
+        count = wider.keep_clear(count);
+        torques_->rate(problem, cell, number, com, wider.poses(count), wider.com.data(), wider.held.data());
+    }
     for (int k = 0; k < count; ++k) {
         if (wider.clear[k] == 0) continue;
         const int at = wider.at[k];
-        std::uint8_t least = wider.width[k];
-        if (torques_) {
-            const Vec2 trunk = {front.x + wider.x[k], front.z + wider.z[k]};
-            const Turn pitch = {wider.cos[k], wider.sin[k]};
-            least = std::min(least, torques_->quality(problem, cell, number, com, trunk, pitch, wider.com[k]));
-            if (least <= widths[at]) continue;
-        }
+        const std::uint8_t least = torques_ ? std::min(wider.width[k], wider.held[k]) : wider.width[k];
+        if (least <= widths[at]) continue;
         widths[at] = least;
         best[number] = std::max(best[number], least);
         first[number] = std::min(first[number], at);

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+_DECEPTIONS = 3  # doubts that may turn out wrong
+
 
 @dataclass
 class Bracket:
@@ -11,10 +13,18 @@ class Bracket:
 
     More need not be better. What is looked for is a step that works as the next one does, while the
     one before does not.
+
+    Attributes:
+        most: The largest step.
+        known: Whether steps work.
+        doubted: Steps that seem not to work, but have not been asked about thoroughly.
+        misled: How many of them did work; after some all are asked about thoroughly.
     """
 
     most: int
     known: dict[int, bool] = field(default_factory=lambda: {0: False})
+    doubted: set[int] = field(default_factory=set)
+    misled: int = 0
 
     @property
     def high(self) -> int | None:
@@ -28,6 +38,27 @@ class Bracket:
         bound = self.most + 1 if self.high is None else self.high
         return max(one for one, works in self.known.items() if one < bound and not works)
 
+    def tell(self, step: int, works: bool, settled: bool = True) -> None:
+        """Learn of a step; what does not work is doubted unless that is `settled`."""
+        if works and step in self.doubted:
+            self.misled += 1
+            for one in self.doubted:
+                del self.known[one]
+            self.doubted.clear()
+        self.known[step] = works
+        self.doubted.discard(step)
+        if not (works or settled):
+            self.doubted.add(step)
+
+    def settles(self, step: int) -> bool:
+        """Whether to ask about a step thoroughly: others only tell where such are worth it."""
+        return (
+            self.high is None
+            or step > self.high
+            or step in self.doubted
+            or self.misled >= _DECEPTIONS
+        )
+
     def next_steps(self) -> tuple[int, ...]:
         """Steps to ask about next; of two the second matters only if the first does not work.
 
@@ -38,15 +69,11 @@ class Bracket:
         if high is None:
             return (min(2 * low - self._first + 1, self.most),) if low < self.most else ()
         if high == low + 1:
-            return () if self._told(high + 1) else (high + 1,)
-        if low > 0:  # what does not work takes long to tell: rather one that works
-            step = high - (high - low + 2) // 3
-        elif high == self._first:
-            step = high - 1
-        else:  # in strides that double, but not past half of the way
-            step = max(2 * high - self._first, high // 2)
-        step = min(max(step, low + 1), high - 1)
-        return (step,) if step < high - 1 or self._told(high + 1) else (step, high + 1)
+            doubted = (low,) if low in self.doubted else ()
+            return doubted if self._told(high + 1) else (*doubted, high + 1)
+        # Down in strides until one does not work; then rather steps that do: they are told sooner.
+        step = high - ((high - low + 2) // 3 if low > 0 else max(2, self._first // 4))
+        return (min(max(step, low + 1), high - 1),)
 
     @property
     def _first(self) -> int:

@@ -10,7 +10,6 @@ it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
@@ -31,7 +30,7 @@ _MORE = (0, 2, 6, 14, 26, 46, 70)
 _BETWEEN = 2  # of them is left out where not even a search that forgives nothing finds a way
 _RIVALS = 2  # candidates for which planning is tried
 _RISES = 6  # times that motors are made stronger, by as much as the path lacks that came of it
-_LOOKS = 14  # times that all of planning is asked, so that an answer comes in time
+_LOOKS = 20  # times that all of planning is asked, so that an answer comes in time
 
 
 @dataclass(frozen=True)
@@ -74,7 +73,7 @@ def confirmed(
          for k, (one, ratio) in enumerate(ranked[:_RIVALS]) for more in _MORE},
     )  # fmt: skip
     whole = pieces(planner, places)[0].whole
-    low: dict[int, int] = {}
+    tried = False
 
     def lead(one: tuple[int, int]) -> Solved | Blocked | None:
         step, k = one
@@ -85,18 +84,18 @@ def confirmed(
             return None
         return candidate.attempt(planner, _ratio(candidate, step))
 
+    leading: tuple[Candidate, int] | None = None
     with race(pool, lead, tries) as ends:
         for (step, k), end in zip(tries, ends, strict=True):
             if isinstance(end, Solved):
+                leading = ranked[k][0], step
                 break
             if end is None:
                 continue
-            if not (whole or low or end.opened):
+            if not (whole or tried or end.opened):
                 return Beyond(end.reached or planner.ends[0].wheels)
-            low[k] = step
-        else:
-            return None
-    return _settled(planner, ranked[k][0], low.get(k, 0), step, pool)
+            tried = True
+    return leading and _settled(planner, *leading, pool)
 
 
 def strengthened(
@@ -110,17 +109,17 @@ def strengthened(
         share: What the path takes of their torque that was found without them in mind.
         pool: Who tries.
     """
-    low, step = 0, _steps(share / FIRM_TORQUE)
+    step = _steps(share / FIRM_TORQUE)
     for _ in range(_RISES):
         if step > _steps(motors.most):
             break
         end = motors.attempt(planner, _ratio(motors, step))
         if isinstance(end, Solved):
-            return _settled(planner, motors, low, step, pool)
+            return _settled(planner, motors, step, pool)
         if not end.weak:
             break
         # A path that takes more than there is tells how much it would need.
-        low, step = step, max(step + 1, _steps(_ratio(motors, step) * end.share / FIRM_TORQUE))
+        step = max(step + 1, _steps(_ratio(motors, step) * end.share / FIRM_TORQUE))
     return None
 
 
@@ -132,50 +131,35 @@ def alone(planner: PathPlanner, candidate: Candidate, ratio: float, pool: Execut
     step = _steps(ratio)
     if not candidate.feasible(planner, _ratio(candidate, step)):
         return None
-    return _settled(planner, candidate, 0, step, pool)
+    return _settled(planner, candidate, step, pool)
 
 
-def _settled(
-    planner: PathPlanner, candidate: Candidate, low: int, high: int, pool: Executor
-) -> Cause | None:
-    """The step between a plan and none; quick attempts have one at `high`, none at `low`."""
+def _settled(planner: PathPlanner, candidate: Candidate, step: int, pool: Executor) -> Cause | None:
+    """The step between a plan and none, looked for from one with which there is a plan.
 
-    def quick(step: int) -> bool:
-        return candidate.solves(planner, _ratio(candidate, step))
+    Attempts that had a plan with a little more tell where it may be; there all of planning is
+    asked.
+    """
 
-    def feasible(step: int) -> bool:
-        return candidate.feasible(planner, _ratio(candidate, step))
+    def works(asked: tuple[int, bool]) -> bool:
+        step, settles = asked
+        ask = candidate.feasible if settles else candidate.feasible_likewise
+        return ask(planner, _ratio(candidate, step))
 
-    _, high = _bisected(quick, low, high)
     bracket = Bracket(_steps(candidate.most))
-    asked: tuple[int, ...] = (high,)
+    bracket.tell(step, works=True)
     for _ in range(_LOOKS):
-        with race(pool, feasible, asked) as answers:
-            for step, works in zip(asked, answers, strict=False):
-                bracket.known[step] = works
-                if works:
-                    break
-        asked = bracket.next_steps()
+        asked = [(step, bracket.settles(step)) for step in bracket.next_steps()]
         if not asked:
             break
-    if bracket.high is None:
+        with race(pool, works, asked) as answers:
+            for (step, settles), found in zip(asked, answers, strict=False):
+                bracket.tell(step, found, settles)
+                if found:
+                    break
+    if bracket.high is None or bracket.low in bracket.doubted:
         return None
     return Cause(candidate, _ratio(candidate, bracket.low), _ratio(candidate, bracket.high))
-
-
-def _bisected(enough: Callable[[int], bool], low: int, high: int) -> tuple[int, int]:
-    """Neighbouring steps of which the larger is enough, between `low`, which is not, and `high`.
-
-    What is enough is thought to be near what is needed.
-    """
-    stride = 1
-    while high - low > 1:
-        middle = max(high - stride, (low + high) // 2)
-        if enough(middle):
-            high, stride = middle, 2 * stride
-        else:
-            low, stride = middle, 1
-    return low, high
 
 
 def _steps(ratio: float) -> int:

@@ -11,10 +11,16 @@ import numpy as np
 from stairwright.planning.lattice.body_lattice import LOOSE, Bounds
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
-from stairwright.planning.path_planner import Blocked, Outcomes, PathPlanner, Solved, path_planner
+from stairwright.planning.path_planner import (
+    Blocked,
+    Outcomes,
+    PathPlanner,
+    Solved,
+    path_planner,
+)
 from stairwright.planning.smoothing.node_margins import JOINTS, Motor
 from stairwright.planning.standing import NoStandingPose
-from stairwright.planning.strategy import quick, solve
+from stairwright.planning.strategy import AT_ONCE, quick, solve
 from stairwright.planning.threads import in_this_thread
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -78,11 +84,45 @@ class Candidate:
 
     def feasible(self, planner: PathPlanner, ratio: float) -> bool:
         """Whether all of planning, asked anew with the quantity changed so, has a plan."""
+        above = self._outcomes_above(ratio)
+        likely = [how for (how, _), end in above.items() if isinstance(end, Solved)]
+        # Motors that are too weak for a path are so with less torque.
+        weak = self.kind == "torque" and _weak(above.get((AT_ONCE, False)))
 
         def ask(changed: PathPlanner) -> Solved | Blocked:
-            return solve(changed.regardless, in_this_thread(), any_path=True)
+            asked = changed.within_torques if weak else changed.regardless
+            return solve(asked, in_this_thread(), any_path=True, likely=likely)
 
         return isinstance(self._planned(planner, ratio, ask), Solved)
+
+    def feasible_likewise(self, planner: PathPlanner, ratio: float) -> bool:
+        """Whether an attempt has a plan that had one with a little more of the quantity, or the
+        first attempt.
+
+        Where none has, all of planning may still.
+        """
+        above = self._outcomes_above(ratio)
+        likely = [how for how, end in above.items() if isinstance(end, Solved)]
+        likely += [(AT_ONCE, torques) for torques in {torques for _, torques in likely}]
+
+        def ask(changed: PathPlanner) -> Solved | Blocked:
+            found: Solved | Blocked = Blocked(None, False)
+            for how, torques in likely:
+                found = (changed.within_torques if torques else changed.regardless).attempt(how)
+                if isinstance(found, Solved):
+                    break
+            return found
+
+        return isinstance(self._planned(planner, ratio, ask), Solved)
+
+    def _outcomes_above(self, ratio: float) -> Outcomes:
+        """What came of attempts with the next larger factor with which one found a path."""
+        found = [
+            one
+            for one, outcomes in self.tried.items()
+            if one >= ratio and any(isinstance(end, Solved) for end in outcomes.values())
+        ]
+        return self.tried[min(found)] if found else {}
 
     def _planned(
         self,
@@ -105,6 +145,10 @@ class Candidate:
     def solves(self, planner: PathPlanner, ratio: float) -> bool:
         """Whether that leads to a certified plan."""
         return isinstance(self.attempt(planner, ratio), Solved)
+
+
+def _weak(end: Solved | Blocked | None) -> bool:
+    return isinstance(end, Blocked) and end.weak is not None
 
 
 def leads_past(planner: PathPlanner, places: Sequence[Place], bounds: Bounds = LOOSE) -> bool:

@@ -84,6 +84,6 @@ def search_between(
     search = kept.get(key)
     if search is None:
         search = Search(q, begin, end, make_lattice(q.robot, fine), bounds)
-        if len(kept) < _KEPT and fine > 1.0:
+        if len(kept) < _KEPT:
             kept[key] = search
     return search

@@ -12,7 +12,16 @@ from numpy.typing import NDArray
 
 from stairwright.documents import Deferred
 from stairwright.planning import binding
-from stairwright.planning.plan import Binding, Margins, Plan, Pose, Problem, Timing, plan_id
+from stairwright.planning.plan import (
+    Binding,
+    Margins,
+    Plan,
+    Pose,
+    Problem,
+    Quantity,
+    Timing,
+    plan_id,
+)
 from stairwright.planning.smoothing.path_timing import path_parameter, pose_times
 from stairwright.planning.smoothing.refine import Refined
 from stairwright.planning.standing import CORNER, kink
@@ -59,11 +68,15 @@ class PathPoses:
         friction = m.friction - m.friction_needed
         return np.stack([m.clearance, m.com_margin, friction, m.torque_margin("leg")])
 
+    @property
+    def margins(self) -> binding.Margins:
+        """Margins of the poses, as their documents tell them."""
+        m = self.nodes.margins
+        return binding.Margins(self.robot, m.friction, self._spare, m.q, m.forces[:, :, 0])
+
     def binding(self) -> Binding:
         """The margin that binds, and where."""
-        m = self.nodes.margins
-        margins = binding.Margins(self.robot, m.friction, self._spare, m.q, m.forces[:, :, 0])
-        return margins.binding(self.progress)
+        return self.margins.binding(self.progress)
 
     def key_poses(self) -> list[int]:
         """Indices of start, end, and where a wheel enters a concave corner or leaves a nosing."""
@@ -147,7 +160,7 @@ def make_plan(
 ) -> Plan:
     """The document around poses or a problem."""
     chosen = weights.model_dump()
-    documents: Any = Deferred(poses.documents) if poses else []
+    documents: Any = Deferred(poses.documents, poses) if poses else []
     return Plan.model_construct(
         schema_="stairwright/plan/1",
         id=plan_id(terrain, robot, friction, "path", chosen, tolerance=tolerance),
@@ -170,3 +183,22 @@ def make_plan(
         binding=poses.binding() if poses else None,
         tolerance=tolerance,
     )
+
+
+def least_margins(plan: Plan) -> dict[Quantity, float]:
+    """The least margin of each kind over a plan's poses; see `binding.Margins.measured`.
+
+    Documents of a path's poses are not made for it, nor by `way`.
+    """
+    poses = Deferred.source_of(plan, "poses")
+    if isinstance(poses, PathPoses):
+        margins = poses.margins
+    else:
+        margins = binding.Margins.of(plan.robot_description, plan.friction, plan.poses)
+    return {name: float(values.min()) for name, (values, _) in margins.measured().items()}
+
+
+def way(plan: Plan) -> float:
+    """How far a plan's last pose is from its start [m]."""
+    poses = Deferred.source_of(plan, "poses")
+    return float(poses.progress[-1] if isinstance(poses, PathPoses) else plan.poses[-1].progress)

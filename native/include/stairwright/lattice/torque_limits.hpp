@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "stairwright/gentlest_support.hpp"
+#include "stairwright/lattice/leg_clearance.hpp"
 #include "stairwright/lattice/problem.hpp"
 
 namespace stairwright::lattice {
@@ -18,15 +19,16 @@ class TorqueLimits {
     TorqueLimits(const WheelPath& path, double friction, double lag, double share, std::size_t cells)
         : path_(path), friction_(friction), lag_(lag), share_(share), loads_(cells) {}
 
-    // Quality of the pose with the trunk's centre at `trunk` and the wheels of `cell`, number `number`, whose CoM is at
-    // `com_x`: 0 where the motors do not hold it.
-    std::uint8_t quality(const Problem& problem, const Cell& cell, std::size_t number, const ComIntervals& com, Vec2 trunk,
-                         Turn pitch, double com_x);
+    // Sets quality[k] of poses with the wheels of `cell`, number `number`, whose CoM is at com_x[k]: 0 where the motors
+    // do not hold them.
+    void rate(const Problem& problem, const Cell& cell, std::size_t number, const ComIntervals& com, const TrunkPoses& poses,
+              const float* com_x, std::uint8_t* quality);
 
   private:
     WheelPath path_;
     double friction_, lag_, share_;
     std::vector<std::optional<WheelLoads>> loads_;  // by cell
+    std::vector<double> taken_, levers_;            // of the poses at hand
 };
 
 }  // namespace stairwright::lattice
