@@ -32,7 +32,11 @@ export interface Summary {
   margins?: Margins | null;
   /** [s] */
   duration?: number | null;
+  /** Of the rollout; work per weight and way, without unit. */
   cost_of_transport?: number | null;
+  /** Work of the plan's static torques, without losses [J]. */
+  planned_energy?: number | null;
+  planned_cost_of_transport?: number | null;
   outline?: Vec2[];
   pose?: { x: number; z: number; pitch: number; q: number[] } | null;
   plan_id?: string;

@@ -2,9 +2,18 @@
 
 import { signal } from "@preact/signals";
 import { useLayoutEffect, useRef } from "preact/hooks";
-import type { Rollout } from "../api/types";
+import type { Plan, Rollout } from "../api/types";
 import { fixed } from "../geometry/format";
-import { failureB, progress, runB, running, runOf, runPlan, runStale } from "../state/rollouts";
+import {
+  failureB,
+  progress,
+  runB,
+  running,
+  runOf,
+  runPlan,
+  runPlanB,
+  runStale,
+} from "../state/rollouts";
 import { compare, robot } from "../state/setup";
 import { Icon } from "../ui/icon";
 import { type Figure, figures, OUTCOMES, verdict } from "./figures";
@@ -87,8 +96,8 @@ interface TableProps {
 }
 
 function Table({ figures, result, other }: TableProps) {
-  const cell = (figure: Figure, r: Rollout, cls: string) => (
-    <td class={figure.bad?.(r.metrics, r) ? `${cls} x` : cls}>{figure.of(r.metrics, r)}</td>
+  const cell = (figure: Figure, r: Rollout, plan: Plan | null, cls: string) => (
+    <td class={figure.bad?.(r.metrics, r) ? `${cls} x` : cls}>{figure.of(r.metrics, r, plan)}</td>
   );
   return (
     <table>
@@ -110,8 +119,8 @@ function Table({ figures, result, other }: TableProps) {
               {figure.title} {figure.note && <small>{figure.note}</small>}
               {figure.limit && <small class="limit-note">{figure.limit}</small>}
             </th>
-            {cell(figure, result, "a")}
-            {other && cell(figure, other, "b")}
+            {cell(figure, result, runPlan.value, "a")}
+            {other && cell(figure, other, runPlanB.value, "b")}
           </tr>
         ))}
       </tbody>

@@ -7,7 +7,7 @@ import { fixed, took } from "../geometry/format";
 import { planFrame, poseTimes } from "../geometry/frames";
 import { robotShape, skeleton } from "../geometry/robot";
 import { Figure } from "../profile-editor/figure";
-import { worst } from "../profile-editor/margins";
+import { stated, worst } from "../profile-editor/margins";
 import { drawing } from "../state/drawing";
 import { follow } from "../state/planner";
 import { plan, preview, refusal, stale } from "../state/planning";
@@ -144,7 +144,7 @@ function Facts({ of, refused }: { of: Plan | null; refused: string | null }) {
       </p>
     );
   }
-  const margin = (name: "com" | "clearance") => fixed(1000 * worst(of.poses, name), 0);
+  const margin = (name: "com" | "clearance") => fixed(1000 * stated(worst(of.poses, name)), 0);
   return (
     <p class="facts-line">
       <span>
@@ -154,7 +154,7 @@ function Facts({ of, refused }: { of: Plan | null; refused: string | null }) {
         clearance <b>{margin("clearance")}</b> mm
       </span>
       <span>
-        µ needed <b>{fixed(of.friction - worst(of.poses, "friction"), 2)}</b>
+        µ needed <b>{fixed(of.friction - stated(worst(of.poses, "friction")), 2)}</b>
       </span>
       <span>
         time <b>{fixed(of.timing.total, 1)}</b> s

@@ -2,6 +2,7 @@
 
 import type { Entry } from "../api/stored";
 import { degrees, fixed } from "../geometry/format";
+import { stated } from "../profile-editor/margins";
 import { chips } from "./chips";
 import { letter, styleOf } from "./pins";
 import { outcome } from "./row";
@@ -28,9 +29,17 @@ const FIGURES: readonly Figure[] = [
   { name: "Mean speed", unit: "m/s", digits: 3, of: (e) => e.summary.metrics?.speed_mean },
   { name: "Energy", unit: "J", digits: 0, of: (e) => e.summary.metrics?.energy },
   { name: "Cost of transport", unit: "", digits: 2, of: (e) => e.summary.cost_of_transport },
+  { name: "Energy, planned", unit: "J", digits: 0, of: (e) => e.summary.planned_energy },
+  {
+    name: "Cost of transport, planned",
+    unit: "",
+    digits: 2,
+    of: (e) => e.summary.planned_cost_of_transport,
+  },
 ];
 
-const mm = (metres: number | undefined) => (metres === undefined ? undefined : metres * 1000);
+const mm = (metres: number | undefined) =>
+  metres === undefined ? undefined : stated(metres) * 1000;
 const known = (value: number | null | undefined): value is number =>
   value !== null && value !== undefined && Number.isFinite(value);
 
