@@ -1,6 +1,6 @@
 /** Lists of stored plans, rollouts and sets of trials; what users note about them. */
 
-import { BASE, call, json } from "./client";
+import { call, json } from "./client";
 import type { components } from "./schema";
 import type {
   Margins,
@@ -77,7 +77,3 @@ export const patchStored = async ({ kind, id }: Entry, changes: EntryChanges): P
   ...(await json<Omit<Entry, "kind">>("PATCH", `${kind}/${id}`, changes)),
   kind,
 });
-
-/** Outlives the page, which may be closing. */
-export const deleteStored = ({ kind, id }: Entry) =>
-  fetch(`${BASE}/${kind}/${id}`, { method: "DELETE", keepalive: true });

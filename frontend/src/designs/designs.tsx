@@ -1,6 +1,7 @@
 /** Designs: which robot is best? The front of a search, and the robots that it is made of. */
 
 import { useEffect } from "preact/hooks";
+import { begin } from "./address";
 import { Front } from "./front";
 import { Best, InView, Searches } from "./panels";
 import { SearchProgress } from "./progress";
@@ -10,6 +11,7 @@ import { across, aimName, followSearches, search } from "./state";
 import { wordsOf } from "./words";
 
 export function Designs() {
+  useEffect(begin, []);
   useEffect(followSearches, []);
   return (
     <main class="map-room designs">
