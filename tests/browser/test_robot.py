@@ -273,7 +273,8 @@ DRAWN = """() => {
   const box = e => { const b = e.getBoundingClientRect();
     return { left: b.left, top: b.top, right: b.right, bottom: b.bottom }; };
   const all = selector => [...document.querySelectorAll(`.side-view ${selector}`)].map(box);
-  return { view: all("svg")[0], wheels: all(".rb .wh"), dimensions: all(".dimension"), labels: all(".plate"),
+  return { view: all("svg")[0], wheels: all(".rb .wh"), dimensions: all(".dimension"),
+    labels: all(".plate"),
     grips: all(".dimension circle.hit, .dimension rect.hit, .pose-grip .hit") };
 }"""
 
