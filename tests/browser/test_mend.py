@@ -263,7 +263,7 @@ def test_a_rollout_is_asked_with_lists_of_errors_and_the_place_of_a_load(product
     page.get_by_role("radio", name="Trials").click()
     steps = page.get_by_label("Step heights, one by one, mm")
     steps.fill("5, 300")
-    page.get_by_text("Numbers between −100 and 100 mm").wait_for()
+    page.get_by_text("−100 to 100 mm each, with commas").wait_for()
     steps.fill("5, −3 2.5")
     assert page.get_by_label("Payload, place x in mm").count() == 0  # of nothing
     page.get_by_label("Payload, value").fill("0.5")

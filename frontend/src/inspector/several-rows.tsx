@@ -21,6 +21,7 @@ export function SpreadRows(props: SettingProps & { item: SettingSchema }) {
   const label = schema.title ?? name;
   const listed = Array.isArray(value);
   const { unit, factor } = screenUnit(schema);
+  const [complaint, setComplaint] = useState("");
   return (
     <>
       {!listed && <SliderRow {...props} schema={{ ...schema, title: `${label} ±` }} />}
@@ -35,6 +36,7 @@ export function SpreadRows(props: SettingProps & { item: SettingSchema }) {
           min={(item.minimum ?? -Infinity) * factor}
           max={(item.maximum ?? Infinity) * factor}
           unit={unit}
+          onComplaint={setComplaint}
           onChange={(values) =>
             onChange(
               values.length > 0 ? values.map((v) => Number((v / factor).toPrecision(12))) : null,
@@ -43,6 +45,11 @@ export function SpreadRows(props: SettingProps & { item: SettingSchema }) {
         />
         <span class="un">{unit}</span>
         <Reset label={label} shown={listed} onReset={() => onChange(null)} />
+        {complaint && (
+          <p class="wrong" role="alert">
+            {complaint}
+          </p>
+        )}
       </div>
     </>
   );
@@ -55,46 +62,43 @@ interface NumbersProps {
   max: number;
   unit: string;
   onChange: (values: number[]) => void;
+  onComplaint: (complaint: string) => void;
 }
 
 const parsed = (text: string) => text.split(/[\s,;]+/).flatMap((part) => (part ? [part] : []));
 
-function NumbersField({ label, values, min, max, unit, onChange }: NumbersProps) {
+function NumbersField(props: NumbersProps) {
+  const { label, values, min, max, unit, onChange, onComplaint } = props;
   const input = useRef<HTMLInputElement>(null);
   const [text, setText] = useState<string | null>(null);
   const written = values.map((v) => setting(v)).join(", ");
   const numbers = parsed(text ?? "").map(parseNumber);
   const valid = numbers.every((v) => v >= min && v <= max);
+  const wrong = valid ? "" : `${setting(min)} to ${setting(max)} ${unit} each, with commas`;
+  useEffect(() => onComplaint(wrong), [wrong]);
   useEffect(() => {
     if (document.activeElement !== input.current) setText(null);
   }, [written]);
   return (
-    <>
-      <input
-        ref={input}
-        type="text"
-        class="nums"
-        aria-label={`${label}, ${unit}`}
-        aria-invalid={!valid}
-        placeholder="none"
-        autocomplete="off"
-        spellcheck={false}
-        value={text ?? written}
-        onInput={(event) => {
-          const next = event.currentTarget.value;
-          const now = parsed(next).map(parseNumber);
-          setText(next);
-          if (now.every((v) => v >= min && v <= max)) onChange(now);
-        }}
-        onKeyDown={(event) => event.stopPropagation()}
-        onBlur={() => valid && setText(null)}
-      />
-      {!valid && (
-        <p class="wrong" role="alert">
-          Numbers between {setting(min)} and {setting(max)} {unit}, with commas between them
-        </p>
-      )}
-    </>
+    <input
+      ref={input}
+      type="text"
+      class="num nums"
+      aria-label={`${label}, ${unit}`}
+      aria-invalid={!valid}
+      placeholder="none"
+      autocomplete="off"
+      spellcheck={false}
+      value={text ?? written}
+      onInput={(event) => {
+        const next = event.currentTarget.value;
+        const now = parsed(next).map(parseNumber);
+        setText(next);
+        if (now.every((v) => v >= min && v <= max)) onChange(now);
+      }}
+      onKeyDown={(event) => event.stopPropagation()}
+      onBlur={() => valid && setText(null)}
+    />
   );
 }
 
