@@ -129,7 +129,7 @@ export function InView() {
 /** The front in numbers, for reading and for the keyboard. */
 export function Best() {
   const shown = search.value;
-  if (!shown) return null;
+  if (!shown?.candidates.length) return null;
   const names = shown.design.aims.map(aimName);
   const passed = shown.candidates.filter((each) => each.passed).length;
   return (

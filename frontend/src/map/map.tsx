@@ -31,7 +31,7 @@ function Cells() {
       <StudyPanel />
       <section class="map-middle" aria-label="Map">
         <header class="ph">
-          <h2>
+          <h2 title={subtitle() || undefined}>
             Capability map <small>{subtitle()}</small>
           </h2>
           {robotAxis.value && <PairView />}

@@ -3,7 +3,7 @@
 import { signal } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import type { Plan, RobotDocument } from "../api/types";
-import { fixed, took } from "../geometry/format";
+import { fixed, maybe, took } from "../geometry/format";
 import { planFrame, poseTimes } from "../geometry/frames";
 import { robotShape, skeleton } from "../geometry/robot";
 import { Figure } from "../profile-editor/figure";
@@ -146,7 +146,7 @@ function Facts({ of, refused }: { of: Plan | null; refused: string | null }) {
   }
   const margin = (name: "com" | "clearance") => fixed(1000 * stated(worst(of.poses, name)), 0);
   return (
-    <p class="facts-line">
+    <p class="facts-line all">
       <span>
         CoM <b>{margin("com")}</b> mm
       </span>
@@ -158,6 +158,12 @@ function Facts({ of, refused }: { of: Plan | null; refused: string | null }) {
       </span>
       <span>
         time <b>{fixed(of.timing.total, 1)}</b> s
+      </span>
+      <span title="Work of the motors’ static torques along the plan, without losses">
+        energy <b>{maybe(of.energy, 0)}</b> J
+      </span>
+      <span title="That work per weight and way, without unit">
+        cost of transport <b>{maybe(of.cost_of_transport, 2)}</b>
       </span>
       {of.knees && (
         <span>

@@ -44,7 +44,13 @@ export function load(entries: readonly Entry[]): void {
       .then((track) => {
         tracks.value = new Map(tracks.peek()).set(entry.id, track);
       })
-      .catch(report);
+      .catch((error) => {
+        // Asked for again when the pins change.
+        const others = new Map(tracks.peek());
+        others.delete(entry.id);
+        tracks.value = others;
+        report(error);
+      });
   }
 }
 
