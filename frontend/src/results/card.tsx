@@ -69,10 +69,13 @@ function useRoom() {
 export function Card({ result }: { result: Rollout }) {
   const card = useRoom();
   const other = compare.value ? runB.value : null;
-  const all = figures(other ? 2 : 1, robot.value?.limits);
+  const rows = (apart: boolean) => figures(other ? 2 : 1, robot.value?.limits, apart);
   const sentences = result.outcome !== "success" || runPlan.value?.certificate?.motion;
-  const needed = AROUND + (sentences ? SENTENCES : 0) + (all.length + (other ? 1 : 0)) * ROW;
+  const heads = other ? 1 : 0;
+  const needed = AROUND + (sentences ? SENTENCES : 0) + (rows(Boolean(other)).length + heads) * ROW;
   const low = needed > room.value;
+  // Two columns are too narrow for what stands beside a title, and have room for rows.
+  const all = rows(low || Boolean(other));
   const half = Math.ceil(all.length / 2);
   const parts = low ? [all.slice(0, half), all.slice(half)] : [all];
   const kind = `${other ? "two" : "one"} ${low ? "low" : ""}`;
@@ -117,6 +120,7 @@ function Table({ figures, result, other }: TableProps) {
           <tr key={`${figure.title} ${figure.note}`} title={figure.hint}>
             <th scope="row">
               {figure.title} {figure.note && <small>{figure.note}</small>}
+              {figure.planned && <small>plan {figure.planned(runPlan.value)}</small>}
               {figure.limit && <small class="limit-note">{figure.limit}</small>}
             </th>
             {cell(figure, result, runPlan.value, "a")}

@@ -24,6 +24,8 @@ export interface Figure {
   note?: string;
   /** The most it can be; told where there is room. */
   limit?: string;
+  /** What the plan says of it, beside the title. */
+  planned?: (plan: Plan | null) => string;
   hint?: string;
   /** The plan is the one that was run; null where it is gone. */
   of: (m: Metrics, r: Rollout, plan: Plan | null) => string;
@@ -69,8 +71,11 @@ export const PLANNED: readonly {
   },
 ];
 
-/** Of one rollout, or of several to compare: only then their outcomes are among the figures. */
-export function figures(count: number, limits: Limits | undefined): Figure[] {
+/**
+ * Of one rollout, or of several to compare: only then their outcomes are among the figures.
+ * What was planned has rows of its own where it stands `apart`, else it stands beside a title.
+ */
+export function figures(count: number, limits: Limits | undefined, apart: boolean): Figure[] {
   const outcome: Figure = {
     title: "Outcome",
     of: (_m, r) => OUTCOMES[r.outcome],
@@ -114,14 +119,16 @@ export function figures(count: number, limits: Limits | undefined): Figure[] {
     {
       title: "Energy",
       hint: "Work that the motors did or took up in the rollout",
+      ...(apart ? {} : { planned: PLANNED[0]!.of }),
       of: (m) => `${fixed(m.energy, 0)} J`,
     },
     {
       title: "Cost of transport",
       hint: "That work per weight and distance, without unit",
+      ...(apart ? {} : { planned: PLANNED[1]!.of }),
       of: (m) => maybe(m.cost_of_transport, 2),
     },
-    ...PLANNED.map(({ short, hint, of }) => ({
+    ...(apart ? PLANNED : []).map(({ short, hint, of }) => ({
       title: short,
       note: "planned",
       hint,
