@@ -136,6 +136,13 @@ def test_a_link_shows_the_same_search_with_its_form(product: Product) -> None:
         other.goto(address)
         other.get_by_text("Design front").get_by_text("small motors").wait_for()
         assert other.get_by_label("Number of designs").input_value() == "321"
+        other.get_by_label("Number of designs").fill("99")
+        other.get_by_label("Number of designs").blur()
+        other.wait_for_function("a => location.href !== a", arg=address)
+        other.evaluate("a => { location.href = a }", address)  # pasted into the open page
+        other.wait_for_function(
+            "() => document.querySelector('[aria-label=\"Number of designs\"]').value === '321'"
+        )
 
 
 def test_a_search_is_followed_by_its_events(product: Product) -> None:

@@ -75,7 +75,9 @@ export function Comparison({ entries }: { entries: readonly Entry[] }) {
               <th scope="row">{figure.name}</th>
               {entries.map((entry) => {
                 const value = figure.of(entry);
-                const text = known(value) ? `${fixed(value, figure.digits)} ${figure.unit}` : "–";
+                const { unit, digits } = figure;
+                const ending = unit === "°" ? unit : unit && ` ${unit}`;
+                const text = known(value) ? fixed(value, digits) + ending : "–";
                 return <td key={entry.id}>{text}</td>;
               })}
             </tr>
