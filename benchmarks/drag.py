@@ -1,6 +1,6 @@
 """How long the poses take to follow a dragged corner, in real Chromium on the real server.
 
-    python benchmarks/drag.py [--url URL] [--seconds 6 | --quick] [--scene] [--json FILE]
+    python benchmarks/drag.py [--url URL] [--seconds 6 | --quick] [--scene] [--free] [--json FILE]
 
 Drags the upper corner of the 0.36 m stair and of five stairs at 60 moves a second. Per terrain:
 from the pointer's move to the end of the frame that shows its poses (median, 95th percentile), the
@@ -60,13 +60,18 @@ def delays(found: dict[str, Any]) -> list[float]:
     return out
 
 
-def drag(page: Page, vertex: int, seconds: float) -> dict[str, Any]:
-    """Move a corner to and fro along x and z, and return what the page noted meanwhile."""
+def drag(page: Page, vertex: int, seconds: float, free: bool) -> dict[str, Any]:
+    """Move a corner to and fro along x and z, and return what the page noted meanwhile.
+
+    With Alt held if `free`, so that it keeps to no grid and every move is a new question.
+    """
     box = page.locator(f'[data-vertex="{vertex}"] rect').bounding_box()
     assert box is not None
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     page.mouse.move(x, y)
     page.mouse.down()
+    if free:
+        page.keyboard.down("Alt")
     page.evaluate(WATCH)
     start = time.perf_counter()
     for i in range(int(seconds * RATE)):
@@ -75,13 +80,16 @@ def drag(page: Page, vertex: int, seconds: float) -> dict[str, Any]:
         time.sleep(max(0.0, start + (i + 1) / RATE - time.perf_counter()))
     found: dict[str, Any] = page.evaluate(COLLECT)
     page.mouse.up()
+    if free:
+        page.keyboard.up("Alt")
     return found
 
 
 def measure(
-    browser: Browser, url: str, terrain: str, vertex: int, seconds: float, scene: bool
+    browser: Browser, url: str, case: tuple[str, int], seconds: float, scene: bool, free: bool
 ) -> list[Row]:
-    """The figures of one terrain."""
+    """The figures of one terrain and corner."""
+    terrain, vertex = case
     with browser.new_context(
         viewport={"width": 1440, "height": 900},
         bypass_csp=True,  # Playwright waits for functions by `eval`
@@ -90,7 +98,8 @@ def measure(
         if not scene:
             page.route("**/scene/**", lambda route: route.fulfill(content_type="text/html"))
         devtools = context.new_cdp_session(page)
-        devtools.send("Performance.enable")
+        # The thread's own time: what else the machine does is none of the page's.
+        devtools.send("Performance.enable", {"timeDomain": "threadTicks"})
 
         def script() -> float:
             found = devtools.send("Performance.getMetrics")["metrics"]
@@ -102,10 +111,10 @@ def measure(
         page.get_by_role("button", name=re.compile("^Terrain")).click()
         page.locator(".terrains .item", has_text=terrain).first.click()
         page.locator(".app[data-plan=feasible], .app[data-plan=infeasible]").wait_for()
-        drag(page, vertex, 1.0)  # both sides warm
+        drag(page, vertex, 1.0, free)  # both sides warm
         page.evaluate("performance.clearMarks()")
         before = script()
-        found = drag(page, vertex, seconds)
+        found = drag(page, vertex, seconds, free)
         spent = script() - before
     shown, frames = delays(found), found["frames"]
     answers = f"{len(shown)} answers in {seconds:g} s"
@@ -157,7 +166,11 @@ def own_server() -> Iterator[str]:
 
 
 def run(
-    url: str | None = None, seconds: float = 6.0, browser: str | None = None, scene: bool = False
+    url: str | None = None,
+    seconds: float = 6.0,
+    browser: str | None = None,
+    scene: bool = False,
+    free: bool = False,
 ) -> list[Row]:
     """All terrains, on the server at `url` or on one of its own."""
     from playwright.sync_api import sync_playwright
@@ -168,9 +181,7 @@ def run(
             executable_path=chromium(browser), args=["--no-sandbox", "--disable-dev-shm-usage"]
         )
         rows = [
-            row
-            for terrain, vertex in CASES
-            for row in measure(launched, address, terrain, vertex, seconds, scene)
+            row for case in CASES for row in measure(launched, address, case, seconds, scene, free)
         ]
         launched.close()
     return rows
@@ -184,10 +195,11 @@ def main() -> None:
     length.add_argument("--seconds", type=float, default=6.0, help="of each drag")
     length.add_argument("--quick", action="store_const", dest="seconds", const=1.0, help="1 s")
     parser.add_argument("--scene", action="store_true", help="with the 3-D scene")
+    parser.add_argument("--free", action="store_true", help="with Alt held: off the grid")
     parser.add_argument("--browser", help="where Chromium is; searched for otherwise")
     parser.add_argument("--json", help="write machine and rows to this file too")
     arguments = parser.parse_args()
-    rows = run(arguments.url, arguments.seconds, arguments.browser, arguments.scene)
+    rows = run(arguments.url, arguments.seconds, arguments.browser, arguments.scene, arguments.free)
     publish(rows, arguments.json)
 
 

@@ -52,6 +52,8 @@ def test_a_row_tells_what_was_asked_and_what_came_of_it(api: httpx.Client, rollo
     weight = sw.load_robot(plan["robot"]).mass * 9.81
     way = plan["poses"][-1]["progress"] * whole["metrics"]["progress"]
     assert summary["cost_of_transport"] == pytest.approx(whole["metrics"]["energy"] / weight / way)
+    assert summary["planned_energy"] == plan["energy"] > 0
+    assert summary["planned_cost_of_transport"] == plan["cost_of_transport"]
     assert summary["outline"] == CURB["points"]
     assert any(summary["pose"]["x"] == round(pose["x_c"], 3) for pose in plan["poses"])
 

@@ -122,6 +122,62 @@ def test_a_new_search_is_asked_watched_paused_and_gone_on_with(product: Product)
     page.get_by_role("button", name="Go on").wait_for()
 
 
+def test_a_link_shows_the_same_search_with_its_form(product: Product) -> None:
+    page = product.page
+    page.get_by_label("Number of designs").fill("321")
+    page.locator(".searches button", has_text="small motors").first.click()
+    page.get_by_text("Design front").get_by_text("small motors").wait_for()
+    page.wait_for_function("location.hash.includes('d=')")
+    page.wait_for_timeout(400)  # the address follows a form at rest
+    address = page.url
+    assert page.context.browser is not None
+    with page.context.browser.new_context(**TAB) as context:
+        other = context.new_page()
+        other.goto(address)
+        other.get_by_text("Design front").get_by_text("small motors").wait_for()
+        assert other.get_by_label("Number of designs").input_value() == "321"
+        other.get_by_label("Number of designs").fill("99")
+        other.get_by_label("Number of designs").blur()
+        other.wait_for_function("a => location.href !== a", arg=address)
+        other.evaluate("a => { location.href = a }", address)  # pasted into the open page
+        other.wait_for_function(
+            "() => document.querySelector('[aria-label=\"Number of designs\"]').value === '321'"
+        )
+
+
+def test_a_search_is_followed_by_its_events(product: Product) -> None:
+    """The list is not read meanwhile: what comes, comes by the stream."""
+    page = product.page
+    page.get_by_label("Number of designs").fill("40")
+    page.get_by_role("button", name="Run", exact=True).click()
+    tried = page.locator(".searches [aria-pressed=true] small")
+    tried.get_by_text("0 of 40 designs").wait_for()
+    page.route("**/api/v1/designs", lambda route: route.abort())
+    tried.get_by_text(re.compile(r"^[1-9]\d* of 40 designs")).wait_for(timeout=PATIENCE)
+    page.unroute("**/api/v1/designs")
+    page.get_by_role("button", name="Pause", exact=True).click()
+    page.get_by_role("button", name="Go on").wait_for()
+
+
+def test_a_deleted_search_is_back_after_undo_and_gone_without(product: Product) -> None:
+    page = product.page
+    row = page.locator(".searches li").filter(has_text="small motors")
+    row.locator("button").first.click()
+    page.get_by_text("Design front").get_by_text("small motors").wait_for()
+    row.get_by_role("button", name="Delete").click()
+    row.wait_for(state="detached")
+    page.get_by_role("button", name="Undo").last.click()
+    row.wait_for()
+    page.get_by_text("Design front").get_by_text("small motors").wait_for()
+    unwanted = page.locator(".searches li").filter(has_text="of 40 designs")
+    with page.expect_response(
+        lambda answer: answer.request.method == "DELETE" and "/designs/" in answer.url
+    ) as answer:
+        unwanted.get_by_role("button", name="Delete").click()
+    assert answer.value.status == 204
+    unwanted.wait_for(state="detached")
+
+
 def test_the_form_asks_what_it_shows(product: Product) -> None:
     """A step's height among the aims takes the place of the drawn terrain; nothing is started."""
     page = product.page

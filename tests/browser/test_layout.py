@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -158,5 +159,7 @@ def test_results_fit_their_dock(product: Product) -> None:
             )
             for title in ("Mean speed", "On the stairs", "Cost of transport", "Link contacts"):
                 assert card.get_by_role("rowheader", name=title).is_visible(), (width, title)
+            planned = re.findall(r"(?:plan|planned)\s+(\d+ J|0\.\d\d)", card.inner_text())
+            assert len(planned) == 2, (width, card.inner_text())
     finally:
         page.set_viewport_size(DESK)

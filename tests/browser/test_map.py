@@ -220,6 +220,24 @@ def test_paused_and_gone_on_with(room: Product) -> None:
     page.get_by_role("button", name="Pause").wait_for(timeout=PATIENCE)
     page.get_by_role("button", name="Pause").click()
     page.get_by_role("button", name="Go on").wait_for(timeout=PATIENCE)
+    assert page.locator(".prog-map .error").count() == 0
+
+
+def test_a_deleted_map_is_back_after_undo_and_gone_without(room: Product) -> None:
+    page = room.page
+    delete = page.get_by_role("button", name="Delete this map")
+    delete.click()
+    page.get_by_role("heading", name="How far can it go?").wait_for()
+    page.get_by_role("button", name="Undo").last.click()
+    page.get_by_role("button", name="Go on").wait_for()
+    with page.expect_response(
+        lambda answer: answer.request.method == "DELETE" and "/studies/" in answer.url
+    ) as answer:
+        delete.click()
+    assert answer.value.status == 204
+    page.get_by_role("button", name="Earlier").click()
+    page.get_by_role("menuitem").first.click()
+    page.get_by_role("button", name="Table").wait_for()
 
 
 def test_without_the_packages_it_says_so(room: Product) -> None:

@@ -258,6 +258,29 @@ def test_a_setting_beyond_its_bounds_says_them(product: Product) -> None:
     page.get_by_role("radio", name="Plan", exact=True).click()
 
 
+def test_a_rollout_is_asked_with_lists_of_errors_and_the_place_of_a_load(product: Product) -> None:
+    page = product.page
+    page.get_by_role("radio", name="Trials").click()
+    steps = page.get_by_label("Step heights, one by one, mm")
+    steps.fill("5, 300")
+    page.get_by_text("−100 to 100 mm each, with commas").wait_for()
+    steps.fill("5, −3 2.5")
+    assert page.get_by_label("Payload, place x in mm").count() == 0  # of nothing
+    page.get_by_label("Payload, value").fill("0.5")
+    page.get_by_label("Payload, place x in mm").fill("40")
+    with page.expect_request(lambda asked: asked.url.endswith("/rollouts")) as sent:
+        product.run()
+    assert sent.value.post_data_json["disturbance"] == {
+        "step_height_error": [0.005, -0.003, 0.0025],
+        "payload": {"mass": 0.5, "place": [0.04, 0, 0]},
+    }
+    page.get_by_role("button", name="Reset Payload, place").click()
+    page.get_by_role("button", name="Reset Step heights").click()
+    assert page.get_by_label("Step heights ±, value").input_value() == "0"
+    page.get_by_role("button", name="Clear", exact=True).click()
+    page.get_by_role("radio", name="Plan", exact=True).click()
+
+
 def test_a_rollout_is_asked_with_the_friction_of_each_wheel(product: Product) -> None:
     page = product.page
     page.get_by_role("radio", name="Trials").click()

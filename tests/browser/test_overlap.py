@@ -114,6 +114,14 @@ def test_menus_have_no_overlaps(product: Product) -> None:
     page.keyboard.press("Escape")
 
 
+def test_an_empty_canvas_has_no_overlaps(product: Product) -> None:
+    page = product.page
+    page.get_by_role("button", name=TERRAIN).click()
+    page.get_by_role("button", name="New", exact=True).click()
+    page.get_by_role("heading", name="Draw a profile or start from a preset").wait_for()
+    assert _everywhere(product) == []
+
+
 def test_a_comparison_has_no_overlaps(product: Product) -> None:
     switch = product.page.get_by_role("switch", name="Compare A with B")
     switch.click()

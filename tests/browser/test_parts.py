@@ -34,7 +34,9 @@ def test_a_part_that_did_not_come_says_so_and_comes_when_asked_again(product: Pr
     product.open()
     # The last one: nothing comes by itself from then on.
     page.wait_for_function(CAME, arg=["designs"], timeout=PATIENCE)
-    page.keyboard.press("3")
+    # Opening it is an attempt, too.
+    with page.expect_event("requestfailed", lambda request: "/assets/map-" in request.url):
+        page.keyboard.press("3")
     told = page.get_by_role("alert").filter(has_text="The map could not be loaded")
     expect(told).to_be_visible(timeout=PATIENCE)
     assert product.status == "feasible"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -272,7 +273,8 @@ DRAWN = """() => {
   const box = e => { const b = e.getBoundingClientRect();
     return { left: b.left, top: b.top, right: b.right, bottom: b.bottom }; };
   const all = selector => [...document.querySelectorAll(`.side-view ${selector}`)].map(box);
-  return { view: all("svg")[0], dimensions: all(".dimension"), labels: all(".plate"),
+  return { view: all("svg")[0], wheels: all(".rb .wh"), dimensions: all(".dimension"),
+    labels: all(".plate"),
     grips: all(".dimension circle.hit, .dimension rect.hit, .pose-grip .hit") };
 }"""
 
@@ -296,6 +298,11 @@ def test_on_a_phone_the_drawing_fills_the_width_and_fingers_can_pull_it(
         for b in labels[k + 1 :]:
             across = min(a["right"], b["right"]) - max(a["left"], b["left"])
             assert across <= 1 or min(a["bottom"], b["bottom"]) - max(a["top"], b["top"]) <= 3
+        for wheel in drawn["wheels"]:
+            radius = (wheel["right"] - wheel["left"]) / 2
+            x, y = wheel["left"] + radius, wheel["top"] + radius
+            beside = max(a["left"] - x, 0, x - a["right"]), max(a["top"] - y, 0, y - a["bottom"])
+            assert math.hypot(*beside) > radius - 3, (name, a, wheel)
     assert len(drawn["grips"]) > 10
     for grip in drawn["grips"]:
         assert min(grip["right"] - grip["left"], grip["bottom"] - grip["top"]) >= 24 - 1e-3

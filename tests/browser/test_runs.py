@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -61,6 +62,7 @@ def test_a_row_tells_what_differs_and_what_came_of_it(runs: Product) -> None:
     assert "runs-curb" in words
     assert "Success" in words
     assert " mm" in words
+    assert re.search(r"\d J\s+0\.\d\d", words)
     assert row.locator(".thumb .trunk").count() == 1
 
 

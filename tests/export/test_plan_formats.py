@@ -13,8 +13,10 @@ import numpy as np
 import pytest
 from rosbags.highlevel import AnyReader
 
+import stairwright as sw
 from stairwright.errors import InputError
 from stairwright.export.formats import PLAN_FORMATS, convert, load_plan, save
+from stairwright.planning.carrying import holding_torques
 from stairwright.planning.plan import Plan
 from stairwright.robot import kinematics
 from stairwright.robot.description import JOINTS
@@ -144,8 +146,6 @@ def test_mjcf_poses_hold(plan):
 @pytest.mark.slow
 def test_mjcf_poses_of_a_real_climb_hold():
     """Every tenth pose of the certified path up the paper's highest stair."""
-    import stairwright as sw
-
     plan = sw.plan("single-stair-036", "a1_wheeled_x")
     model = mujoco.MjModel.from_xml_string(PLAN_FORMATS["mjcf"].write(plan).decode())
     data = mujoco.MjData(model)
@@ -157,6 +157,24 @@ def test_mjcf_poses_of_a_real_climb_hold():
         assert np.linalg.norm(data.qpos[:3] - start[:3]) < 0.01, i
 
 
+@pytest.mark.slow
+def test_mjcf_servos_of_a_real_climb_do_what_lifts_the_robot():
+    """In corners too, where a wheel touches two faces and only one of them carries it."""
+    plan = sw.plan("three-stairs-up", "a1_wheeled_x")
+    model = mujoco.MjModel.from_xml_string(PLAN_FORMATS["mjcf"].write(plan).decode())
+    model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
+    data = mujoco.MjData(model)
+    stiffness, joints = model.actuator_gainprm[:, 0], model.key_qpos[:, 7:]
+    torques = stiffness * (model.key_ctrl - joints)
+    heights = []
+    for i in range(model.nkey):
+        mujoco.mj_resetDataKeyframe(model, data, i)
+        mujoco.mj_forward(model, data)
+        heights.append(data.energy[0])
+    work = ((torques[:-1] + torques[1:]) / 2 * np.diff(joints, axis=0)).sum()
+    assert work == pytest.approx(heights[-1] - heights[0], rel=0.03)
+
+
 def test_mjcf_masses_are_the_robots(plan):
     model = mujoco.MjModel.from_xml_string(PLAN_FORMATS["mjcf"].write(plan).decode())
     assert model.body_mass.sum() == pytest.approx(plan.robot_description.mass)
@@ -164,11 +182,9 @@ def test_mjcf_masses_are_the_robots(plan):
 
 def test_standing_pose_needs_the_torques_of_its_weight():
     """On flat ground with vertical forces the knee carries the load at its lever."""
-    from stairwright.export.mjcf_file import holding_torques
-
     plan = example_plan(count=5)
     robot, pose = plan.robot_description, plan.poses[0]
-    torques = holding_torques(robot, pose).reshape(4, 3)
+    torques = holding_torques(plan)[0].reshape(4, 3)
     frames = kinematics.forward(robot, pose.x_c, pose.z_c, pose.pitch, np.array(pose.q))
     lever = pose.contacts[0][0] - frames.knees[0, 0]
     own = robot.calf.com * (pose.wheels[0][0] - frames.knees[0, 0]) * robot.calf.mass

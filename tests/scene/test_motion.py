@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import stairwright as sw
 from stairwright.robot.spatial import place
 from stairwright.scene.motion import Motion, from_plan, from_rollout
 from stairwright.scene.player import Player
@@ -40,6 +41,14 @@ def test_static_forces_carry_the_weight(plan, motion):
     weight = plan.robot_description.mass * 9.81
     np.testing.assert_allclose(motion.forces.sum(axis=1)[:, 1], weight, rtol=1e-6)
     np.testing.assert_allclose(motion.forces.sum(axis=1)[:, 0], 0.0, atol=1e-6)
+
+
+def test_forces_carry_the_weight_in_corners_too():
+    """There a wheel touches two faces, and the one that a pose names need not carry it."""
+    plan = sw.plan("three-stairs-up", "a1_wheeled_x")
+    motion = from_plan(plan.model_dump(mode="json"), plan.robot_description)
+    weight = plan.robot_description.mass * 9.81
+    np.testing.assert_allclose(motion.forces.sum(axis=1), [[0.0, weight]] * len(plan.poses), atol=1)
 
 
 @given(st.floats(-5, 50))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import signal
 import time
 from collections.abc import Callable
@@ -60,6 +61,24 @@ def test_a_search_finds_what_the_command_line_finds(api: httpx.Client) -> None:
     assert (again["id"], again["state"], again["tried"]) == (name, "done", 6)
     assert name not in [each["id"] for each in api.get("/studies").json()]
     assert api.get(f"/studies/{name}").status_code == 404
+
+
+def test_its_events_tell_how_far_it_is_until_it_is_done(api: httpx.Client) -> None:
+    begun = api.post("/designs", json=SMALL | {"seed": 5}).json()
+    told = []
+    with api.stream("GET", begun["links"]["events"].removeprefix("/api/v1")) as stream:
+        assert stream.headers["content-type"].startswith("text/event-stream")
+        for line in stream.iter_lines():
+            if line.startswith("data: "):
+                told.append(json.loads(line[6:]))
+            elif line.startswith("id: "):
+                last = line[4:]
+    assert [each["id"] for each in told] == [begun["id"]] * len(told)
+    assert [each["progress"] for each in told] == sorted(each["progress"] for each in told)
+    assert (told[-1]["state"], told[-1]["tried"], told[-1]["complete"]) == ("done", 6, True)
+    again = api.get(f"/designs/{begun['id']}/events", headers={"Last-Event-ID": last})
+    assert again.status_code == 204
+    assert api.get("/designs/d-0123456789abcdef/events").status_code == 404
 
 
 def test_cancelled_gone_on_with_and_removed(api: httpx.Client) -> None:

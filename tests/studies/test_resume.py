@@ -11,12 +11,14 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import stairwright as sw
 from stairwright.errors import InputError
@@ -26,7 +28,7 @@ from stairwright.studies.cluster import ClusterEngine
 from stairwright.studies.dataset import grid_dataset
 from stairwright.studies.fill import fill_grid
 from stairwright.studies.serial import SerialEngine
-from stairwright.studies.store import ResultStore
+from stairwright.studies.store import ResultStore, consolidate
 from stairwright.studies.study import prepared
 from stairwright.studies.version import engine_of
 
@@ -50,6 +52,29 @@ def _asked(document: dict[str, Any], path: Path) -> list[int]:
     cells: list[int] = []
     sw.study(document, workers=1, store=path, progress=lambda p: cells.extend(p.new))
     return cells
+
+
+def test_xarray_opens_stores_and_copies_without_a_warning(tmp_path: Path) -> None:
+    store, copy = tmp_path / "a.zarr", tmp_path / "copy.zarr"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        made = sw.study(_heights(0.05), workers=1, store=store)
+        made.save(copy)
+        for path in (store, copy):
+            with xr.open_zarr(path) as opened:
+                assert identical(opened[list(made.dataset.data_vars)].load(), made.dataset), path
+
+
+def test_a_store_that_lacks_a_variable_gets_it(tmp_path: Path) -> None:
+    path = tmp_path / "a.zarr"
+    sw.study(_heights(0.05), workers=1, store=path)
+    shutil.rmtree(path / "energy")
+    consolidate(path)
+    ResultStore(path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with xr.open_zarr(path) as opened:
+            assert "energy" in opened
 
 
 def test_a_finished_study_answers_from_its_store(tmp_path: Path) -> None:

@@ -12,8 +12,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from stairwright.planning.plan import Plan, Pose
-from stairwright.planning.static_torques import static_torques
+from stairwright.planning.carrying import holding_torques
+from stairwright.planning.plan import Plan
 from stairwright.robot import spatial
 from stairwright.robot.description import JOINTS, Robot
 from stairwright.robot.mujoco_model import build_spec
@@ -40,11 +40,11 @@ def plan_mjcf(plan: Plan) -> bytes:
     position, quaternion, joints = spatial.lift(
         robot, arrays["trunk"], arrays["q"], arrays["wheel_progress"]
     )
+    hold = joints + holding_torques(plan) / stiffness
     for i, pose in enumerate(plan.poses):
-        hold = joints[i] + holding_torques(robot, pose) / stiffness
         key = spec.add_key(name=f"pose_{i}", time=pose.time)
         key.qpos = np.concatenate([position[i], quaternion[i], joints[i]])
-        key.ctrl = hold
+        key.ctrl = hold[i]
     about = {
         "schema": plan.schema_,
         "plan_id": plan.id,
@@ -86,13 +86,3 @@ def _make_servos(spec: Any, robot: Robot) -> Floats:
         actuator.forcerange = [-motor.torque, motor.torque]
         stiffness.append(kp)
     return np.array(stiffness)
-
-
-def holding_torques(robot: Robot, pose: Pose) -> Floats:
-    """Torques (12,) [Nm] that hold `pose` at rest; zero without planned forces."""
-    if pose.forces is None:
-        return np.zeros(12)
-    trunk = np.array([[pose.x_c, pose.z_c, pose.pitch]])
-    q, contacts, forces = (np.array([x]) for x in (pose.q, pose.contacts, pose.forces))
-    held: Floats = static_torques(robot, trunk, q, contacts, forces)[0]
-    return held

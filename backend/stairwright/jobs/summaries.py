@@ -16,7 +16,7 @@ _MARGINS = ("clearance", "com", "friction", "torque")
 
 
 def of_plan(plan: Plan) -> dict[str, Any]:
-    """Question, verdict, least margins [m, m, 1, Nm], duration [s], and what a thumbnail needs."""
+    """Question, verdict, least margins [m, m, 1, Nm], duration [s], energy [J], a thumbnail."""
     from stairwright.planning.weights import MODELS
 
     usual = MODELS[plan.method]().model_dump()
@@ -31,6 +31,8 @@ def of_plan(plan: Plan) -> dict[str, Any]:
         "tolerance": plan.tolerance.asked if plan.tolerance else {},
         "margins": _least(plan.poses),
         "duration": plan.timing.total if plan.feasible else None,
+        "planned_energy": plan.energy,
+        "planned_cost_of_transport": plan.cost_of_transport,
         **_thumbnail(plan),
     }
 

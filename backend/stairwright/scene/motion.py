@@ -10,10 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stairwright.documents import parse
+from stairwright.planning.carrying import carrying_normals
 from stairwright.planning.plan import Plan
 from stairwright.planning.poses.interpolation import reference
 from stairwright.robot.description import Robot
 from stairwright.robot.spatial import lift
+from stairwright.terrain.profile import Terrain
+from stairwright.terrain.wheel_path import wheel_path
 
 Floats = NDArray[np.float64]
 
@@ -112,11 +115,9 @@ def from_plan(plan: Mapping[str, Any], robot: Robot) -> Motion | None:
     rolled = np.array([pose["wheel_progress"] for pose in poses], float)
     forces = None
     if all(pose.get("forces") is not None for pose in poses):
-        wheels, contacts = (
-            np.array([pose[key] for pose in poses]) for key in ("wheels", "contacts")
-        )
+        path = wheel_path(parse(Terrain, plan["terrain"]), robot.wheel.radius)
         local = np.array([pose["forces"] for pose in poses], float)
-        forces = _per_wheel(local, (wheels - contacts) / robot.wheel.radius)
+        forces = _per_wheel(local, carrying_normals(path, robot.mass, rolled, local))
     if plan["method"] != "path" and len(poses) > 1:
         # Sparse poses: play what the controller tracks, with the wheels on the terrain.
         dense = reference(parse(Plan, dict(plan)), joint_rate=None)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from stairwright.errors import InputError
 
-from .store import SUFFIX, ResultStore
+from .store import SUFFIX, ResultStore, consolidate
 from .variables import VARIABLES
 
 if TYPE_CHECKING:
@@ -59,6 +59,7 @@ def save(dataset: xr.Dataset, path: str | Path) -> None:
             if chosen.exists():
                 shutil.rmtree(chosen)
             dataset.to_zarr(chosen, mode="w", consolidated=False, zarr_format=3)
+            consolidate(chosen)
         elif chosen.suffix.lower() == ".nc":
             chosen.write_bytes(netcdf(dataset))
         else:

@@ -11,6 +11,7 @@ import fcntl
 import math
 import shutil
 import time
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ import numpy as np
 import orjson
 import zarr
 from numpy.typing import NDArray
-from zarr.errors import GroupNotFoundError, NodeTypeValidationError
+from zarr.errors import GroupNotFoundError, NodeTypeValidationError, ZarrUserWarning
 
 from stairwright.documents import parse
 from stairwright.errors import InputError
@@ -49,7 +50,7 @@ class ResultStore:
         """
         self.path = path
         try:
-            self._group = zarr.open_group(path, mode="r+")
+            self._group = zarr.open_group(path, mode="r+", use_consolidated=False)
             attributes: Mapping[str, Any] = dict(self._group.attrs)
         except (GroupNotFoundError, NodeTypeValidationError, ValueError, OSError) as error:
             raise InputError(f"{path} holds no results of a study") from error
@@ -59,13 +60,12 @@ class ResultStore:
         self.engine = str(attributes["engine"])
         self.created = float(attributes["created"])
         self.study = parse(Study, orjson.loads(attributes["study"]))
-        self._arrays = {name: self._array(name) for name in VARIABLES}
-
-    def _array(self, name: str) -> Any:
-        if name not in self._group:  # written before there was this variable
+        new = [name for name in VARIABLES if name not in self._group]
+        for name in new:  # written before there was this variable
             _add_variable(self._group, name, self.study)
-        array: Any = self._group[name]
-        return array
+        if new:
+            consolidate(path)
+        self._arrays: dict[str, Any] = {name: self._group[name] for name in VARIABLES}
 
     @classmethod
     def create(cls, path: Path, study: Study, engine: str) -> ResultStore:
@@ -195,6 +195,15 @@ def _lay_out(path: Path, study: Study, engine: str) -> None:
         made[...] = values
     for name in VARIABLES:
         _add_variable(group, name, study)
+    consolidate(path)
+
+
+def consolidate(path: Path) -> None:
+    """Put the metadata of all arrays where readers find it at once; filling changes none of it."""
+    with warnings.catch_warnings():
+        # Zarr's version 3 does not specify it yet: readers that do not know it read each array's.
+        warnings.simplefilter("ignore", ZarrUserWarning)
+        zarr.consolidate_metadata(path)
 
 
 def _add_variable(group: zarr.Group, name: str, study: Study) -> None:

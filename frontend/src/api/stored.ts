@@ -1,6 +1,6 @@
 /** Lists of stored plans, rollouts and sets of trials; what users note about them. */
 
-import { BASE, call, json } from "./client";
+import { call, json } from "./client";
 import type { components } from "./schema";
 import type {
   Margins,
@@ -32,7 +32,11 @@ export interface Summary {
   margins?: Margins | null;
   /** [s] */
   duration?: number | null;
+  /** Of the rollout; work per weight and way, without unit. */
   cost_of_transport?: number | null;
+  /** Work of the plan's static torques, without losses [J]. */
+  planned_energy?: number | null;
+  planned_cost_of_transport?: number | null;
   outline?: Vec2[];
   pose?: { x: number; z: number; pitch: number; q: number[] } | null;
   plan_id?: string;
@@ -73,7 +77,3 @@ export const patchStored = async ({ kind, id }: Entry, changes: EntryChanges): P
   ...(await json<Omit<Entry, "kind">>("PATCH", `${kind}/${id}`, changes)),
   kind,
 });
-
-/** Outlives the page, which may be closing. */
-export const deleteStored = ({ kind, id }: Entry) =>
-  fetch(`${BASE}/${kind}/${id}`, { method: "DELETE", keepalive: true });

@@ -147,7 +147,13 @@ export interface SettingSchema {
   group?: string;
   /** Of a record: its fields. */
   properties?: Record<string, SettingSchema>;
-  anyOf?: { type?: string; prefixItems?: SettingSchema[] }[];
+  anyOf?: {
+    type?: string;
+    /** What each of a list's numbers may be: each its own, or all alike. */
+    prefixItems?: SettingSchema[];
+    items?: SettingSchema;
+    properties?: Record<string, SettingSchema>;
+  }[];
   /** The only timing that this has an effect with. */
   timing?: PlanTiming;
 }

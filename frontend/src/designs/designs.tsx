@@ -1,15 +1,17 @@
 /** Designs: which robot is best? The front of a search, and the robots that it is made of. */
 
 import { useEffect } from "preact/hooks";
+import { begin } from "./address";
 import { Front } from "./front";
 import { Best, InView, Searches } from "./panels";
 import { SearchProgress } from "./progress";
 import { RoomTabs } from "./room-tabs";
 import { SearchForm } from "./search-form";
-import { across, aimName, followSearches, search } from "./state";
+import { across, aimName, followSearches, search, searching } from "./state";
 import { wordsOf } from "./words";
 
 export function Designs() {
+  useEffect(begin, []);
   useEffect(followSearches, []);
   return (
     <main class="map-room designs">
@@ -25,7 +27,7 @@ export function Designs() {
       </aside>
       <section class="map-middle" aria-label="Front">
         <header class="ph">
-          <h2>
+          <h2 title={subtitle()}>
             Design front <small>{subtitle()}</small>
           </h2>
           <AxisChoice />
@@ -70,14 +72,17 @@ function Body() {
   if (!shown.candidates.some((each) => each.passed)) {
     return (
       <div class="map-empty">
-        <h3>
-          {shown.candidates.length > 0 ? "No design passes so far." : "No design was tried yet."}
-        </h3>
+        <h3>{nothingYet(shown.candidates.length)}</h3>
         <p>{shown.candidates[0]?.reason}</p>
       </div>
     );
   }
   return <Front />;
+}
+
+function nothingYet(tried: number): string {
+  if (tried > 0) return "No design passes so far.";
+  return searching.value ? "The first designs are being tried." : "No design was tried yet.";
 }
 
 /** With three aims: which two are drawn. */

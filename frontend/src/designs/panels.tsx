@@ -2,6 +2,7 @@
 
 import { fixed } from "../geometry/format";
 import { Icon } from "../ui/icon";
+import { IconButton } from "../ui/icon-button";
 import { numberOf } from "./numbers";
 import { openDesign } from "./open-robot";
 import {
@@ -11,8 +12,10 @@ import {
   openFile,
   openSearch,
   pointAt,
+  remove,
   search,
   summaries,
+  title,
   trouble,
 } from "./state";
 import { withUnit, wordsOf } from "./words";
@@ -38,13 +41,19 @@ export function Searches() {
               aria-pressed={search.value?.id === each.id}
               onClick={() => void openSearch(each.id)}
             >
-              <b>{each.name || each.aims.map((a) => wordsOf(aimName(a)).title).join(", ")}</b>
+              <b>{title(each)}</b>
               <small>
                 {each.complete ? "" : `${each.tried} of `}
                 {each.designs} designs, {each.best} on the front
                 {STATES[each.state ?? ""]}
               </small>
             </button>
+            <IconButton
+              icon="trash"
+              label={`Delete ${title(each)}`}
+              action={() => remove(each)}
+              off={false}
+            />
           </li>
         ))}
       </ul>
@@ -120,7 +129,7 @@ export function InView() {
 /** The front in numbers, for reading and for the keyboard. */
 export function Best() {
   const shown = search.value;
-  if (!shown) return null;
+  if (!shown?.candidates.length) return null;
   const names = shown.design.aims.map(aimName);
   const passed = shown.candidates.filter((each) => each.passed).length;
   return (

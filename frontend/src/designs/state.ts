@@ -1,11 +1,13 @@
 /** Design searches of this service: which there are, the one that is shown, the design in view. */
 
-import { batch, computed, signal } from "@preact/signals";
-import { ApiError, call, callJson } from "../api/client";
+import { batch, computed, effect, signal } from "@preact/signals";
+import { ApiError, BASE, call, callJson } from "../api/client";
 import type { components } from "../api/schema";
 import { report } from "../state/connection";
-import { kept, readFlag } from "../state/kept";
+import { readFlag, kept as remembered } from "../state/kept";
+import { removal } from "../state/removal";
 import { documentOf, refusal, refused } from "./form";
+import { wordsOf } from "./words";
 
 type Schemas = components["schemas"];
 export type Summary = Schemas["DesignDocument"];
@@ -14,8 +16,8 @@ export type Candidate = Schemas["Candidate"];
 export type Aim = Schemas["Aim"];
 
 /** The Map shows fronts of design searches instead of cells. */
-export const showsDesigns = kept("designs", false, readFlag);
-export const summaries = signal<Summary[]>([]);
+export const showsDesigns = remembered("designs", false, readFlag);
+const listed = signal<Summary[]>([]);
 export const search = signal<Search | null>(null);
 export const trouble = signal<string | null>(null);
 /** The design under pointer or focus, by its number; the best of the first aim before that. */
@@ -24,6 +26,29 @@ const pointed = signal<number | null>(null);
 export const across = signal<readonly [number, number]>([0, 1]);
 
 export const aimName = (aim: Aim): string => aim.minimise ?? aim.maximise ?? "";
+
+/** What a list or a sentence calls a search. */
+export const title = (each: Summary) =>
+  each.name || each.aims.map((aim) => wordsOf(aimName(aim)).title).join(", ");
+
+const removed = removal<Summary>({
+  path: ({ id }) => path(id),
+  title: (each) => `The search “${title(each)}”`,
+  gone: () => void readList().catch(report),
+});
+export const summaries = computed(() =>
+  listed.value.filter((each) => !removed.doomed.value.has(each.id)),
+);
+
+/** A search with all that it has tried. */
+export function remove(each: Summary): void {
+  const shown = search.peek()?.id === each.id;
+  if (shown) {
+    wanted = "";
+    search.value = null;
+  }
+  removed.remove(each, () => shown && void openSearch(each.id));
+}
 
 /** Numbers of the best designs, by their first aim. */
 export const front = computed<number[]>(() => {
@@ -68,12 +93,16 @@ export async function openSearch(id: string): Promise<void> {
   await read(id);
 }
 
+const path = (id: string) => `designs/${encodeURIComponent(id)}`;
+
 async function read(id: string): Promise<void> {
   try {
-    const found = await callJson<Search>("GET", `designs/${encodeURIComponent(id)}`);
+    const found = await callJson<Search>("GET", path(id));
     if (wanted === id) show(found);
   } catch (error) {
-    say(error);
+    if (error instanceof ApiError && error.status === 404) {
+      trouble.value = "This service does not have that search. Run starts one as the form says.";
+    } else say(error);
   }
 }
 
@@ -127,7 +156,7 @@ export async function goOn(): Promise<void> {
 export async function pause(): Promise<void> {
   const id = search.peek()?.id;
   try {
-    if (id) await call("POST", `designs/${encodeURIComponent(id)}/cancel`);
+    if (id) await call("POST", `${path(id)}/cancel`);
     await readList();
   } catch (error) {
     say(error);
@@ -135,32 +164,58 @@ export async function pause(): Promise<void> {
 }
 
 async function readList(): Promise<void> {
-  summaries.value = await callJson<Summary[]>("GET", "designs");
+  listed.value = await callJson<Summary[]>("GET", "designs");
 }
 
+/** Between looks at the list [ms]. */
 const EVERY = 3000;
-/** While the shown search is at work. */
-const SOON = 1000;
 
-/** Read the list while the room is open, and the shown search while it is at work. */
+/** Read the list while the room is open, and follow the shown search while it is at work. */
 export function followSearches(): () => void {
   let timer: ReturnType<typeof setTimeout> | undefined;
   let left = false;
   const look = async () => {
     try {
       await readList();
-      const now = search.peek();
-      const news = summaries.peek().find((each) => each.id === now?.id);
-      if (!wanted && summaries.peek()[0]) await openSearch(summaries.peek()[0]!.id);
-      else if (now && news && news.tried !== now.candidates.length) await read(news.id);
+      if (wanted === null && summaries.peek()[0]) await openSearch(summaries.peek()[0]!.id);
+      catchUp();
     } catch (error) {
       report(error);
     }
-    if (!left) timer = setTimeout(look, searching.peek() ? SOON : EVERY);
+    if (!left) timer = setTimeout(look, EVERY);
   };
   void look();
+  const live = computed(() => (searching.value ? search.value!.id : null));
+  const stop = effect(() => {
+    if (!live.value) return;
+    const source = new EventSource(`${BASE}/${path(live.value)}/events`);
+    source.addEventListener("design", (event) => {
+      const news = JSON.parse(event.data) as Summary;
+      if (!atWork(news)) source.close();
+      listed.value = listed.peek().map((each) => (each.id === news.id ? news : each));
+      catchUp();
+    });
+    return () => source.close();
+  });
   return () => {
     left = true;
     clearTimeout(timer);
+    stop();
   };
+}
+
+let catching = false;
+
+/** Read the shown search again until it has all that its summary tells of. */
+async function catchUp(): Promise<void> {
+  if (catching) return;
+  catching = true;
+  for (let before = -1; ; ) {
+    const tried = search.peek()?.candidates.length ?? 0;
+    const news = shownState.peek();
+    if (!news || news.tried === tried || tried === before) break;
+    before = tried;
+    await read(news.id);
+  }
+  catching = false;
 }

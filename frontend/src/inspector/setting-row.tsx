@@ -1,15 +1,19 @@
-/** A row for one setting, as its schema asks: slider, choice, switch, or a number for each wheel. */
+/** What a setting is set by, as its schema asks: slider, choice, switch, or several numbers. */
 
 import type { SettingSchema } from "../api/types";
 import { setting } from "../geometry/format";
 import { NumberField } from "../ui/number-field";
 import { Switch } from "../ui/switch";
+import { hasPlace, itemsOf, LoadRows, SpreadRows } from "./several-rows";
 import { Reset, type SettingProps, SliderRow } from "./slider";
 
 export function SettingRow(props: SettingProps) {
   const { schema } = props;
   const places = placesOf(schema);
   if (places) return <WheelsRow {...props} places={places} />;
+  const item = itemsOf(schema);
+  if (item) return <SpreadRows {...props} item={item} />;
+  if (hasPlace(schema)) return <LoadRows {...props} />;
   if (schema.enum) return <ChoiceRow {...props} />;
   if (schema.type === "boolean") return <SwitchRow {...props} />;
   return <SliderRow {...props} />;

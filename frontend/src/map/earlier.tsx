@@ -2,9 +2,7 @@
 
 import { Icon } from "../ui/icon";
 import { Menu, MenuItem } from "../ui/menu";
-import { axisKind } from "./quantities";
-import { earlier, openStudy, readList } from "./state";
-import type { StudyState } from "./studies";
+import { earlier, openStudy, readList, title } from "./state";
 import { count } from "./work";
 
 export function Earlier() {
@@ -28,7 +26,7 @@ export function Earlier() {
               }}
             >
               <span class="two">
-                {each.name || title(each)}
+                {title(each)}
                 <small>
                   {count(each.done)} cells, {each.state === "cancelled" ? "paused" : each.state},{" "}
                   {new Date(each.created * 1000).toLocaleString("en-GB", {
@@ -44,6 +42,3 @@ export function Earlier() {
     </div>
   );
 }
-
-const title = (each: StudyState) =>
-  each.axes.map((axis) => axisKind(axis.name).title.toLowerCase()).join(" × ");

@@ -103,7 +103,8 @@ export function ground(now: Form): string {
   const group = axesOf(now)
     .map((name) => axisKind(name).group)
     .find(Boolean);
-  if (group === "stairs") return asksSteps(now) ? `${now.steps} steps up` : "stairs up";
+  if (group === "stairs")
+    return asksSteps(now) ? `${now.steps} step${now.steps === 1 ? "" : "s"} up` : "stairs up";
   if (group) return `one ${group}`;
   return drawing.value.name;
 }

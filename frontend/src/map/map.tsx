@@ -1,10 +1,12 @@
 /** The workspace Map: how far can it go? Axes and progress, the map, codes and a kept cell. */
 
 import { useEffect } from "preact/hooks";
+import { followLinks } from "../designs/address";
 import { showsDesigns } from "../designs/state";
 import { fixed } from "../geometry/format";
 import { designs } from "../parts";
 import { Icon } from "../ui/icon";
+import { IconButton } from "../ui/icon-button";
 import { Show } from "../ui/part";
 import { frictionAt } from "./cell";
 import { CellPanel } from "./cell-panel";
@@ -12,12 +14,13 @@ import { Earlier } from "./earlier";
 import { ExportMenu } from "./export";
 import { MapView } from "./map-view";
 import { Slices } from "./slices";
-import { asked, begin, missing, pairView, refusal, robotAxis, study } from "./state";
+import { asked, begin, missing, pairView, refusal, remove, robotAxis, study } from "./state";
 import { StudyPanel } from "./study-panel";
 import { MapTable } from "./table";
 import { asTable } from "./view";
 
 export function MapRoom() {
+  useEffect(followLinks, []);
   return showsDesigns.value ? <Show part={designs} /> : <Cells />;
 }
 
@@ -28,7 +31,7 @@ function Cells() {
       <StudyPanel />
       <section class="map-middle" aria-label="Map">
         <header class="ph">
-          <h2>
+          <h2 title={subtitle() || undefined}>
             Capability map <small>{subtitle()}</small>
           </h2>
           {robotAxis.value && <PairView />}
@@ -47,6 +50,9 @@ function Cells() {
           )}
           <Earlier />
           {study.value && <ExportMenu />}
+          {study.value && (
+            <IconButton icon="trash" label="Delete this map" action={remove} off={false} />
+          )}
         </header>
         <Slices />
         {refusal.value && (

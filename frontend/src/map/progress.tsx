@@ -26,7 +26,9 @@ export function Progress() {
               By an earlier version of the planner. <b>Run</b> computes it anew.
             </p>
           )}
-          {state.error && <p class="error">{String(state.error.detail ?? state.error.title)}</p>}
+          {state.error && state.state === "failed" && (
+            <p class="error">{String(state.error.detail ?? state.error.title)}</p>
+          )}
         </>
       )}
     </section>

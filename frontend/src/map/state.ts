@@ -1,15 +1,15 @@
 /** The study that the Map shows: asked, followed as its cells come, cancelled, opened again. */
 
-import { batch, computed, effect, signal } from "@preact/signals";
+import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { ApiError } from "../api/client";
 import { report } from "../state/connection";
-import { decode, encode, kept } from "../state/share";
+import { removal } from "../state/removal";
+import { decode, encode, given, kept } from "../state/share";
 import { Cube, type Field, fieldOf, type Layout, layoutOf } from "./cube";
 import { documentOf, type Form, form, formOf } from "./form";
-import { LEAST } from "./quantities";
+import { axisKind, LEAST } from "./quantities";
 import {
   cancelStudy,
-  deleteStudy,
   followStudy,
   getStudy,
   getStudyDocument,
@@ -25,7 +25,20 @@ export const asked = signal<{ robot: string; friction: number | null } | null>(n
 /** The packages that studies need are not there: what the service says about it. */
 export const missing = signal<string | null>(null);
 export const refusal = signal<string | null>(null);
-export const earlier = signal<StudyState[]>([]);
+const listed = signal<StudyState[]>([]);
+
+/** What a list or a sentence calls a study. */
+export const title = (each: StudyState) =>
+  each.name || each.axes.map((axis) => axisKind(axis.name).title.toLowerCase()).join(" × ");
+
+const removed = removal<StudyState>({
+  path: ({ id }) => `studies/${encodeURIComponent(id)}`,
+  title: (each) => `The map “${title(each)}”`,
+  gone: () => void readList(),
+});
+export const earlier = computed(() =>
+  listed.value.filter((each) => !removed.doomed.value.has(each.id)),
+);
 
 /** What cells are coloured by. Friction is worth it once the least that does is searched for. */
 export const quantity = signal("margin_com");
@@ -169,21 +182,19 @@ export async function resume(): Promise<void> {
   }
 }
 
-export async function remove(id: string): Promise<void> {
-  if (study.peek()?.id === id) close();
-  await deleteStudy(id).catch(say);
-  await readList();
-}
-
-export function close(): void {
+/** The shown study with all its cells. */
+export function remove(): void {
+  const shown = study.peek();
+  if (!shown) return;
   leave();
   cube = null;
   study.value = null;
+  removed.remove(shown, () => void openStudy(shown.id));
 }
 
 export async function readList(): Promise<void> {
   try {
-    earlier.value = await listStudies();
+    listed.value = await listStudies();
   } catch (error) {
     report(error);
   }
@@ -196,15 +207,16 @@ interface Kept {
   s?: Record<string, number>;
 }
 
-/** As the page was opened with; the address is rewritten before the room is. */
-const inAddress = new URLSearchParams(location.hash.slice(1)).get("m");
 let begun = false;
 
 /** The first time that the room is open: what the address names, and from now on keep it there. */
 export function begin(): void {
   if (begun) return;
   begun = true;
-  if (inAddress) restore(inAddress);
+  effect(() => {
+    const text = given.value.get("m");
+    if (text && text !== kept.peek().m) untracked(() => restore(text));
+  });
   void readList();
   effect(() => {
     const state: Kept = { f: form.value, q: quantity.value };

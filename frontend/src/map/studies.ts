@@ -1,6 +1,6 @@
 /** Studies over REST: what the service says of them, and the events of one that is at work. */
 
-import { BASE, callJson, callService } from "../api/client";
+import { BASE, callJson } from "../api/client";
 import type { components } from "../api/schema";
 
 type Schemas = components["schemas"];
@@ -33,7 +33,6 @@ export const getStudy = (id: string) => callJson<StudyState>("GET", path(id));
 export const getStudyDocument = (id: string) =>
   callJson<StudyDocument>("GET", `${path(id)}/document`);
 export const cancelStudy = (id: string) => callJson<StudyState>("POST", `${path(id)}/cancel`);
-export const deleteStudy = (id: string) => callService("DELETE", path(id));
 export const getCell = (id: string, cell: number) =>
   callJson<CellAnswer>("GET", `${path(id)}/cells/${cell}`);
 export const studyExport = (id: string, format: string) =>

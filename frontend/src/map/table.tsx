@@ -13,6 +13,12 @@ function told(value: number, digits: number): string {
   return Number.isFinite(value) ? fixed(value, digits) : `only ${only}`;
 }
 
+/** A quantity or an axis with its unit, if it has one; within a sentence if `inside`. */
+function inUnit({ title, unit }: { title: string; unit: string }, inside = false): string {
+  const name = inside ? title.toLowerCase() : title;
+  return unit && unit !== "μ" ? `${name} in ${unit}` : name;
+}
+
 export function MapTable() {
   const axes = shownAxes.value;
   const kind = quantityOf(quantity.value);
@@ -26,8 +32,7 @@ export function MapTable() {
         <table key={title ?? ""}>
           <caption>
             {title ? `${title}: ` : ""}
-            {kind.title}, {kind.unit}; {y.kind.title.toLowerCase()} {y.kind.unit} down,{" "}
-            {x.kind.title.toLowerCase()} {x.kind.unit} across
+            {inUnit(kind)}; down {inUnit(y.kind, true)}, across {inUnit(x.kind, true)}
           </caption>
           <thead>
             <tr>

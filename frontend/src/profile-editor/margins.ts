@@ -23,7 +23,13 @@ interface MarginKind {
   read: (margin: number, plan: Plan) => string;
 }
 
-const inMillimetres = (metres: number) => fixed(metres * 1000, 0);
+/** Documents have this, or less, where nothing holds the robot and there is no such margin. */
+const NONE = -1e3;
+
+/** A margin as it can be told: not a number where there is none. */
+export const stated = (margin: number) => (margin <= NONE ? Number.NaN : margin);
+
+const inMillimetres = (metres: number) => fixed(stated(metres) * 1000, 0);
 
 export const MARGINS: readonly MarginKind[] = [
   {
@@ -54,7 +60,7 @@ export const MARGINS: readonly MarginKind[] = [
     extreme: "most",
     unit: "",
     hint: "Least friction coefficient at which the wheels do not slip",
-    read: (margin, plan) => fixed(plan.friction - margin, 2),
+    read: (margin, plan) => fixed(plan.friction - stated(margin), 2),
   },
   {
     name: "torque",
@@ -64,7 +70,7 @@ export const MARGINS: readonly MarginKind[] = [
     extreme: "least",
     unit: "Nm",
     hint: "From the largest static joint torque to the motors' limit",
-    read: (margin) => fixed(margin, 1),
+    read: (margin) => fixed(stated(margin), 1),
   },
 ];
 

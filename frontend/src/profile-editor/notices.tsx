@@ -10,10 +10,10 @@ import { slow } from "../state/waiting";
 import { Icon } from "../ui/icon";
 import type { Rect } from "./place";
 import { ribbon } from "./speed-ribbon";
-import { canvasBox, size } from "./viewport";
+import { canvasBox, LEGEND_FROM, size } from "./viewport";
 
 export function Legend() {
-  if (isEmpty.value || size.value.width < 440) return null;
+  if (isEmpty.value || size.value.width < LEGEND_FROM) return null;
   return (
     <div class="lg" aria-hidden="true">
       <span class="front">

@@ -59,7 +59,10 @@ function places([x, y]: Vec2, { width, height }: Size, gap: Vec2): Rect[] {
   }));
 }
 
-/** The first place that covers no corner and none of `taken`; not free where there is no such. */
+/**
+ * The first place that covers no corner and none of `taken`. Where there is no such it is not free,
+ * and covers corners rather than what is taken.
+ */
 export function placeNear(
   spot: Vec2,
   size: Size,
@@ -69,6 +72,8 @@ export function placeNear(
   const { px, py } = projection.value;
   const held = drawing.value.points.map(([x, z]) => around([px(x), py(z)], GRIP));
   const wanted = places(spot, size, gap);
-  const free = wanted.find((place) => ![...held, ...taken].some((rect) => overlap(place, rect)));
-  return { ...(free ?? wanted[0]!), free: free !== undefined };
+  const clearOf = (rects: readonly Rect[]) =>
+    wanted.find((place) => !rects.some((rect) => overlap(place, rect)));
+  const free = clearOf([...held, ...taken]);
+  return { ...(free ?? clearOf(taken) ?? wanted[0]!), free: free !== undefined };
 }

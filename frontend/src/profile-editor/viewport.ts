@@ -73,6 +73,10 @@ export function zoomAt(x: number, y: number, factor: number): void {
 const SIDE = 16;
 const BELOW = 48;
 
+/** A narrower canvas has no legend; above others it lies over the numbers of the poses [px]. */
+export const LEGEND_FROM = 440;
+const ABOVE = 20;
+
 /** What a robot needs before the first and after the last corner, and above the ground [m]. */
 function roomOf(): { before: number; after: number; above: number } {
   const shape = robot.peek();
@@ -91,7 +95,8 @@ function roomOf(): { before: number; after: number; above: number } {
 export function fit(points: Points): void {
   const box = canvasBox.peek();
   const width = box.right - box.left - 2 * SIDE;
-  const height = box.bottom - box.top - BELOW;
+  const above = size.peek().width < LEGEND_FROM ? 0 : ABOVE;
+  const height = box.bottom - box.top - BELOW - above;
   if (width <= 0) return;
   moved.value = false;
   const needs = roomOf();
@@ -104,11 +109,11 @@ export function fit(points: Points): void {
   const scale = Math.min(MOST, Math.max(LEAST, Math.min(width / (x1 - x0), height / tall)));
   fitted.value = scale;
   const spare = width / scale - (x1 - x0);
-  const above = Math.max(0, height / scale - tall);
+  const sky = Math.max(0, height / scale - tall);
   view.value = {
     scale,
     x: x0 - SIDE / scale - spare * 0.4,
-    z: all.z[0] - BELOW / scale - above * 0.3,
+    z: all.z[0] - BELOW / scale - sky * 0.3,
   };
 }
 

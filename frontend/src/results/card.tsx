@@ -2,9 +2,18 @@
 
 import { signal } from "@preact/signals";
 import { useLayoutEffect, useRef } from "preact/hooks";
-import type { Rollout } from "../api/types";
+import type { Plan, Rollout } from "../api/types";
 import { fixed } from "../geometry/format";
-import { failureB, progress, runB, running, runOf, runPlan, runStale } from "../state/rollouts";
+import {
+  failureB,
+  progress,
+  runB,
+  running,
+  runOf,
+  runPlan,
+  runPlanB,
+  runStale,
+} from "../state/rollouts";
 import { compare, robot } from "../state/setup";
 import { Icon } from "../ui/icon";
 import { type Figure, figures, OUTCOMES, verdict } from "./figures";
@@ -60,10 +69,13 @@ function useRoom() {
 export function Card({ result }: { result: Rollout }) {
   const card = useRoom();
   const other = compare.value ? runB.value : null;
-  const all = figures(other ? 2 : 1, robot.value?.limits);
+  const rows = (apart: boolean) => figures(other ? 2 : 1, robot.value?.limits, apart);
   const sentences = result.outcome !== "success" || runPlan.value?.certificate?.motion;
-  const needed = AROUND + (sentences ? SENTENCES : 0) + (all.length + (other ? 1 : 0)) * ROW;
+  const heads = other ? 1 : 0;
+  const needed = AROUND + (sentences ? SENTENCES : 0) + (rows(Boolean(other)).length + heads) * ROW;
   const low = needed > room.value;
+  // Two columns are too narrow for what stands beside a title, and have room for rows.
+  const all = rows(low || Boolean(other));
   const half = Math.ceil(all.length / 2);
   const parts = low ? [all.slice(0, half), all.slice(half)] : [all];
   const kind = `${other ? "two" : "one"} ${low ? "low" : ""}`;
@@ -87,8 +99,8 @@ interface TableProps {
 }
 
 function Table({ figures, result, other }: TableProps) {
-  const cell = (figure: Figure, r: Rollout, cls: string) => (
-    <td class={figure.bad?.(r.metrics, r) ? `${cls} x` : cls}>{figure.of(r.metrics, r)}</td>
+  const cell = (figure: Figure, r: Rollout, plan: Plan | null, cls: string) => (
+    <td class={figure.bad?.(r.metrics, r) ? `${cls} x` : cls}>{figure.of(r.metrics, r, plan)}</td>
   );
   return (
     <table>
@@ -108,10 +120,11 @@ function Table({ figures, result, other }: TableProps) {
           <tr key={`${figure.title} ${figure.note}`} title={figure.hint}>
             <th scope="row">
               {figure.title} {figure.note && <small>{figure.note}</small>}
+              {figure.planned && <small>plan {figure.planned(runPlan.value)}</small>}
               {figure.limit && <small class="limit-note">{figure.limit}</small>}
             </th>
-            {cell(figure, result, "a")}
-            {other && cell(figure, other, "b")}
+            {cell(figure, result, runPlan.value, "a")}
+            {other && cell(figure, other, runPlanB.value, "b")}
           </tr>
         ))}
       </tbody>

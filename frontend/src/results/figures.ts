@@ -1,6 +1,6 @@
 /** The figures of a rollout: name, unit, value, and whether it is a bad one. */
 
-import { hasFailed, type Metrics, type Outcome, type Rollout } from "../api/types";
+import { hasFailed, type Metrics, type Outcome, type Plan, type Rollout } from "../api/types";
 import { degrees, fixed, maybe } from "../geometry/format";
 import { legLimits, type RobotShape } from "../geometry/robot";
 
@@ -24,8 +24,11 @@ export interface Figure {
   note?: string;
   /** The most it can be; told where there is room. */
   limit?: string;
+  /** What the plan says of it, beside the title. */
+  planned?: (plan: Plan | null) => string;
   hint?: string;
-  of: (m: Metrics, r: Rollout) => string;
+  /** The plan is the one that was run; null where it is gone. */
+  of: (m: Metrics, r: Rollout, plan: Plan | null) => string;
   bad?: (m: Metrics, r: Rollout) => boolean;
 }
 
@@ -46,8 +49,33 @@ function atLimit({ series }: Rollout, [front, rear]: Limits): boolean {
   );
 }
 
-/** Of one rollout, or of several to compare: only then their outcomes are among the figures. */
-export function figures(count: number, limits: Limits | undefined): Figure[] {
+/** What a plan states of its motors' work. */
+export const PLANNED: readonly {
+  title: string;
+  /** Where another figure has that title and there is little room. */
+  short: string;
+  hint: string;
+  of: (plan: Plan | null) => string;
+}[] = [
+  {
+    title: "Energy",
+    short: "Energy",
+    hint: "Work of the motors’ static torques along the plan, without losses",
+    of: (plan) => maybe(plan?.energy, 0, " J"),
+  },
+  {
+    title: "Cost of transport",
+    short: "CoT",
+    hint: "Cost of transport: that work per weight and way of the plan, without unit",
+    of: (plan) => maybe(plan?.cost_of_transport, 2),
+  },
+];
+
+/**
+ * Of one rollout, or of several to compare: only then their outcomes are among the figures.
+ * What was planned has rows of its own where it stands `apart`, else it stands beside a title.
+ */
+export function figures(count: number, limits: Limits | undefined, apart: boolean): Figure[] {
   const outcome: Figure = {
     title: "Outcome",
     of: (_m, r) => OUTCOMES[r.outcome],
@@ -88,12 +116,24 @@ export function figures(count: number, limits: Limits | undefined): Figure[] {
       of: (m) => `${fixed(m.torque_peak, 1)} Nm`,
       bad: (_m, r) => limits !== undefined && atLimit(r, limits),
     },
-    { title: "Energy", of: (m) => `${fixed(m.energy, 0)} J` },
+    {
+      title: "Energy",
+      hint: "Work that the motors did or took up in the rollout",
+      ...(apart ? {} : { planned: PLANNED[0]!.of }),
+      of: (m) => `${fixed(m.energy, 0)} J`,
+    },
     {
       title: "Cost of transport",
-      hint: "Energy per weight and distance, without unit",
+      hint: "That work per weight and distance, without unit",
+      ...(apart ? {} : { planned: PLANNED[1]!.of }),
       of: (m) => maybe(m.cost_of_transport, 2),
     },
+    ...(apart ? PLANNED : []).map(({ short, hint, of }) => ({
+      title: short,
+      note: "planned",
+      hint,
+      of: (_m: Metrics, _r: Rollout, plan: Plan | null) => of(plan),
+    })),
     { title: "Link contacts", of: (m) => String(m.link_contacts), bad: (m) => m.link_contacts > 0 },
   ];
 }

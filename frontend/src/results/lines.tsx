@@ -1,8 +1,8 @@
 /** On narrow pages the results are lines of figures: those of A, those of B, and the sentences. */
 
-import { hasFailed, type Rollout } from "../api/types";
-import { degrees, fixed } from "../geometry/format";
-import { runB, runStale } from "../state/rollouts";
+import { hasFailed, type Plan, type Rollout } from "../api/types";
+import { degrees, fixed, maybe } from "../geometry/format";
+import { runB, runPlan, runPlanB, runStale } from "../state/rollouts";
 import { compare } from "../state/setup";
 import { Explanation, Heading } from "./card";
 import { OUTCOMES } from "./figures";
@@ -13,12 +13,12 @@ export function Lines({ result }: { result: Rollout }) {
     <div class={runStale.value ? "lines older" : "lines"}>
       <div>
         <Heading result={result} />
-        <Figures of={result} />
+        <Figures of={result} plan={runPlan.value} />
       </div>
       {other && (
         <div>
           <b class={hasFailed(other) ? "x" : ""}>B: {OUTCOMES[other.outcome]}</b>
-          <Figures of={other} />
+          <Figures of={other} plan={runPlanB.value} />
         </div>
       )}
       <Explanation result={result} />
@@ -26,7 +26,7 @@ export function Lines({ result }: { result: Rollout }) {
   );
 }
 
-function Figures({ of }: { of: Rollout }) {
+function Figures({ of, plan }: { of: Rollout; plan: Plan | null }) {
   const m = of.metrics;
   return (
     <>
@@ -37,11 +37,17 @@ function Figures({ of }: { of: Rollout }) {
         pitch error {fixed(degrees(m.pitch_error_max), 1)}° max,{" "}
         {fixed(degrees(m.pitch_error_rms), 1)}° rms
       </span>
-      <span>torque {fixed(m.torque_peak, 1)} Nm</span>
+      <span>peak torque {fixed(m.torque_peak, 1)} Nm</span>
       <span>{m.link_contacts} link contacts</span>
       <span>mean speed {fixed(m.speed_mean, 2)} m/s</span>
       {m.speed_stairs && <span>on the stairs {fixed(m.speed_stairs, 2)} m/s</span>}
-      {m.cost_of_transport && <span>cost of transport {fixed(m.cost_of_transport, 2)}</span>}
+      <span>
+        energy {fixed(m.energy, 0)} J, planned {maybe(plan?.energy, 0, " J")}
+      </span>
+      <span>
+        cost of transport {maybe(m.cost_of_transport, 2)}, planned{" "}
+        {maybe(plan?.cost_of_transport, 2)}
+      </span>
     </>
   );
 }

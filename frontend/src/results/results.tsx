@@ -1,5 +1,6 @@
 /** What came of the rollout, or why there is none. */
 
+import type { Plan } from "../api/types";
 import { fixed } from "../geometry/format";
 import { live, livePlan } from "../state/live";
 import { plan } from "../state/planning";
@@ -7,6 +8,7 @@ import { activity, eta, failure, progress, run, running } from "../state/rollout
 import { isNarrow } from "../state/view";
 import { Icon } from "../ui/icon";
 import { Card } from "./card";
+import { PLANNED } from "./figures";
 import { Lines } from "./lines";
 
 export function Results() {
@@ -48,7 +50,28 @@ function Content() {
           ? "Run the rollout to see outcome, pitch error, peak torque and speed. The plots show the plan."
           : "Outcome, pitch error, peak torque and speed appear here after a rollout."}
       </p>
+      {plan.value && !isNarrow.value && <Planned shown={plan.value} />}
     </>
+  );
+}
+
+/** What the plan itself says of its cost; margins have their own place. */
+function Planned({ shown }: { shown: Plan }) {
+  return (
+    <div class="card">
+      <table aria-label="The plan">
+        <tbody>
+          {PLANNED.map(({ title, hint, of }) => (
+            <tr key={title} title={hint}>
+              <th scope="row">
+                {title} <small>planned</small>
+              </th>
+              <td class="a">{of(shown)}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </div>
   );
 }
 

@@ -1,7 +1,7 @@
 /** The dimension lines of the side view: what each measures, and where a hand pulls it. */
 
 import type { RobotDocument, Vec2 } from "../api/types";
-import type { Skeleton } from "../geometry/robot";
+import { distance, type Skeleton } from "../geometry/robot";
 import type { Projection } from "../profile-editor/viewport";
 
 export interface Dimension {
@@ -23,12 +23,18 @@ export interface Dimension {
 /** How far behind the trunk its height is drawn: behind the hip's arc [px]. */
 const TRUNK_HEIGHT = 96;
 
+/** How far behind the robot its standing height is drawn [px]. */
+const HEIGHT = 34;
+
 /** How far beside a link its length is drawn [px]. */
 const LINK = 62;
 
 /** With less room beside the middle names are short, and the trunk's height stands in the table
  * alone [px]. */
 const NARROW = 260;
+
+/** Half the standing height's label, with air round it [px]. */
+const STANDING: Vec2 = [51, 13];
 
 const unit = (a: Vec2, b: Vec2): Vec2 => {
   const d: Vec2 = [b[0] - a[0], b[1] - a[1]];
@@ -118,12 +124,52 @@ export function dimensions(file: RobotDocument, bones: Skeleton, to: Projection)
       "standing",
       [left, ground],
       [left, to.py(file.nominal_height)],
-      [-34, 0],
+      [-HEIGHT, 0],
       [0, -1],
       1,
       // Beside the wheel, where a narrow view has room for it.
-      narrow ? 0.16 : 0.4,
+      clearShare(
+        narrow ? 0.16 : 0.4,
+        Math.max(STANDING[0], left - HEIGHT),
+        [ground, to.py(file.nominal_height)],
+        bones,
+        wheel,
+        to,
+      ),
     ),
   ];
   return narrow ? out.filter((d) => d.id !== "trunk.height") : out;
+}
+
+/** The share of an upright line nearest to `wanted` at which a label lies on no link or wheel. */
+function clearShare(
+  wanted: number,
+  middle: number,
+  [low, high]: [number, number],
+  bones: Skeleton,
+  wheel: number,
+  to: Projection,
+): number {
+  const px = (p: Vec2): Vec2 => [to.px(p[0]), to.py(p[1])];
+  const links = bones.bars.flat().map((bar) => ({
+    a: px(bar.from),
+    b: px(bar.to),
+    radius: bar.radius * to.scale,
+  }));
+  const wheels = bones.legs.map((joints) => {
+    const hub = px(joints[2]!);
+    return { a: hub, b: hub, radius: wheel };
+  });
+  const free = (share: number) => {
+    const y = low + (high - low) * share;
+    const around = [-1, -0.5, 0, 0.5, 1].flatMap((k) =>
+      [-1, 1].map((side): Vec2 => [middle + k * STANDING[0], y + side * STANDING[1]]),
+    );
+    return around.every((p) =>
+      [...links, ...wheels].every(({ a, b, radius }) => distance(p, a, b) > radius),
+    );
+  };
+  const all = Array.from({ length: 46 }, (_, k) => 0.1 + k * 0.02);
+  const nearest = [wanted, ...all.sort((p, q) => Math.abs(p - wanted) - Math.abs(q - wanted))];
+  return nearest.find(free) ?? wanted;
 }

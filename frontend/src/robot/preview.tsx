@@ -3,11 +3,11 @@
 import { signal } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import type { Plan, RobotDocument } from "../api/types";
-import { fixed, took } from "../geometry/format";
+import { fixed, maybe, took } from "../geometry/format";
 import { planFrame, poseTimes } from "../geometry/frames";
 import { robotShape, skeleton } from "../geometry/robot";
 import { Figure } from "../profile-editor/figure";
-import { worst } from "../profile-editor/margins";
+import { stated, worst } from "../profile-editor/margins";
 import { drawing } from "../state/drawing";
 import { follow } from "../state/planner";
 import { plan, preview, refusal, stale } from "../state/planning";
@@ -144,9 +144,9 @@ function Facts({ of, refused }: { of: Plan | null; refused: string | null }) {
       </p>
     );
   }
-  const margin = (name: "com" | "clearance") => fixed(1000 * worst(of.poses, name), 0);
+  const margin = (name: "com" | "clearance") => fixed(1000 * stated(worst(of.poses, name)), 0);
   return (
-    <p class="facts-line">
+    <p class="facts-line all">
       <span>
         CoM <b>{margin("com")}</b> mm
       </span>
@@ -154,10 +154,16 @@ function Facts({ of, refused }: { of: Plan | null; refused: string | null }) {
         clearance <b>{margin("clearance")}</b> mm
       </span>
       <span>
-        µ needed <b>{fixed(of.friction - worst(of.poses, "friction"), 2)}</b>
+        µ needed <b>{fixed(of.friction - stated(worst(of.poses, "friction")), 2)}</b>
       </span>
       <span>
         time <b>{fixed(of.timing.total, 1)}</b> s
+      </span>
+      <span title="Work of the motors’ static torques along the plan, without losses">
+        energy <b>{maybe(of.energy, 0)}</b> J
+      </span>
+      <span title="That work per weight and way, without unit">
+        cost of transport <b>{maybe(of.cost_of_transport, 2)}</b>
       </span>
       {of.knees && (
         <span>

@@ -3,7 +3,7 @@
 import type { Entry } from "../api/stored";
 import type { SettingSchema, SettingValue, SettingValues } from "../api/types";
 import { fixed, setting } from "../geometry/format";
-import { withUnit } from "../geometry/units";
+import { screenUnit, withUnit } from "../geometry/units";
 import { disturbanceSchema, settings } from "../state/setup";
 
 const METHODS: Record<string, string> = {
@@ -11,12 +11,21 @@ const METHODS: Record<string, string> = {
   nominal: "no pose optimisation",
 };
 
-/** A number for each wheel, a record field by field, and the rest as it is. */
+const PLACE = { title: "Place", unit: "m", maximum: 0.2 };
+
+/** Numbers of a list with one unit, a record field by field, and the rest as it is. */
 function words(value: SettingValue, schema: SettingSchema | undefined, signed: boolean): string {
   if (typeof value === "number") return withUnit(value, schema, signed);
   if (typeof value === "boolean") return value ? "on" : "off";
   if (typeof value === "string") return value;
-  if (Array.isArray(value)) return value.map((each) => setting(each)).join(", ");
+  if (Array.isArray(value)) {
+    const { unit, factor } = screenUnit(schema);
+    return `${value.map((each) => setting(each * factor)).join(", ")} ${unit}`.trim();
+  }
+  if ("mass" in value) {
+    const { mass, place } = value as SettingValues;
+    return `${words(mass!, schema, signed)} at ${words(place ?? "the top", PLACE, signed)}`;
+  }
   return group(value as SettingValues, schema?.properties, signed).join(", ");
 }
 

@@ -2,6 +2,7 @@
 
 import type { Entry } from "../api/stored";
 import { degrees, fixed } from "../geometry/format";
+import { stated } from "../profile-editor/margins";
 import { chips } from "./chips";
 import { letter, styleOf } from "./pins";
 import { outcome } from "./row";
@@ -28,9 +29,17 @@ const FIGURES: readonly Figure[] = [
   { name: "Mean speed", unit: "m/s", digits: 3, of: (e) => e.summary.metrics?.speed_mean },
   { name: "Energy", unit: "J", digits: 0, of: (e) => e.summary.metrics?.energy },
   { name: "Cost of transport", unit: "", digits: 2, of: (e) => e.summary.cost_of_transport },
+  { name: "Energy, planned", unit: "J", digits: 0, of: (e) => e.summary.planned_energy },
+  {
+    name: "Cost of transport, planned",
+    unit: "",
+    digits: 2,
+    of: (e) => e.summary.planned_cost_of_transport,
+  },
 ];
 
-const mm = (metres: number | undefined) => (metres === undefined ? undefined : metres * 1000);
+const mm = (metres: number | undefined) =>
+  metres === undefined ? undefined : stated(metres) * 1000;
 const known = (value: number | null | undefined): value is number =>
   value !== null && value !== undefined && Number.isFinite(value);
 
@@ -66,7 +75,9 @@ export function Comparison({ entries }: { entries: readonly Entry[] }) {
               <th scope="row">{figure.name}</th>
               {entries.map((entry) => {
                 const value = figure.of(entry);
-                const text = known(value) ? `${fixed(value, figure.digits)} ${figure.unit}` : "–";
+                const { unit, digits } = figure;
+                const ending = unit === "°" ? unit : unit && ` ${unit}`;
+                const text = known(value) ? fixed(value, digits) + ending : "–";
                 return <td key={entry.id}>{text}</td>;
               })}
             </tr>

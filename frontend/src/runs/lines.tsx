@@ -74,7 +74,12 @@ export function Lines({ title, unit, xUnit, lines }: Props) {
             <polyline
               key={line.place}
               points={line.x
-                .map((x, i) => `${((x / end) * 100).toFixed(2)},${up(line.y[i]!).toFixed(2)}`)
+                .flatMap((x, i) => {
+                  const y = up(line.y[i]!);
+                  return Number.isFinite(y)
+                    ? [`${((x / end) * 100).toFixed(2)},${y.toFixed(2)}`]
+                    : [];
+                })
                 .join(" ")}
               style={pen(line.place)}
             />

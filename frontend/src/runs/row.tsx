@@ -1,9 +1,9 @@
 /** A row of the list: pin, picture, what differs, outcome, margins, figures, and what to do. */
 
 import { useRef } from "preact/hooks";
-import type { Entry } from "../api/stored";
-import { fixed } from "../geometry/format";
-import { CLASS_NAMES, MARGINS, marginClass } from "../profile-editor/margins";
+import type { Entry, Summary } from "../api/stored";
+import { fixed, maybe } from "../geometry/format";
+import { CLASS_NAMES, MARGINS, marginClass, stated } from "../profile-editor/margins";
 import { OUTCOMES, verdict } from "../results/figures";
 import { Icon } from "../ui/icon";
 import { Menu } from "../ui/menu";
@@ -45,11 +45,26 @@ export function Row({ entry }: { entry: Entry }) {
       </span>
       <MarginCells entry={entry} />
       <span class="run-num">{summary.duration ? `${fixed(summary.duration, 1)} s` : "–"}</span>
-      <span class="run-num cot" title="Cost of transport: energy per weight and way, no unit">
-        {summary.cost_of_transport ? fixed(summary.cost_of_transport, 2) : "–"}
-      </span>
+      <Transport summary={summary} />
       <RowMenu entry={entry} />
     </li>
+  );
+}
+
+/** What driving took, of a rollout as it was, else as it is planned. */
+function Transport({ summary: s }: { summary: Summary }) {
+  const planned = s.metrics === undefined;
+  const energy = planned ? s.planned_energy : s.metrics?.energy;
+  const cost = planned ? s.planned_cost_of_transport : s.cost_of_transport;
+  const whose = planned ? "Planned energy" : "Energy";
+  return (
+    <span
+      class="run-num cot"
+      title={`${whose}, and cost of transport: energy per weight and way, without unit`}
+    >
+      {maybe(energy, 0, " J")}
+      <small>{maybe(cost, 2)}</small>
+    </span>
   );
 }
 
@@ -123,7 +138,7 @@ function MarginCells({ entry }: { entry: Entry }) {
         ))}
       </span>
       <small>
-        {fixed(margins.clearance * 1000, 0)}, {fixed(margins.com * 1000, 0)} mm
+        {fixed(stated(margins.clearance) * 1000, 0)}, {fixed(stated(margins.com) * 1000, 0)} mm
       </small>
     </span>
   );

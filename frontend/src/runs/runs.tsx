@@ -106,7 +106,7 @@ function List() {
         <span>outcome</span>
         <span>clearance, CoM</span>
         <span class="run-num">time</span>
-        <span class="run-num cot">CoT</span>
+        <span class="run-num cot">energy, CoT</span>
         <span />
       </div>
       <ul>

@@ -1,15 +1,9 @@
 /** The stored results on screen: which are listed, which are pinned, and what changes them. */
 
 import { batch, computed, effect, signal } from "@preact/signals";
-import {
-  deleteStored,
-  type Entry,
-  type EntryChanges,
-  type Kind,
-  listStored,
-  patchStored,
-} from "../api/stored";
+import { type Entry, type EntryChanges, type Kind, listStored, patchStored } from "../api/stored";
 import { report } from "../state/connection";
+import { removal } from "../state/removal";
 import { toast } from "../state/toast";
 
 export type Filter = "all" | Kind;
@@ -17,8 +11,6 @@ export type Filter = "all" | Kind;
 const KINDS: readonly Kind[] = ["plans", "rollouts", "trials"];
 /** Rows that are read at once. */
 const PAGE = 40;
-/** Time to think again before a result is deleted for good [ms]. */
-const GRACE = 8000;
 
 export const filter = signal<Filter>("rollouts");
 export const search = signal("");
@@ -32,8 +24,20 @@ export const loading = signal(true);
 export const trouble = signal<string | null>(null);
 /** In the order in which they were pinned. */
 const pins = signal<Entry[]>([]);
-/** Deleted on screen; the service is told when there is no way back any more. */
-const doomed = signal<ReadonlyMap<string, Entry>>(new Map());
+
+/** The user's name for it, else its terrain. */
+export const title = (entry: Entry) => entry.name || entry.summary.terrain;
+
+export const { doomed, remove } = removal<Entry>({
+  path: ({ kind, id }) => `${kind}/${id}`,
+  title,
+  gone: (entry) =>
+    batch(() => {
+      read.value = read.peek().filter((each) => each.id !== entry.id);
+      pins.value = pins.peek().filter((each) => each.id !== entry.id);
+      total.value = Math.max(0, total.peek() - 1);
+    }),
+});
 
 export const entries = computed(() => read.value.filter((each) => !doomed.value.has(each.id)));
 export const pinned = computed(() => pins.value.filter((each) => !doomed.value.has(each.id)));
@@ -127,48 +131,3 @@ export async function change(entry: Entry, changes: EntryChanges): Promise<void>
 export async function unpinAll(): Promise<void> {
   await Promise.all(pins.peek().map((each) => change(each, { pinned: false })));
 }
-
-export function remove(entry: Entry): void {
-  doomed.value = new Map(doomed.peek()).set(entry.id, entry);
-  const timer = setTimeout(() => void finish(entry), GRACE);
-  const shown = {
-    text: `${title(entry)} is deleted.`,
-    undo: () => {
-      clearTimeout(timer);
-      spare(entry.id);
-    },
-  };
-  toast.value = shown;
-  setTimeout(() => {
-    if (toast.peek() === shown) toast.value = null;
-  }, GRACE);
-}
-
-function spare(id: string): void {
-  const left = new Map(doomed.peek());
-  left.delete(id);
-  doomed.value = left;
-}
-
-async function finish(entry: Entry): Promise<void> {
-  try {
-    const answer = await deleteStored(entry);
-    if (!answer.ok && answer.status !== 404) throw new Error(`the service said ${answer.status}`);
-    batch(() => {
-      read.value = read.peek().filter((each) => each.id !== entry.id);
-      pins.value = pins.peek().filter((each) => each.id !== entry.id);
-      total.value = Math.max(0, total.peek() - 1);
-    });
-  } catch (error) {
-    report(error);
-    toast.value = { text: `${title(entry)} could not be deleted.` };
-  }
-  spare(entry.id);
-}
-
-addEventListener("pagehide", () => {
-  for (const entry of doomed.peek().values()) void deleteStored(entry);
-});
-
-/** The user's name for it, else its terrain. */
-export const title = (entry: Entry) => entry.name || entry.summary.terrain;

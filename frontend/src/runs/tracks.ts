@@ -8,6 +8,7 @@ import { centreOfMass } from "../geometry/centre-of-mass";
 import { degrees } from "../geometry/format";
 import { interpolate, planFrame, poseTimes, runFrame } from "../geometry/frames";
 import { type Frame, type RobotShape, robotShape } from "../geometry/robot";
+import { stated } from "../profile-editor/margins";
 import { report } from "../state/connection";
 
 export interface Track {
@@ -43,7 +44,13 @@ export function load(entries: readonly Entry[]): void {
       .then((track) => {
         tracks.value = new Map(tracks.peek()).set(entry.id, track);
       })
-      .catch(report);
+      .catch((error) => {
+        // Asked for again when the pins change.
+        const others = new Map(tracks.peek());
+        others.delete(entry.id);
+        tracks.value = others;
+        report(error);
+      });
   }
 }
 
@@ -67,7 +74,7 @@ function ofPlan(plan: Plan): Track {
     progress: poses.map((pose) => (100 * pose.progress) / end),
     pitchError: null,
     torque: Number.isFinite(limit) ? poses.map((pose) => limit - pose.margins.torque) : null,
-    comMargin: poses.map((pose) => pose.margins.com * 1000),
+    comMargin: poses.map((pose) => stated(pose.margins.com) * 1000),
     com: poses.map((pose) => pose.com),
     frameAt: (time) => planFrame(plan, time),
     shape: robotShape(plan.robot_description),
@@ -78,7 +85,7 @@ function ofPlan(plan: Plan): Track {
 function ofRollout(run: Rollout, plan: Plan | null): Track {
   const { series } = run;
   const way = plan?.poses.map((pose) => pose.progress) ?? [];
-  const margins = plan?.poses.map((pose) => pose.margins.com * 1000) ?? [];
+  const margins = plan?.poses.map((pose) => stated(pose.margins.com) * 1000) ?? [];
   const end = way.at(-1) ?? series.progress.at(-1) ?? 1;
   return {
     time: series.time,

@@ -51,6 +51,10 @@ interface Shared {
   rb?: string;
 }
 
+const inAddress = () => new URLSearchParams(location.hash.slice(1));
+
+/** What stood in the address that was opened or pasted last; the page's own is written over it. */
+export const given = signal(inAddress());
 /** What other workspaces keep in the address, by their letter. */
 export const kept = signal<Readonly<Record<string, string>>>({});
 
@@ -100,7 +104,7 @@ export interface Restored {
   rolloutB: string | null;
 }
 
-const stateInAddress = () => new URLSearchParams(location.hash.slice(1)).get("s");
+const stateInAddress = () => inAddress().get("s");
 
 /**
  * Take the state out of the address. Null where there is none, or none that can be read.
@@ -152,6 +156,7 @@ export function startSharing(take: (restored: Restored | null) => void): void {
   addEventListener("hashchange", () => {
     const text = stateInAddress();
     if (text && text !== encode(currentState())) take(restoreFromAddress("what was open stays"));
+    given.value = inAddress();
     typed.value++;
   });
   effect(() => {

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import hashlib
+import time
+from collections.abc import AsyncIterator
 from functools import partial
 from typing import Annotated, Any
 
 import orjson
 from fastapi import APIRouter, Path, Request, Response
+from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
 
 from stairwright.api.deps import (
     JSON_BODY,
@@ -37,7 +40,12 @@ from stairwright.studies.design_shelf import (
 from stairwright.studies.service import Following
 from stairwright.studies.version import engine_of
 
+from . import event_streams
 from .studies import be_sure_of_packages
+
+EVENTS = """Events named `design`, each with how far the search is, as in the list of searches, as
+JSON and its revision as the event's id. What it has found is at its place, the link `self`."""
+EVERY = 0.5  # s between looks at what is new: each reads all that was found
 
 router = APIRouter(prefix="/designs", tags=["studies"])
 Id = Annotated[str, Path(max_length=80, pattern=r"^d-[0-9a-f]+$", examples=["d-0123456789abcdef"])]
@@ -112,6 +120,43 @@ async def get_design(request: Request, services: Service, design_id: Id) -> Resp
     return await fresh_json(request, answer, digest)
 
 
+@router.get(
+    "/{design_id}/events",
+    response_class=Response,
+    responses=event_streams.described(EVENTS),
+)
+async def design_events(
+    services: Service,
+    design_id: Id,
+    last_event_id: event_streams.LastEventId = None,
+) -> Response:
+    """How far a search is, now and at every change until it is finished."""
+    following = await services.studies.find(design_id)
+    if following is None:
+        raise not_found("search of this service", design_id)
+    seen = event_streams.revision_seen(last_event_id)
+    if following.job.finished and seen >= following.job.revision:
+        return Response(status_code=204)  # tells an EventSource not to come back
+    return event_streams.streamed(_events(services, following))
+
+
+async def _events(services: Services, following: Following) -> AsyncIterator[bytes]:
+    told, spoken = (0, -1), time.monotonic()
+    while True:
+        now, finished = (following.job.revision, following.done), following.job.finished
+        if now != told:
+            told, spoken = now, time.monotonic()
+            shown = await asyncio.to_thread(_document, services, following)
+            event = shown.model_dump_json()
+            yield format_sse_event(data_str=event, event="design", id=str(now[0]))
+        elif time.monotonic() - spoken >= event_streams.QUIET:
+            spoken = time.monotonic()
+            yield KEEPALIVE_COMMENT
+        if finished:
+            return
+        await asyncio.sleep(EVERY)
+
+
 @router.post("/{design_id}/cancel", responses=describe(404, 409))
 async def cancel_design(services: Service, design_id: Id) -> DesignDocument:
     """Stop a search; what it has found stays, and posting it again goes on with it."""
@@ -172,7 +217,7 @@ def _asked(following: Following) -> Design:
 def _state(summary: DesignSummary, following: Following | None) -> dict[str, Any]:
     """How far a search is; without `following` it is of `stairwright design`."""
     here = f"/api/v1/designs/{summary.id}"
-    links = {"self": here, "cancel": f"{here}/cancel"}
+    links = {"self": here, "events": f"{here}/events", "cancel": f"{here}/cancel"}
     share = min(1.0, summary.tried / summary.designs)
     if following is None:
         state = {"state": "done" if summary.complete else None, "progress": share, "eta": None}
