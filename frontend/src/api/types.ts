@@ -147,10 +147,11 @@ export interface SettingSchema {
   group?: string;
   /** Of a record: its fields. */
   properties?: Record<string, SettingSchema>;
-  anyOf?: {
+  /** A list of numbers, each with its own bounds, or nothing. */
+  anyOf?: { type?: string; prefixItems?: SettingSchema[] }[];
+  /** A number, or several: in a list, or in a record. */
+  oneOf?: {
     type?: string;
-    /** What each of a list's numbers may be: each its own, or all alike. */
-    prefixItems?: SettingSchema[];
     items?: SettingSchema;
     properties?: Record<string, SettingSchema>;
   }[];

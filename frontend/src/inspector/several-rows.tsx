@@ -9,11 +9,11 @@ import { Reset, type SettingProps, SliderRow } from "./slider";
 
 /** What each number of a list may be, where a list may stand for the one number. */
 export const itemsOf = (schema: SettingSchema): SettingSchema | null =>
-  schema.anyOf?.find((each) => each.items)?.items ?? null;
+  schema.oneOf?.find((each) => each.items)?.items ?? null;
 
 /** Whether a place may be given beside the number. */
 export const hasPlace = (schema: SettingSchema): boolean =>
-  Boolean(schema.anyOf?.some((each) => each.properties?.place));
+  Boolean(schema.oneOf?.some((each) => each.properties?.place));
 
 /** A spread that is drawn by chance, or known values, one for each in its order. */
 export function SpreadRows(props: SettingProps & { item: SettingSchema }) {
