@@ -13,6 +13,7 @@ from fastapi.routing import APIRoute
 
 # Routes are called after their methods; clients after what they do.
 _OPERATIONS = {
+    "design_events": "follow_design",
     "generate": "generate_terrain",
     "get_study_document": "get_question",
     "healthz": "get_health",
@@ -95,8 +96,8 @@ _MADE = {  # by operation and status
 }
 _REFUSED = {"401": "WWW-Authenticate", "429": "Retry-After", "503": "Retry-After"}
 _WITHOUT_TAG = {
-    "follow_job", "follow_study", "get_cell", "get_cells", "get_health", "get_job", "get_question",
-    "get_settings", "get_study",
+    "follow_design", "follow_job", "follow_study", "get_cell", "get_cells", "get_health", "get_job",
+    "get_question", "get_settings", "get_study",
 }  # fmt: skip
 ANY_FILE = "application/octet-stream"
 

@@ -807,7 +807,7 @@ export interface paths {
          * Design Events
          * @description How far a search is, now and at every change until it is finished.
          */
-        get: operations["design_events"];
+        get: operations["follow_design"];
         put?: never;
         post?: never;
         delete?: never;
@@ -9108,7 +9108,7 @@ export interface operations {
             };
         };
     };
-    design_events: {
+    follow_design: {
         parameters: {
             query?: never;
             header?: {
@@ -9127,7 +9127,6 @@ export interface operations {
              */
             200: {
                 headers: {
-                    ETag: components["headers"]["ETag"];
                     [name: string]: unknown;
                 };
                 content: {
