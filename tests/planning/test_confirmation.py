@@ -49,7 +49,7 @@ class Asked:
 @pytest.mark.parametrize("doubted", [set(), {*range(25)}, {22, 16, 13}])
 def test_all_of_planning_is_asked_on_both_sides_and_about_no_amount_twice(enough, doubted):
     quantity = Asked(enough, doubted=doubted)
-    cause = _settled(None, quantity, 30, in_this_thread())
+    cause = _settled(SimpleNamespace(torques=True), quantity, 30, in_this_thread())
     low, high = (round(math.log(ratio, 1.02)) for ratio in (cause.lower, cause.upper))
     assert high == low + 1
     assert low not in enough
@@ -59,9 +59,10 @@ def test_all_of_planning_is_asked_on_both_sides_and_about_no_amount_twice(enough
 
 
 def test_what_searches_missed_is_found_by_asking_all_of_planning():
-    cause = alone(None, Asked({*range(9, 61)}), 1.02**40, in_this_thread())
+    planner = SimpleNamespace(torques=False)
+    cause = alone(planner, Asked({*range(9, 61)}), 1.02**40, in_this_thread())
     assert round(math.log(cause.upper, 1.02)) == 9
-    assert alone(None, Asked(set()), 1.02**40, in_this_thread()) is None
+    assert alone(planner, Asked(set()), 1.02**40, in_this_thread()) is None
 
 
 @given(

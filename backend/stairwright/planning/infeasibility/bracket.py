@@ -16,12 +16,14 @@ class Bracket:
 
     Attributes:
         most: The largest step.
+        hasty: Whether steps are asked about thoroughly only where that decides.
         known: Whether steps work.
         doubted: Steps that seem not to work, but have not been asked about thoroughly.
         misled: How many of them did work; after some all are asked about thoroughly.
     """
 
     most: int
+    hasty: bool = False
     known: dict[int, bool] = field(default_factory=lambda: {0: False})
     doubted: set[int] = field(default_factory=set)
     misled: int = 0
@@ -34,30 +36,26 @@ class Bracket:
 
     @property
     def low(self) -> int:
-        """The largest step below that that does not work."""
+        """The largest step below that that does not work, or is doubted."""
         bound = self.most + 1 if self.high is None else self.high
-        return max(one for one, works in self.known.items() if one < bound and not works)
+        bad = {one for one, works in self.known.items() if not works} | self.doubted
+        return max(one for one in bad if one < bound)
 
     def tell(self, step: int, works: bool, settled: bool = True) -> None:
         """Learn of a step; what does not work is doubted unless that is `settled`."""
-        if works and step in self.doubted:
+        if not (works or settled):
+            self.doubted.add(step)
+            return
+        if works and step in self.doubted and (self.high is None or step < self.high):
             self.misled += 1
-            for one in self.doubted:
-                del self.known[one]
             self.doubted.clear()
         self.known[step] = works
         self.doubted.discard(step)
-        if not (works or settled):
-            self.doubted.add(step)
 
     def settles(self, step: int) -> bool:
-        """Whether to ask about a step thoroughly: others only tell where such are worth it."""
-        return (
-            self.high is None
-            or step > self.high
-            or step in self.doubted
-            or self.misled >= _DECEPTIONS
-        )
+        """Whether to ask about a step thoroughly."""
+        trusting = self.hasty and self.high is not None and self.misled < _DECEPTIONS
+        return not trusting or step in self.doubted
 
     def next_steps(self) -> tuple[int, ...]:
         """Steps to ask about next; of two the second matters only if the first does not work.
@@ -69,8 +67,8 @@ class Bracket:
         if high is None:
             return (min(2 * low - self._first + 1, self.most),) if low < self.most else ()
         if high == low + 1:
-            doubted = (low,) if low in self.doubted else ()
-            return doubted if self._told(high + 1) else (*doubted, high + 1)
+            untold = () if high == self.most or high + 1 in self.known else (high + 1,)
+            return (low, *untold) if low in self.doubted else untold
         # Down in strides until one does not work; then rather steps that do: they are told sooner.
         step = high - ((high - low + 2) // 3 if low > 0 else max(2, self._first // 4))
         return (min(max(step, low + 1), high - 1),)
@@ -79,6 +77,3 @@ class Bracket:
     def _first(self) -> int:
         """The step that was asked about first: thought to be the one that is looked for."""
         return next(one for one in self.known if one > 0)
-
-    def _told(self, step: int) -> bool:
-        return step > self.most or step in self.known

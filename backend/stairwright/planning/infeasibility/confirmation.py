@@ -137,8 +137,8 @@ def alone(planner: PathPlanner, candidate: Candidate, ratio: float, pool: Execut
 def _settled(planner: PathPlanner, candidate: Candidate, step: int, pool: Executor) -> Cause | None:
     """The step between a plan and none, looked for from one with which there is a plan.
 
-    Attempts that had a plan with a little more tell where it may be; there all of planning is
-    asked.
+    Within torques, where all of planning takes several times as long as one attempt, the attempts
+    that had a plan with a little more tell where it may be; there all of planning is asked.
     """
 
     def works(asked: tuple[int, bool]) -> bool:
@@ -146,7 +146,7 @@ def _settled(planner: PathPlanner, candidate: Candidate, step: int, pool: Execut
         ask = candidate.feasible if settles else candidate.feasible_likewise
         return ask(planner, _ratio(candidate, step))
 
-    bracket = Bracket(_steps(candidate.most))
+    bracket = Bracket(_steps(candidate.most), hasty=planner.torques)
     bracket.tell(step, works=True)
     for _ in range(_LOOKS):
         asked = [(step, bracket.settles(step)) for step in bracket.next_steps()]

@@ -24,6 +24,7 @@ _AHEAD = 1.8  # m of a window that are searched again by the next
 # Tables of earlier searches of the same course, which the next attempt or another friction can use.
 Searches = dict[tuple[Any, ...], Search]
 _KEPT = 8
+_KEPT_FINE = 2  # of them on the finest lattice, whose tables are the largest
 
 
 def find_path(
@@ -84,6 +85,7 @@ def search_between(
     search = kept.get(key)
     if search is None:
         search = Search(q, begin, end, make_lattice(q.robot, fine), bounds)
-        if len(kept) < _KEPT:
+        finest = sum(one[1] <= 1.0 for one in kept)
+        if len(kept) < _KEPT and (fine > 1.0 or finest < _KEPT_FINE):
             kept[key] = search
     return search
