@@ -7,7 +7,7 @@ from collections import Counter
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
 from stairwright.planning.planner import plan as make_plan
-from stairwright.planning.smoothing.path_document import least_margins, way
+from stairwright.planning.smoothing.path_document import distance_covered, least_margins
 from stairwright.planning.threads import one_by_one
 from stairwright.simulation.intervals import clopper_pearson
 
@@ -84,7 +84,7 @@ def _of_plan(plan: Plan) -> Record:
                 record["least_friction"] = limit.needed
     if plan.feasible:
         record |= _margins(plan)
-        record["speed"] = way(plan) / plan.timing.total
+        record["speed"] = distance_covered(plan) / plan.timing.total
     return record
 
 

@@ -188,7 +188,7 @@ def make_plan(
 def least_margins(plan: Plan) -> dict[Quantity, float]:
     """The least margin of each kind over a plan's poses; see `binding.Margins.measured`.
 
-    Documents of a path's poses are not made for it, nor by `way`.
+    Documents of a path's poses are not made for it, nor by `distance_covered`.
     """
     poses = Deferred.source_of(plan, "poses")
     if isinstance(poses, PathPoses):
@@ -198,7 +198,7 @@ def least_margins(plan: Plan) -> dict[Quantity, float]:
     return {name: float(values.min()) for name, (values, _) in margins.measured().items()}
 
 
-def way(plan: Plan) -> float:
+def distance_covered(plan: Plan) -> float:
     """How far a plan's last pose is from its start [m]."""
     poses = Deferred.source_of(plan, "poses")
     return float(poses.progress[-1] if isinstance(poses, PathPoses) else plan.poses[-1].progress)
