@@ -23,7 +23,7 @@ using smoothing::NodeSpacing;
 using smoothing::PathWeights;
 using smoothing::RefinedPath;
 using smoothing::RefineProblem;
-using smoothing::Room;
+using smoothing::ExtraMargins;
 
 // Rows (s_front, s_rear, x, z, pitch).
 using Nodes = In<double, nb::shape<-1, 5>>;
@@ -121,14 +121,14 @@ void bind_smoothing(nb::module_& m) {
              nb::arg("torque"), nb::arg("smoothness"), nb::arg("pitch"));
     nb::class_<NodeSpacing>(m, "NodeSpacing")
         .def(nb::init<double, double, double>(), nb::arg("softness"), nb::arg("spacing"), nb::arg("swing"));
-    nb::class_<Room>(m, "Room", "What a path keeps beyond its bounds, for ground that is not as drawn.")
+    nb::class_<ExtraMargins>(m, "ExtraMargins", "What a path keeps beyond its bounds, for ground that is not as drawn.")
         .def(nb::init<double, double, double, double, double>(), nb::arg("trunk") = 0.0, nb::arg("links") = 0.0, nb::arg("legs") = 0.0,
              nb::arg("reach") = 0.0, nb::arg("joints") = 0.0);
     nb::class_<RefineProblem>(m, "RefineProblem")
-        .def(nb::init<const Terrain&, const WheelPath&, const RobotModel&, double, double, double, double, PathWeights, bool, Room>(),
+        .def(nb::init<const Terrain&, const WheelPath&, const RobotModel&, double, double, double, double, PathWeights, bool, ExtraMargins>(),
              nb::arg("terrain"), nb::arg("path"), nb::arg("robot"), nb::arg("friction"), nb::arg("reserve"), nb::arg("lag"),
              nb::arg("standing_height"), nb::arg("weights"), nb::arg("torques") = false,
-             nb::arg("room") = Room(), nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>())
+             nb::arg("extra") = ExtraMargins(), nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>())
         .def("refine", [](const RefineProblem& problem, const Nodes& ends, const Nodes& poses, const NodeSpacing& spacing,
                           std::size_t held) {
             const RefinedPath found = run(problem, ends, poses, spacing, held);

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from stairwright import _core
 from stairwright.planning.certificate.certify import judge
 from stairwright.planning.certificate.motion import Motion
+from stairwright.planning.extra_margins import IN_SEARCH, ExtraMargins
 from stairwright.planning.lattice.body_lattice import (
     LOOSE,
     Bounds,
@@ -26,7 +27,6 @@ from stairwright.planning.lattice.search import Place
 from stairwright.planning.lattice.windows import Searches, find_path
 from stairwright.planning.path_problem import PathProblem
 from stairwright.planning.plan import Certificate
-from stairwright.planning.room import IN_SEARCH, Room
 from stairwright.planning.smoothing.node_margins import BEYOND_REPAIR, Motor
 from stairwright.planning.smoothing.path_document import PathPoses, make_plan
 from stairwright.planning.smoothing.path_timing import path_parameter
@@ -195,7 +195,7 @@ class PathPlanner(PathProblem):
 
     def _slowness(self, answer: Solved | Blocked) -> tuple[bool, float]:
         """Orders paths that are to be driven fast: by their least time [s], behind all others thin
-        ones by their cost, for it is room that they lack and not time.
+        ones by their cost, for it is margin that they lack and not time.
         """
         if isinstance(answer, Blocked) or answer.margin <= self.thin:
             return True, self.cost(answer)
@@ -227,11 +227,11 @@ class PathPlanner(PathProblem):
         other.tried = self.tried
         return other
 
-    def with_room(self, room: Room, in_search: float = IN_SEARCH) -> PathPlanner:
+    def with_extra_margins(self, extra: ExtraMargins, in_search: float = IN_SEARCH) -> PathPlanner:
         """The same problem, of which paths keep more than their bounds, poses of the search a share
         of that.
         """
-        return replace(self, room=room, in_search=in_search, searches={})
+        return replace(self, extra=extra, in_search=in_search, searches={})
 
     @property
     def thin(self) -> float:
@@ -241,7 +241,7 @@ class PathPlanner(PathProblem):
     @cached_property
     def straighter(self) -> PathPlanner:
         """The same problem with more smoothness, for paths that are to be driven fast: whether less
-        bent is sooner, too, depends on the room that it costs.
+        bent is sooner, too, depends on the margin that it costs.
         """
         smoothness = STRAIGHTER * self.weights.smoothness
         return replace(self, weights=self.weights.model_copy(update={"smoothness": smoothness}))

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from stairwright import _core
+from stairwright.planning.extra_margins import IN_SEARCH, NO_EXTRA, ExtraMargins
 from stairwright.planning.lattice.body_lattice import Bounds
-from stairwright.planning.room import IN_SEARCH, NO_ROOM, Room
 from stairwright.planning.standing import StandingPose, standing_height
 from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
@@ -30,7 +30,7 @@ class PathProblem:
     friction: float
     weights: PathWeights
     torques: bool = False  # whether the search asks that motors hold every pose
-    room: Room = NO_ROOM  # what paths keep beyond their bounds
+    extra: ExtraMargins = NO_EXTRA  # what paths keep beyond their bounds
     in_search: float = IN_SEARCH  # share of it that lattice poses keep
 
     @property
@@ -56,7 +56,7 @@ class PathProblem:
             standing_height(self.robot),
             _core.PathWeights(w.com_margin, w.clearance, w.torque, w.smoothness, w.pitch),
             self.torques,
-            self.room.native,
+            self.extra.native,
         )
 
     @cached_property

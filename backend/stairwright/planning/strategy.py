@@ -89,10 +89,10 @@ def quick(planner: PathPlanner) -> Solved | Blocked:
     return most if isinstance(most, Solved) or most.opened else forgiving
 
 
-def roomy(planner: PathPlanner) -> Solved | Blocked:
-    """What the soonest attempts lead to, for a path that is known to exist but for its room.
+def keeping_extra_margins(planner: PathPlanner) -> Solved | Blocked:
+    """What the soonest attempts lead to, for a path known to exist but for extra margins.
 
-    Where the search finds none that keeps some of the room, the smoothing alone looks for it.
+    Where the search finds none that keeps some of them, the smoothing alone looks for it.
     """
     weak = False
     for attempt in (AT_ONCE, FORGIVING):
@@ -101,11 +101,11 @@ def roomy(planner: PathPlanner) -> Solved | Blocked:
             return found
         weak = found.weak is not None
         if weak and not planner.torques:
-            held = roomy(planner.within_torques)
+            held = keeping_extra_margins(planner.within_torques)
             if isinstance(held, Solved):
                 return held
     if planner.in_search > 0.0 and not weak:
-        return roomy(planner.with_room(planner.room, in_search=0.0))
+        return keeping_extra_margins(planner.with_extra_margins(planner.extra, in_search=0.0))
     return found
 
 

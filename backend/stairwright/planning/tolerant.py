@@ -1,4 +1,4 @@
-"""Paths that stand a tolerance: planned with ever more room until the certificate holds for it.
+"""Paths that stand a tolerance: with ever larger margins until the certificate holds for it.
 
 Everything is planned at the lowest friction. Where a finished path lacks something on a terrain of
 the set, the next search and smoothing are asked to keep that much more of it; the certificate
@@ -14,16 +14,16 @@ import numpy as np
 
 from stairwright.planning.certificate.certify import tolerated
 from stairwright.planning.certificate.tolerance.checks import NAMES
+from stairwright.planning.extra_margins import NO_EXTRA, ExtraMargins
 from stairwright.planning.path_planner import Blocked, PathPlanner, Solved
 from stairwright.planning.plan import Check, Limit, Problem, ProblemKind
-from stairwright.planning.room import NO_ROOM, Room
-from stairwright.planning.strategy import roomy
+from stairwright.planning.strategy import keeping_extra_margins
 from stairwright.planning.tolerance import Tolerance
 
 _ROUNDS = 8  # of planning; most that succeed do within four
 _STEPS = (1.0, 0.5, 0.2)
 _IDLE = 1  # of them that may come no nearer
-_MORE = {  # room per unit that a check lacks, and at least so much more [m]
+_MORE = {  # margin per unit that a check lacks, and at least so much more [m]
     "trunk": (1.5, 0.004),
     "links": (0.6, 0.003),
     "legs": (1.0, 0.002),
@@ -58,9 +58,9 @@ def within_tolerance(planner: PathPlanner, first: Solved, tolerance: Tolerance) 
         first: A path of it.
         tolerance: What it shall stand.
     """
-    found, room, nearest, idle = first, NO_ROOM, None, 0
+    found, extra, nearest, idle = first, NO_EXTRA, None, 0
     off = float(np.hypot(tolerance.height, tolerance.place))
-    usual = Room(trunk=off, links=0.5 * off, legs=off, reach=off)
+    usual = ExtraMargins(trunk=off, links=0.5 * off, legs=off, reach=off)
     for _ in range(_ROUNDS):
         checks = _checks(planner, found, tolerance)
         if all(check.passed for check in checks):
@@ -70,16 +70,16 @@ def within_tolerance(planner: PathPlanner, first: Solved, tolerance: Tolerance) 
         idle = 0 if better else idle + 1
         if idle > _IDLE:
             break
-        wider = usual if room == NO_ROOM else _widened(room, checks)
+        wider = usual if extra == NO_EXTRA else _widened(extra, checks)
         answer: Solved | Blocked = Blocked(None, False)
         for share in _STEPS:  # too much of it leaves no way: then less of the step
-            wide = Room(*(a + share * (b - a) for a, b in zip(room, wider, strict=True)))
-            answer = roomy(planner.with_room(wide))
+            wide = ExtraMargins(*(a + share * (b - a) for a, b in zip(extra, wider, strict=True)))
+            answer = keeping_extra_margins(planner.with_extra_margins(wide))
             if isinstance(answer, Solved):
                 break
-        if not isinstance(answer, Solved) or wide == room:
+        if not isinstance(answer, Solved) or wide == extra:
             break
-        found, room = answer, wide
+        found, extra = answer, wide
     assert nearest is not None
     return nearest
 
@@ -119,16 +119,18 @@ def _checks(planner: PathPlanner, found: Solved, tolerance: Tolerance) -> list[C
     return tolerated(least, tolerance)
 
 
-def _widened(room: Room, checks: Sequence[Check]) -> Room:
-    """More room where the checks lack something."""
-    more = dict.fromkeys(Room._fields, 0.0)
+def _widened(extra: ExtraMargins, checks: Sequence[Check]) -> ExtraMargins:
+    """Larger margins where the checks lack something."""
+    more = dict.fromkeys(ExtraMargins._fields, 0.0)
     by_name: Mapping[str, Check] = {check.name: check for check in checks}
     for key, field in _ASKED_OF.items():
         check = by_name[NAMES[key]]
         if not check.passed:
             gain, least = _MORE[field]
             more[field] = max(gain * (check.bound - check.value), least)
-    return Room(*(value + more[name] for name, value in zip(Room._fields, room, strict=True)))
+    return ExtraMargins(
+        *(value + more[name] for name, value in zip(ExtraMargins._fields, extra, strict=True))
+    )
 
 
 def _lack(check: Check) -> float:

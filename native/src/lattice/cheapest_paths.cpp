@@ -8,14 +8,14 @@ namespace stairwright::lattice {
 namespace {
 
 // Ranges of positions of the cells that are wide enough.
-struct Room {
+struct Layout {
     std::vector<std::int32_t> first, last;
     std::vector<std::ptrdiff_t> base;
     std::size_t total = 0;
 };
 
-Room make_room(const WidestPaths& widest, int level, std::span<const std::uint8_t> wanted) {
-    Room out{std::vector<std::int32_t>(widest.size(), 0), std::vector<std::int32_t>(widest.size(), 0),
+Layout lay_out(const WidestPaths& widest, int level, std::span<const std::uint8_t> wanted) {
+    Layout out{std::vector<std::int32_t>(widest.size(), 0), std::vector<std::int32_t>(widest.size(), 0),
              std::vector<std::ptrdiff_t>(widest.size(), 0)};
     for (std::size_t c = 0; c < widest.size(); ++c) {
         if (wanted[c] != 0 && widest.reached(c)) {
@@ -38,11 +38,11 @@ CheapestPaths::CheapestPaths(const WidestPaths& widest, int level, std::span<con
                              const CostWeights& weights, int moves)
     : low(widest.size(), 0), high(widest.size(), 0), history(widest.size()), level_(level), moves_(moves), weights_(weights),
       values_([&] {
-          Room room = make_room(widest, level, wanted);
-          first = std::move(room.first);
-          last = std::move(room.last);
-          base_ = std::move(room.base);
-          return room.total;
+          Layout layout = lay_out(widest, level, wanted);
+          first = std::move(layout.first);
+          last = std::move(layout.last);
+          base_ = std::move(layout.base);
+          return layout.total;
       }()) {}
 
 bool CheapestPaths::sweep(const Problem& problem, std::span<const Cell> cells, std::span<const ComIntervals> com,

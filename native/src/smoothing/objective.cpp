@@ -51,7 +51,7 @@ Objective objective(const RefineProblem& problem, const NodeSpacing& spacing, do
     o.com = {0.02, 100.0 * root};
     o.reserve = {0.02 * size, 50.0 * root};
     o.lagged = {0.06 * size, kComWeight * root * std::sqrt(w.com_margin)};
-    const Room& more = problem.room;
+    const ExtraMargins& more = problem.extra;
     o.trunk = MarginTerm{kClearance, 150.0 * root, 0.002}.with(more.trunk);
     o.links = MarginTerm{kClearance, 150.0 * root, 0.004}.with(more.links);
     o.reach = MarginTerm{0.006 * size, 150.0 * root, 0.0005}.with(more.reach);

@@ -100,7 +100,7 @@ def test_no_terrain_of_the_set_leaves_less_than_the_bounds(plan: Plan) -> None:
 def test_forces_balance_the_robot_on_every_terrain_of_the_set(plan: Plan) -> None:
     check = checked(plan)
     stands, contacts = check.stands, check.holding.firm
-    room = check.holding.room()
+    room = check.holding.com_margin()
     random = np.random.default_rng(2)
     assert room.min() >= 0.0
     for k in random.integers(len(plan.poses), size=150):

@@ -36,11 +36,11 @@ class Search:
     ) -> None:
         path, robot, model = q.path, q.robot, q.robot_model
         self.path, self.robot, self.lattice = path, robot, lattice
-        self.bounds = q.room.within(bounds, q.in_search)
+        self.bounds = q.extra.within(bounds, q.in_search)
         self.begin, self.end, self.weights, self.model = begin, end, q.weights, model
         self.s = sample_wheel_places(path, begin, end, lattice.step, scale(robot))
         self.centres = path.centres(self.s)
-        close = 2 * path.radius + _core.LEGS_GAP + _APART + q.room.legs
+        close = 2 * path.radius + _core.LEGS_GAP + _APART + q.extra.legs
         ends = (self._index(begin)[0], self._index(end)[1])
         self.pairs = _core.sample_pairs(self.centres, close, model.most_wheel_distance, *ends)
         still_wanted()

@@ -11,7 +11,7 @@ struct PathWeights {
 };
 
 // What a path keeps beyond its bounds, for ground that is not as drawn.
-struct Room {
+struct ExtraMargins {
     double trunk = 0.0, links = 0.0;  // clearances [m]
     double legs = 0.0;                // between front and rear leg [m]
     double reach = 0.0;               // of the hip-wheel distances [m]
@@ -28,7 +28,7 @@ struct RefineProblem {
     double standing_height = 0.0;  // of the trunk above the wheels [m]
     PathWeights weights;
     bool torques = false;          // whether motors are weak: their limits shape the path
-    Room room;
+    ExtraMargins extra;
 };
 
 // How nodes are laid for the smoothing.

@@ -79,7 +79,7 @@ class ToleranceCheck:
             self._clear("links", self._links(), 2 * slack),  # knees move more than hips and wheels
             self._clear("legs", self._between_legs(), 2 * slack, LEGS_GAP),
             self._least("joints", self._joint_slack(), 0.0, "rad"),
-            self._least("com", self.holding.room(), 0.0, "m"),
+            self._least("com", self.holding.com_margin(), 0.0, "m"),
         ]
         torque = self._least("torque", -self.holding.torques(), -1.0, "1")
         return [*out, torque.model_copy(update={"value": -torque.value, "bound": 1.0})]

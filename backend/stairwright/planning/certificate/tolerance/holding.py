@@ -63,11 +63,11 @@ class Holding:
         below = np.where(np.isnan(pushes.moment), -np.inf, -pushes.moment - lost)
         return pushes, above, below
 
-    def room(self) -> Floats:
+    def com_margin(self) -> Floats:
         """Of the mass centre (n,) to where balance ends on some terrain [m]."""
         _, above, below = self._sides
-        room: Floats = np.minimum(above.max(axis=1), below.max(axis=1))
-        return room
+        margin: Floats = np.minimum(above.max(axis=1), below.max(axis=1))
+        return margin
 
     def torques(self) -> Floats:
         """Largest static torque (n,) as a share of its motor's; infinite where nothing holds."""
@@ -90,7 +90,7 @@ class Holding:
             forces = mixture[:, None, None] * one + (1.0 - mixture)[:, None, None] * other
             for wheels, joints in self._corners:
                 worst = np.maximum(worst, self._torque_share(forces, wheels, joints))
-        worst = np.where(self.room() >= 0.0, np.nan_to_num(worst, nan=np.inf), np.inf)
+        worst = np.where(self.com_margin() >= 0.0, np.nan_to_num(worst, nan=np.inf), np.inf)
         return worst
 
     def _torque_share(self, forces: Floats, wheels: Floats, joints: Floats) -> Floats:

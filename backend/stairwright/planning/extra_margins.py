@@ -10,7 +10,7 @@ from stairwright.planning.lattice.body_lattice import Bounds
 IN_SEARCH = 0.6  # share that lattice poses keep; the smoothing finds the rest
 
 
-class Room(NamedTuple):
+class ExtraMargins(NamedTuple):
     """More of each margin than a path must have: clearances and reach [m], joint ranges [rad]."""
 
     trunk: float = 0.0
@@ -20,13 +20,13 @@ class Room(NamedTuple):
     joints: float = 0.0
 
     @property
-    def native(self) -> _core.Room:
+    def native(self) -> _core.ExtraMargins:
         """The same for the smoothing."""
-        return _core.Room(*self)
+        return _core.ExtraMargins(*self)
 
     def within(self, bounds: Bounds, share: float) -> Bounds:
         """Bounds of lattice poses that leave a share of it."""
-        if self == NO_ROOM:
+        if self == NO_EXTRA:
             return bounds
         trunk, links, legs, reach, joints = (share * value for value in self)
         return bounds._replace(
@@ -38,4 +38,4 @@ class Room(NamedTuple):
         )
 
 
-NO_ROOM = Room()
+NO_EXTRA = ExtraMargins()
