@@ -65,6 +65,15 @@ def test_climbs_what_is_not_as_drawn(plan: Plan, deviation: dict[str, object]) -
     assert run.outcome == "success", run.reason
 
 
+@pytest.mark.slow
+def test_a_face_that_comes_early_calls_no_wheel_back() -> None:
+    """Front wheels meet the third riser 6 cm early, against the last, while the rear ones climb."""
+    plan = sw.plan("stairs-us-7-11", "a1_wheeled", 0.6)
+    run, judged = sensed(plan, face_place_error=[0.03, 0.03, -0.03, 0.03, 0.03])
+    assert run.outcome == "success", run.reason
+    assert judged[:, 11].max() > 0.05  # it has noticed
+
+
 def test_legs_reach_for_ground_that_is_not_as_drawn(plan: Plan) -> None:
     """Front wheels on a step that is 2 cm lower: the trunk keeps its planned pitch."""
     run, judged = sensed(plan, step_height_error=[-0.02])

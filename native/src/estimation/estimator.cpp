@@ -4,11 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "faces.hpp"
+#include "spatial.hpp"
+
 namespace stairwright::estimation {
 
 namespace {
-
-using Vec3 = std::array<double, 3>;
 
 constexpr double kWindow = 0.12;        // m; a wheel is looked for this far from where it was
 constexpr double kTouching = 0.15;      // of the share of the weight: a wheel that carries less says nothing
@@ -22,20 +23,8 @@ constexpr double kHop = 0.1;            // s in the air that are no more than a 
 constexpr double kHopSpeed = 0.2;       // m/s of the trunk from which on a riser is met so
 constexpr double kSure = 0.02;         // s that both faces of a corner must be felt before that counts
 constexpr double kMostScale = 0.025;   // of the wheels: more is slip
-constexpr double kGripUsed = 0.25;     // share of the normal force from which on traction makes slip likely
-constexpr double kAtRest = 0.015;      // m/s of rolling
-constexpr double kRound = 3.0;          // of the noise off a face: errors last longer round an edge
-constexpr double kNearEdge = 0.015;    // m along the curve
-constexpr double kEdgeStray = 0.012;   // m that the map's edge may be off
-constexpr double kLevel = 0.95;        // cosine of the slope of a face on which the wheels' scale is estimated
-constexpr double kMissed = 0.004;       // m put back: the face is not where the map has it
-constexpr double kSearchNoise = 0.01;   // m^2 of variance for a metre that a face is farther on
-constexpr double kTread = 0.7;          // cosine of the slope of a face that is a tread
-constexpr double kSame = 1e-6;          // m
 constexpr double kBeside = 1e-6;        // m
 constexpr double kBeyondDoubt = 3.0;    // standard deviations
-constexpr double kGate = 9.0;           // of a normalised innovation squared
-constexpr double kNearCorner = 0.006;   // m; which way a wheel rolls this near to a concave corner is open
 
 Error initial(const Noise& n) {
     Error d{};
@@ -46,37 +35,6 @@ Error initial(const Noise& n) {
     d[kScale] = n.scale;
     for (const std::size_t at : {kFrontOffset, kRearOffset}) d[at] = d[at + 1] = 0.001;
     return d;
-}
-
-Vec3 times(const std::array<Vec3, 3>& R, const Vec3& v) {
-    Vec3 out;
-    for (int i = 0; i < 3; ++i) out[i] = R[i][0] * v[0] + R[i][1] * v[1] + R[i][2] * v[2];
-    return out;
-}
-
-Vec3 cross3(const Vec3& a, const Vec3& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
-double dot3(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-std::array<double, 4> product(const std::array<double, 4>& a, const std::array<double, 4>& b) {
-    return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3], a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-            a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1], a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
-}
-
-// Quaternion of a small turn.
-std::array<double, 4> turn(const Vec3& v) {
-    const double angle = std::sqrt(dot3(v, v)), k = angle > 1e-9 ? std::sin(0.5 * angle) / angle : 0.5;
-    return {std::cos(0.5 * angle), k * v[0], k * v[1], k * v[2]};
-}
-
-double dot_of(const Error& a, const Error& b) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < kErrors; ++i) sum += a[i] * b[i];
-    return sum;
-}
-
-void normalise(std::array<double, 4>& q) {
-    const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    for (double& v : q) v /= length;
 }
 
 }  // namespace
@@ -98,7 +56,7 @@ Estimator::Rotation Estimator::rotation() const {
 const Estimate& Estimator::step(const Readings& readings, double dt) {
     predict(readings, dt);
     see_legs(readings, dt);
-    estimate_.hanging = {};
+    estimate_.hanging = {}, estimate_.found = {};
     for (WheelState& w : wheels_) w.missed = false;
     for (int i = 0; i < 4; ++i) measure(i, readings, dt);
     for (int i = 2; i < 4; ++i) recall(wheels_[i]);
@@ -201,7 +159,10 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const double corner = nearest_corner(on.s);
     if (std::abs(corner - on.s) < kNearCorner) touching = touching || feels(path_.normal(corner - kBeside)) || feels(path_.normal(corner + kBeside));
     const double before = w.s;
-    w.s = on.s;
+    w.at_corner = on.corner ? w.at_corner + dt : 0.0;
+    const bool unsure = on.corner && w.at_corner <= kSure;
+    // The other wheel of the pair is where it was: one alone must not be called back.
+    w.s = unsure && std::abs(on.s - before) > kNearCorner ? before + w.rolled : on.s;
     w.aloft = touching ? 0.0 : w.aloft + dt;
     if (!touching && on.s > before) {  // in the air no wheel gets past a corner, unless that is sure
         const std::size_t passed = path_.corner_from(before - kNearCorner);
@@ -219,14 +180,15 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     estimate_.on_tread[i / 2] = !on.corner && on.point.normal.z > kTread && room >= kRoom;
 
     compare_with_map(i, on, dt);
-    w.at_corner = on.corner ? w.at_corner + dt : 0.0;
     estimate_.touching[i] = touching;
     estimate_.used_grip[i] = std::abs(w.traction) / std::max(dot(w.felt, on.point.normal), 0.02 * weight_);
     if (!estimate_.touching[i]) return;
     Error error{};
-    if (!on.corner || w.at_corner > kSure) measure_place(i, on, along_x, along_z, centre, dt, error);
+    if (!unsure) measure_place(i, on, along_x, along_z, centre, dt, error);
     measure_rolling(i, on, readings, along_x, along_z, dt, error);
     correct(error);
+    if (on.corner && on.after.x < -kTread)
+        for (const std::size_t pair : {0, 1}) estimate_.found[pair] += error[kPlace] + error[kFrontOffset + 2 * pair];
 }
 
 // Every face lies and every tread is as high as the map says only more or less: what is ahead is anew unsure.
@@ -248,118 +210,6 @@ double Estimator::nearest_corner(double s) const {
     if (corners.empty()) return s;
     if (k == corners.size() || (k > 0 && s - corners[k - 1] < corners[k] - s)) return corners[k - 1];
     return corners[k];
-}
-
-void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error) {
-    const double variance = noise_.place * noise_.place * std::max(1.0, noise_.place_lasts / dt);
-    const Vec2 off = on.point.centre - centre;
-    const auto row = [&](Vec2 d) {
-        Error h;
-        for (std::size_t k = 0; k < kErrors; ++k) h[k] = d.x * along_x[k] + d.z * along_z[k];
-        return h;
-    };
-    if (on.corner) {
-        wheels_[i].met = nearest_corner(on.s);
-        covariance_.update(row(on.before), dot(on.before, off), variance, error);
-        covariance_.update(row(on.after), dot(on.after, off), variance, error);
-        return;
-    }
-    const Vec2 n = on.point.normal;
-    if (n.z < kTread) {
-        if (dot(wheels_[i].felt, n) < wheels_[i].least_push) return;  // it only seems to be there
-        wheels_[i].met = nearest_corner(on.s);
-    }
-    covariance_.update(row(n), dot(n, off), variance, error);
-    if (on.beyond == 0 || !on.blocked) return;
-    const Vec2 t = {n.z, -n.x};
-    if (std::abs(wheels_[i].met - nearest_corner(on.s)) < kSame) {  // no news of a face that it has felt
-        covariance_.update(row(t), dot(t, off), variance, error);
-        return;
-    }
-    // The mean alone is projected: that the face is not felt yet is the same news at every step.
-    put_back(i, t, dot(t, off) - dot_of(row(t), error), error);
-}
-
-// A wheel that the map has beyond a face which it does not feel: the face is farther on than drawn. Where the other
-// pair can roll on, so is all the rest.
-void Estimator::put_back(int i, Vec2 along, double excess, Error& error) {
-    const int pair = i / 2;
-    WheelState& w = wheels_[i];
-    w.put_back += std::abs(excess);
-    w.missed = w.put_back > kMissed;
-    const std::size_t at = estimate_.on_tread[1 - pair] ? kPlace : pair == 0 ? kFrontOffset : kRearOffset;
-    error[at] += excess * along.x, error[at + 1] += excess * along.z;
-    covariance_.add_noise(at, kSearchNoise * std::abs(excess));
-}
-
-void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& readings, const Error& along_x, const Error& along_z, double dt, Error& error) {
-    const WheelState& w = wheels_[i];
-    const Rotation R = rotation();
-    const double side = i % 2 == 0 ? robot_.half_track : -robot_.half_track;
-    const Vec3 place = {w.place.x, side, w.place.z}, spin = cross3(rate_, place);
-    const Vec3 own = times(R, {spin[0] + w.rate.x, spin[1], spin[2] + w.rate.z});
-    const Vec3 speed = {velocity_[0] + own[0], velocity_[1] + own[1], velocity_[2] + own[2]};
-    const Vec3 axis = {R[0][1], R[1][1], R[2][1]};
-    // How the measured part `d` of the wheel's velocity changes with the state; the lever turns with the trunk.
-    const auto row = [&](const Vec3& d) {
-        Error h{};
-        const Vec3 turned = cross3(own, d);
-        const Vec3 body = {R[0][0] * d[0] + R[1][0] * d[1] + R[2][0] * d[2], R[0][1] * d[0] + R[1][1] * d[1] + R[2][1] * d[2],
-                           R[0][2] * d[0] + R[1][2] * d[1] + R[2][2] * d[2]};
-        const Vec3 bias = cross3(body, place);
-        for (std::size_t k = 0; k < 3; ++k) h[kAttitude + k] = turned[k], h[kVelocity + k] = d[k], h[kGyroBias + k] = bias[k];
-        return h;
-    };
-    const double lasts = std::max(1.0, noise_.rolling_lasts / dt);
-    const auto update = [&](const Error& h, double residual, double deviation) {
-        const Error ph = covariance_.times(h);
-        double spread = deviation * deviation;
-        for (std::size_t k = 0; k < kErrors; ++k) spread += h[k] * ph[k];
-        if (residual * residual > kGate * spread) return;
-        covariance_.update(h, residual, deviation * deviation * lasts, error);
-    };
-    // Sideways; the axis turns with the trunk.
-    Error h = row(axis);
-    const Vec3 swing = cross3(axis, speed);
-    for (std::size_t k = 0; k < 3; ++k) h[kAttitude + k] = swing[k] + cross3(own, axis)[k];
-    update(h, -dot3(axis, speed), noise_.aside);
-    const double radius = robot_.legs[i / 2].wheel.radius;
-    const std::size_t next = path_.corner_from(on.s - kNearCorner);
-    const bool near = next < path_.corners().size() && path_.corners()[next] < on.s + kNearCorner;
-    const Vec2 n = on.point.normal;
-    const Vec3 off = {n.x, 0.0, n.z};
-    if (near || on.corner) {
-        // Either face: only a wheel that does not turn says something, that it is at rest.
-        if (std::abs(w.cruise) > kAtRest) return;
-        update(row(off), -dot3(off, speed), noise_.rolling);
-        const Vec3 along = {n.z, 0.0, -n.x};
-        update(row(along), -dot3(along, speed), noise_.rolling);
-        return;
-    }
-    // Round an edge a face is only as well known as the place on it.
-    const bool edge = path_.on_arc(on.s) || path_.on_arc(on.s - kNearEdge) || path_.on_arc(on.s + kNearEdge);
-    const double askew = edge ? std::abs(w.cruise) * std::min(1.0, kEdgeStray / radius) : 0.0;
-    Vec3 t = {n.z, 0.0, -n.x};
-    const double aside = dot3(t, axis);
-    for (int k = 0; k < 3; ++k) t[k] -= aside * axis[k];
-    const double length = std::sqrt(dot3(t, t));
-    for (double& v : t) v /= length;
-    const double angular = readings.joint_rates[3 * i] + readings.joint_rates[3 * i + 1] + readings.joint_rates[3 * i + 2] + rate_[1];
-    const double rolled = radius * angular;
-    h = row(t);
-    h[kScale] = n.z > kLevel ? -w.cruise : 0.0;
-    h[kGyroBias + 1] += radius;
-    // The nearer to its grip, the less a wheel's turning says.
-    const double used = std::abs(w.traction) / std::max(dot(w.felt, n), 0.02 * weight_) / kGripUsed;
-    const double crept = noise_.creep * w.traction / (0.25 * weight_);
-    update(h, (1.0 + scale_) * rolled - crept - dot3(t, speed), std::hypot(noise_.rolling * std::max(1.0, used * used), askew));
-    h = row(off);
-    const bool round = path_.on_arc(on.s);
-    if (round) {  // where it goes says how far round the edge it is: dn/ds = t / radius
-        const double turning = (n.z * speed[0] - n.x * speed[2]) / radius;
-        for (std::size_t k = 0; k < kErrors; ++k) h[k] += turning * (n.z * along_x[k] - n.x * along_z[k]);
-    }
-    update(h, -dot3(off, speed), round ? kRound * noise_.off_face : std::hypot(noise_.off_face, askew));
 }
 
 void Estimator::correct(const Error& e) {
@@ -385,33 +235,6 @@ void Estimator::report(const Readings& readings) {
     for (int i = 0; i < 4; ++i) estimate_.places[i] = wheels_[i].s;
     const Vec2 apart = 0.5 * (offset_[1] - offset_[0]);
     estimate_.ground = {apart, -1.0 * apart};
-}
-
-Estimator::Judgement Estimator::judge(const control::RobotState& truth) const {
-    const auto [w, x, y, z] = attitude_;
-    const auto d = product(truth.quaternion, {w, -x, -y, -z});
-    const double sign = d[0] < 0.0 ? -2.0 : 2.0;
-    Judgement out;
-    out.error = {sign * d[1], sign * d[2], sign * d[3], truth.velocity[0] - velocity_[0], truth.velocity[1] - velocity_[1],
-                 truth.velocity[2] - velocity_[2], truth.position[0] - place_.x, truth.position[2] - place_.z};
-    constexpr std::size_t parts[] = {kAttitude, kAttitude + 1, kVelocity, kVelocity + 2, kPlace, kPlace + 1};
-    const double error[] = {out.error[0], out.error[1], out.error[3], out.error[5], out.error[6], out.error[7]};
-    // Cholesky factor of the marginal covariance, and its solution with the error.
-    double L[6][6] = {}, y6[6];
-    out.scale = scale_, out.offset = offset_;
-    out.nees = 0.0;
-    for (int i = 0; i < 6; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            double sum = covariance_(parts[i], parts[j]);
-            for (int k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
-            L[i][j] = i == j ? std::sqrt(std::max(sum, 1e-16)) : sum / L[j][j];
-        }
-        double sum = error[i];
-        for (int k = 0; k < i; ++k) sum -= L[i][k] * y6[k];
-        y6[i] = sum / L[i][i];
-        out.nees += y6[i] * y6[i];
-    }
-    return out;
 }
 
 }  // namespace stairwright::estimation

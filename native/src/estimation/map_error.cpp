@@ -5,11 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "faces.hpp"
+
 namespace stairwright::estimation {
 
 namespace {
 
-constexpr double kSteep = 0.7;      // cosine of the slope below which a face is no tread
 constexpr double kSettled = 0.12;   // s that wheels must be on a face before its place counts as found
 constexpr double kRecalled = 0.006;  // m; how well rear wheels know what front wheels found
 constexpr double kReach = 0.5;  // m along the curve that a face or tread is looked for
@@ -22,7 +23,7 @@ constexpr double kLeastFace = 0.008, kLeastTread = 0.006;  // m; less is not wor
 void Estimator::compare_with_map(int i, const CurveMatch& on, double dt) {
     WheelState& w = wheels_[i];
     const bool felt = estimate_.touching[i] && (on.corner || !path_.pieces()[on.piece].arc);
-    const bool face = on.corner || on.point.normal.z < kSteep;
+    const bool face = on.corner || on.point.normal.z < kTread;
     if (!felt || face != w.on_face) w.known = 0.0;
     w.on_face = face;
     if (felt) w.known += dt;
@@ -38,7 +39,7 @@ void Estimator::find_map_error() {
     estimate_.map_error = MapError{left.on_face, s, offset_[0]};
 }
 
-bool Estimator::is_face(std::size_t piece) const { return path_.pieces()[piece].at(0.0, path_.radius()).normal.z < kSteep; }
+bool Estimator::is_face(std::size_t piece) const { return path_.pieces()[piece].at(0.0, path_.radius()).normal.z < kTread; }
 
 std::size_t Estimator::straight_piece(double s, bool face) const {
     const auto& pieces = path_.pieces();

@@ -31,7 +31,9 @@ const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool 
         map_error_ = seen.map_error, waits_ = true;
     moving = moving && !waits_ && plan_change_.over();
     const bool searching = moving && seen.ahead.any();
-    const control::Reference& drawn = follower_.advance(controller_.places(), moving && !searching, dt, hangs(seen.ahead));
+    std::array<double, 4> places = controller_.places();
+    for (std::size_t i = 0; i < 4; ++i) places[i] -= early_face_.ahead()[i / 2];
+    const control::Reference& drawn = follower_.advance(places, moving && !searching, dt, hangs(seen.ahead));
     if (!seen.places) return drawn;
     if (!grip_test_.over() && plan_change_.over()) {
         adapted_ = grip_test_.step(drawn, seen.state, seen.used_grip, seen.ahead.on_tread[0] && seen.ahead.on_tread[1], dt);
@@ -40,7 +42,10 @@ const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool 
         return adapted_;
     }
     adapted_ = plan_change_.step(drawn, dt);
-    adapted_ = face_search_.step(leg_fit_.fit(adapted_, seen.ground, dt), searching ? seen.ahead : control::Ahead{}, *seen.places, dt);
+    const control::Reference held = early_face_.step(adapted_, seen.ahead.found, *seen.places, dt);
+    const std::array<Vec2, 2> ground = early_face_.ground(controller_.path(), adapted_, seen.ground);
+    leg_fit_.follow({0.5 * (seen.ahead.found[0] + seen.ahead.found[1]), 0.0});
+    adapted_ = face_search_.step(leg_fit_.fit(held, ground, dt), searching ? seen.ahead : control::Ahead{}, *seen.places, dt);
     const control::Reference& next = adapted_;
     const auto [w, x, y, z] = seen.state.quaternion;
     const double pitch = std::atan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y));
@@ -69,6 +74,7 @@ void PlanExecutor::adopt(control::PlanFollower follower, double friction) {
     controller_.believe(friction);
     plan_change_.begin(adapted_, follower_.first());
     safe_stop_ = {};
+    early_face_.reset();
     waits_ = false;
 }
 

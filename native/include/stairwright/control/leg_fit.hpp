@@ -15,6 +15,9 @@ class LegFit {
     // for follows a change of the ground within some tenths of a second.
     Reference fit(const Reference& planned, const std::array<Vec2, 2>& ground, double dt);
 
+    // The robot's place is believed to be another one by this [m]: no leg is to move for it.
+    void follow(Vec2 by) { off_[0] += by, off_[1] += by; }
+
     void reset() { off_ = {}; }
 
   private:

@@ -77,6 +77,7 @@ struct Estimate {
     std::array<bool, 2> hanging{};    // a wheel of the pair stays in the air where the map has it pass a corner
     std::optional<MapError> map_error;
     std::array<bool, 2> searching{};  // the map has a face where the pair is, and it feels none
+    std::array<double, 2> found{};    // how much farther on each pair is by what a wheel in a corner measured at this step [m]
 };
 
 class Estimator {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "stairwright/control/early_face.hpp"
 #include "stairwright/control/grip_test.hpp"
 #include "stairwright/control/leg_fit.hpp"
 #include "stairwright/control/plan_change.hpp"
@@ -67,6 +68,7 @@ class PlanExecutor {
     control::SafeStop safe_stop_;
     control::LegFit leg_fit_;
     control::FaceSearch face_search_;
+    control::EarlyFace early_face_;
     std::optional<estimation::MapError> map_error_;
     std::optional<double> creep_;   // found and not taken yet
     double ignored_ = -1e9;         // where an error of the map was let pass [m]

@@ -1,0 +1,145 @@
+// What a wheel that touches the ground measures: its place on the map, and how it rolls.
+#include "stairwright/estimation/estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "faces.hpp"
+#include "spatial.hpp"
+
+namespace stairwright::estimation {
+
+namespace {
+
+constexpr double kGripUsed = 0.25;     // share of the normal force from which on traction makes slip likely
+constexpr double kAtRest = 0.015;      // m/s of rolling
+constexpr double kRound = 3.0;          // of the noise off a face: errors last longer round an edge
+constexpr double kNearEdge = 0.015;    // m along the curve
+constexpr double kEdgeStray = 0.012;   // m that the map's edge may be off
+constexpr double kLevel = 0.95;        // cosine of the slope of a face on which the wheels' scale is estimated
+constexpr double kMissed = 0.004;       // m put back: the face is not where the map has it
+constexpr double kSearchNoise = 0.01;   // m^2 of variance for a metre that a face is farther on
+constexpr double kSame = 1e-6;          // m
+constexpr double kGate = 9.0;           // of a normalised innovation squared
+
+double dot_of(const Error& a, const Error& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < kErrors; ++i) sum += a[i] * b[i];
+    return sum;
+}
+
+}  // namespace
+
+void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error) {
+    const double variance = noise_.place * noise_.place * std::max(1.0, noise_.place_lasts / dt);
+    const Vec2 off = on.point.centre - centre;
+    const auto row = [&](Vec2 d) {
+        Error h;
+        for (std::size_t k = 0; k < kErrors; ++k) h[k] = d.x * along_x[k] + d.z * along_z[k];
+        return h;
+    };
+    if (on.corner) {
+        wheels_[i].met = nearest_corner(on.s);
+        covariance_.update(row(on.before), dot(on.before, off), variance, error);
+        covariance_.update(row(on.after), dot(on.after, off), variance, error);
+        return;
+    }
+    const Vec2 n = on.point.normal;
+    if (n.z < kTread) {
+        if (dot(wheels_[i].felt, n) < wheels_[i].least_push) return;  // it only seems to be there
+        wheels_[i].met = nearest_corner(on.s);
+    }
+    covariance_.update(row(n), dot(n, off), variance, error);
+    if (on.beyond == 0 || !on.blocked) return;
+    const Vec2 t = {n.z, -n.x};
+    if (std::abs(wheels_[i].met - nearest_corner(on.s)) < kSame) {  // no news of a face that it has felt
+        covariance_.update(row(t), dot(t, off), variance, error);
+        return;
+    }
+    // The mean alone is projected: that the face is not felt yet is the same news at every step.
+    put_back(i, t, dot(t, off) - dot_of(row(t), error), error);
+}
+
+// A wheel that the map has beyond a face which it does not feel: the face is farther on than drawn. Where the other
+// pair can roll on, so is all the rest.
+void Estimator::put_back(int i, Vec2 along, double excess, Error& error) {
+    const int pair = i / 2;
+    WheelState& w = wheels_[i];
+    w.put_back += std::abs(excess);
+    w.missed = w.put_back > kMissed;
+    const std::size_t at = estimate_.on_tread[1 - pair] ? kPlace : pair == 0 ? kFrontOffset : kRearOffset;
+    error[at] += excess * along.x, error[at + 1] += excess * along.z;
+    covariance_.add_noise(at, kSearchNoise * std::abs(excess));
+}
+
+void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& readings, const Error& along_x, const Error& along_z, double dt, Error& error) {
+    const WheelState& w = wheels_[i];
+    const Rotation R = rotation();
+    const double side = i % 2 == 0 ? robot_.half_track : -robot_.half_track;
+    const Vec3 place = {w.place.x, side, w.place.z}, spin = cross3(rate_, place);
+    const Vec3 own = times(R, {spin[0] + w.rate.x, spin[1], spin[2] + w.rate.z});
+    const Vec3 speed = {velocity_[0] + own[0], velocity_[1] + own[1], velocity_[2] + own[2]};
+    const Vec3 axis = {R[0][1], R[1][1], R[2][1]};
+    // How the measured part `d` of the wheel's velocity changes with the state; the lever turns with the trunk.
+    const auto row = [&](const Vec3& d) {
+        Error h{};
+        const Vec3 turned = cross3(own, d);
+        const Vec3 body = {R[0][0] * d[0] + R[1][0] * d[1] + R[2][0] * d[2], R[0][1] * d[0] + R[1][1] * d[1] + R[2][1] * d[2],
+                           R[0][2] * d[0] + R[1][2] * d[1] + R[2][2] * d[2]};
+        const Vec3 bias = cross3(body, place);
+        for (std::size_t k = 0; k < 3; ++k) h[kAttitude + k] = turned[k], h[kVelocity + k] = d[k], h[kGyroBias + k] = bias[k];
+        return h;
+    };
+    const double lasts = std::max(1.0, noise_.rolling_lasts / dt);
+    const auto update = [&](const Error& h, double residual, double deviation) {
+        const Error ph = covariance_.times(h);
+        double spread = deviation * deviation;
+        for (std::size_t k = 0; k < kErrors; ++k) spread += h[k] * ph[k];
+        if (residual * residual > kGate * spread) return;
+        covariance_.update(h, residual, deviation * deviation * lasts, error);
+    };
+    // Sideways; the axis turns with the trunk.
+    Error h = row(axis);
+    const Vec3 swing = cross3(axis, speed);
+    for (std::size_t k = 0; k < 3; ++k) h[kAttitude + k] = swing[k] + cross3(own, axis)[k];
+    update(h, -dot3(axis, speed), noise_.aside);
+    const double radius = robot_.legs[i / 2].wheel.radius;
+    const std::size_t next = path_.corner_from(on.s - kNearCorner);
+    const bool near = next < path_.corners().size() && path_.corners()[next] < on.s + kNearCorner;
+    const Vec2 n = on.point.normal;
+    const Vec3 off = {n.x, 0.0, n.z};
+    if (near || on.corner) {
+        // Either face: only a wheel that does not turn says something, that it is at rest.
+        if (std::abs(w.cruise) > kAtRest) return;
+        update(row(off), -dot3(off, speed), noise_.rolling);
+        const Vec3 along = {n.z, 0.0, -n.x};
+        update(row(along), -dot3(along, speed), noise_.rolling);
+        return;
+    }
+    // Round an edge a face is only as well known as the place on it.
+    const bool edge = path_.on_arc(on.s) || path_.on_arc(on.s - kNearEdge) || path_.on_arc(on.s + kNearEdge);
+    const double askew = edge ? std::abs(w.cruise) * std::min(1.0, kEdgeStray / radius) : 0.0;
+    Vec3 t = {n.z, 0.0, -n.x};
+    const double aside = dot3(t, axis);
+    for (int k = 0; k < 3; ++k) t[k] -= aside * axis[k];
+    const double length = std::sqrt(dot3(t, t));
+    for (double& v : t) v /= length;
+    const double angular = readings.joint_rates[3 * i] + readings.joint_rates[3 * i + 1] + readings.joint_rates[3 * i + 2] + rate_[1];
+    const double rolled = radius * angular;
+    h = row(t);
+    h[kScale] = n.z > kLevel ? -w.cruise : 0.0;
+    h[kGyroBias + 1] += radius;
+    // The nearer to its grip, the less a wheel's turning says.
+    const double used = std::abs(w.traction) / std::max(dot(w.felt, n), 0.02 * weight_) / kGripUsed;
+    const double crept = noise_.creep * w.traction / (0.25 * weight_);
+    update(h, (1.0 + scale_) * rolled - crept - dot3(t, speed), std::hypot(noise_.rolling * std::max(1.0, used * used), askew));
+    h = row(off);
+    const bool round = path_.on_arc(on.s);
+    if (round) {  // where it goes says how far round the edge it is: dn/ds = t / radius
+        const double turning = (n.z * speed[0] - n.x * speed[2]) / radius;
+        for (std::size_t k = 0; k < kErrors; ++k) h[k] += turning * (n.z * along_x[k] - n.x * along_z[k]);
+    }
+    update(h, -dot3(off, speed), round ? kRound * noise_.off_face : std::hypot(noise_.off_face, askew));
+}
+
+}  // namespace stairwright::estimation

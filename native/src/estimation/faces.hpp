@@ -1,0 +1,9 @@
+// What counts as a tread and as near to a corner, the same for all parts of the estimator.
+#pragma once
+
+namespace stairwright::estimation {
+
+constexpr double kTread = 0.7;         // cosine of the slope of a face that is a tread; a steeper one is a face
+constexpr double kNearCorner = 0.006;  // m; which way a wheel rolls this near to a concave corner is open
+
+}  // namespace stairwright::estimation
