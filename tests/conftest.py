@@ -34,6 +34,8 @@ CHROMIUM_FLAGS = (
     "--disable-dev-shm-usage",
     "--use-angle=swiftshader",  # WebGL without a graphics card
     "--enable-unsafe-swiftshader",
+    "--disable-gpu-compositing",  # without a card that is four times the work
+    "--disable-gpu-rasterization",  # which Debian's Chromium asks for
     "--disable-background-networking",
     "--disable-component-update",
     "--disable-sync",
