@@ -16,7 +16,9 @@ class Trouble:
 
     def failed(self, error: Exception) -> None:
         """Tell it, unless it was told last time."""
-        told = f"{type(error).__name__}: {error}"
+        # The system's errors name files, which may be others each time.
+        why = error.strerror if isinstance(error, OSError) else str(error)
+        told = f"{type(error).__name__}: {why}"
         if told != self._last:
             self._last = told
             self._logger.error("%s failed, and is tried again", self._what, exc_info=error)
