@@ -35,7 +35,9 @@ RUN cmake -S native -B /tmp/native -G Ninja -DPython_EXECUTABLE="$(command -v py
     && cmake --build /tmp/native \
     && cmake --install /tmp/native --prefix backend/stairwright
 COPY --from=page /src/frontend/dist/ frontend/dist/
+# What built it stays behind.
 RUN pip install --no-deps --no-build-isolation . \
+    && pip uninstall --yes cmake hatchling nanobind ninja pip \
     && python -m stairwright.warmup
 
 FROM base
