@@ -31,21 +31,10 @@ signal.signal(signal.SIGALRM, _end_if_orphaned)
 signal.setitimer(signal.ITIMER_REAL, TICK, TICK)
 
 
-def _has_workers() -> bool:
-    """Whether a worker has been forked."""
-    try:
-        os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT)
-    except ChildProcessError:
-        return False
-    return True
-
-
 def _warm_rollouts(*_: object) -> None:
-    """Once there are workers: nobody waits then for this process, which forks none meanwhile."""
-    _end_if_orphaned()
-    if _has_workers():
-        signal.signal(signal.SIGALRM, _end_if_orphaned)
-        work.warm_rollouts()
+    """At the first tick: by then the workers that somebody may wait for have been forked."""
+    signal.signal(signal.SIGALRM, _end_if_orphaned)
+    work.warm_rollouts()
 
 
 def _warm_plans() -> None:
