@@ -19,7 +19,9 @@ from stairwright.library import robots
 
 Row = dict[str, Any]
 INK, SOFT, LINE = "#121920", "#5f6c7a", "#dde3e9"
-SHADES = {0.45: "#7fd0b6", 0.6: "#c4ead8"}
+# Each friction's area and line: the less it needs, the darker.
+SHADES = {0.3: "#3f9e84", 0.45: "#7fc4ac", 0.6: "#b3dfcd", 0.8: "#dcf1e8"}
+DASHES = {0.3: (0, (1, 1.5)), 0.45: (0, (4, 2)), 0.6: "-", 0.8: (0, (7, 1.5, 1, 1.5))}
 # Darkness and dash tell the lines apart, colour helps.
 LINES = (
     ("#2c2347", "-"), ("#3a558f", "-"), ("#3a95a6", "-"), ("#4db5ad", "-"),
@@ -80,11 +82,11 @@ def draw_stairs(rows: Sequence[Row], names: Sequence[str]) -> None:
         2, 4, figsize=(10.4, 5.4), sharex=True, sharey=True, layout="constrained"
     )
     for panel, name in zip(panels.flat, names, strict=False):
-        for friction in (0.6, 0.45):
+        for friction in sorted(SHADES, reverse=True):
             line = chosen(rows, "stairs", name, friction)
             xs, ys = [row["x"] for row in line], _heights(line, 0.94)
             panel.fill_between(xs, ys, color=SHADES[friction], lw=0)
-            panel.plot(xs, ys, color=INK, lw=1.2, ls="-" if friction == 0.6 else "--")
+            panel.plot(xs, ys, color=INK, lw=1.0, ls=DASHES[friction])
         for code, area in CODES.items():
             dash = {"OSHA": (0, (6, 2, 1, 2)), "IBC": "-", "DIN": (0, (3, 2))}[code]
             panel.add_patch(Polygon(area, fill=False, ec="white", lw=2.4))
@@ -113,8 +115,9 @@ def _plain(panel: Axes) -> None:
 def _key(panel: Axes) -> None:
     """What the lines mean, in the panel that is left over."""
     panel.axis("off")
-    panel.fill_between([], [], color=SHADES[0.6], label="climbs at μ 0.60")
-    panel.fill_between([], [], color=SHADES[0.45], label="at μ 0.45 too")
+    for friction, shade in SHADES.items():
+        panel.fill_between([], [], facecolor=shade, label=f"climbs at μ {friction:.2f}",
+                           edgecolor=INK, lw=1.0, ls=DASHES[friction])  # fmt: skip
     panel.plot([], [], color=INK, lw=0.9, label="IBC")
     panel.plot([], [], color=INK, lw=0.9, ls=(0, (6, 2, 1, 2)), label="OSHA")
     panel.plot([], [], color=INK, lw=0.9, ls=(0, (3, 2)), label="DIN 18065")
@@ -192,17 +195,15 @@ def _why(row: Row) -> str:
 
 
 def _stairs_table(rows: Sequence[Row], names: Sequence[str]) -> str:
-    treads = (0.22, 0.3, 0.38)
-    head = " | ".join(f"tread {t:.2f}, μ {mu:.2f}" for t in treads for mu in (0.45, 0.6))
-    lines = [f"| robot | {head} |", "|---" * (1 + 2 * len(treads)) + "|"]
+    treads = (0.22, 0.26, 0.3, 0.34, 0.38)
+    head = " | ".join(f"tread {tread:.2f}" for tread in treads)
+    lines = [f"| robot | μ | {head} |", "|---" * (2 + len(treads)) + "|"]
     for name in names:
-        cells = []
-        for tread in treads:
-            for friction in (0.45, 0.6):
-                line = chosen(rows, "stairs", name, friction)
-                row = next(r for r in line if abs(r["x"] - tread) < 1e-9)
-                cells.append(_cell(row, 2, 0.94))
-        lines.append(f"| {name} | {' | '.join(cells)} |")
+        for friction in SHADES:
+            line = chosen(rows, "stairs", name, friction)
+            found = [next(r for r in line if abs(r["x"] - tread) < 1e-9) for tread in treads]
+            cells = " | ".join(_cell(row, 2, 0.94) for row in found)
+            lines.append(f"| {name} | {friction:.2f} | {cells} |")
     return "\n".join(lines)
 
 

@@ -10,6 +10,7 @@ from stairwright.library import load_robot
 
 DOCS = Path(__file__).parents[1] / "docs"
 FRICTIONS = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
+STAIR_FRICTIONS = (0.3, 0.45, 0.6, 0.8)
 TREADS = (0.18, 0.22, 0.26, 0.30, 0.34, 0.38, 0.42)
 STAIR = {"kind": "stair", "rise": 0.17, "run": 0.28, "count": 3}
 
@@ -23,7 +24,7 @@ def studies_of(name: str) -> Iterator[tuple[str, dict[str, Any]]]:
         {
             "axes": [
                 {"name": "stairs.tread", "values": list(TREADS)},
-                {"name": "friction", "values": [0.45, 0.6]},
+                {"name": "friction", "values": list(STAIR_FRICTIONS)},
                 {"name": "stairs.rise", "boundary": [0.04, 0.94], "tolerance": 0.03},
             ]
         },
