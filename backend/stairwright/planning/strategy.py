@@ -181,7 +181,7 @@ def _make(
             tried[attempt] = answer
             if isinstance(answer, Solved) and first:
                 break
-            if isinstance(answer, Blocked) and answer.opened and attempts[-1].probe:
+            if (isinstance(answer, Solved) or answer.opened) and attempts[-1].probe:
                 break
 
 
