@@ -219,8 +219,15 @@ class PathPlanner(PathProblem):
 
     @cached_property
     def repairing_all(self) -> PathPlanner:
-        """The same problem, which also repairs what overloads motors."""
-        return replace(self, thorough=True)
+        """The same problem, which also repairs what overloads motors; to be asked after this one.
+
+        What came of other attempts is as it was.
+        """
+        other = replace(self, thorough=True)
+        for how, end in self.tried.items():
+            if isinstance(end, Solved) or end.weak is None:
+                other.tried[how] = end
+        return other
 
     @cached_property
     def regardless(self) -> PathPlanner:
