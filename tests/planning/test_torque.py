@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import stairwright as sw
+from stairwright.planning.path_planner import Blocked, Solved, path_planner
+from stairwright.planning.smoothing.node_margins import FIRM_TORQUE
 from stairwright.planning.static_torques import static_torques
+from stairwright.planning.strategy import AT_ONCE, HEAVY, solve
+from stairwright.planning.threads import in_this_thread
+from stairwright.planning.weights import PathWeights
+from stairwright.terrain.generation import StairParameters, generate
 
 STEP = {"points": [[-2.0, 0.0], [0.0, 0.0], [0.0, 0.1], [2.5, 0.1]]}
 
@@ -68,3 +76,26 @@ def test_a_search_within_torques_leads_where_motors_have_most_to_spare():
     assert plan.feasible
     # By its own sensors its legs, 5 mm apart in the end, touch: this is about torques.
     assert sw.rollout(plan, controller={"sensing": "ideal"}).outcome == "success"
+
+
+def test_what_overloads_motors_is_repaired_where_no_path_within_torques_is_found():
+    flight = StairParameters(kind="stair", rise=0.16, run=0.22, count=3)
+    terrain, robot = generate(flight), sw.load_robot("go2w")
+
+    def planner():
+        return path_planner(terrain, robot, 0.35, PathWeights())
+
+    usual = planner()
+    first = usual.attempt(AT_ONCE)
+    assert isinstance(first, Blocked)
+    assert first.weak == "leg"
+    found = solve(usual, in_this_thread())
+    assert isinstance(found, Solved)
+    assert found is usual.within_torques.attempt(AT_ONCE)
+
+    slippery = planner()
+    slippery.within_torques = replace(slippery.within_torques, friction=0.01)
+    found = solve(slippery, in_this_thread())
+    assert isinstance(found, Solved)
+    assert found.certificate.passed
+    assert HEAVY < found.torque_share <= FIRM_TORQUE

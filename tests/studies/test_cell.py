@@ -158,6 +158,19 @@ def test_files(result: sw.StudyResult, tmp_path: Path) -> None:
         result.save(tmp_path / "a.png")
 
 
+def test_cells_that_differ_in_friction_alone_follow_each_other() -> None:
+    axes = load_study(
+        study(
+            {"name": "friction", "values": [0.3, 0.5, 0.7]},
+            {"name": "step.height", "from": 0.1, "to": 0.4, "count": 9},
+        )
+    ).axes
+    order = coarse_first(axes)
+    heights = np.array([place((3, 9), cell)[1] for cell in order])
+    assert sorted(order) == list(range(27))
+    assert np.count_nonzero(np.diff(heights[-12:])) == 3  # of the finest level, 4 x 3 cells
+
+
 def test_a_coarse_picture_comes_first() -> None:
     axes = load_study(
         study(

@@ -10,8 +10,9 @@ import numpy as np
 
 from stairwright.errors import InputError
 from stairwright.planning.certificate.certify import with_dynamics
+from stairwright.planning.courses import courses
 from stairwright.planning.infeasibility.diagnosis import no_standing_pose
-from stairwright.planning.path_planner import THIN, Blocked, PathPlanner, Solved, path_planner
+from stairwright.planning.path_planner import THIN, Blocked, PathPlanner, Solved
 from stairwright.planning.plan import Plan, PlanTiming, Problem
 from stairwright.planning.smoothing.path_document import make_plan
 from stairwright.planning.standing import NoStandingPose
@@ -63,8 +64,8 @@ def plan_path(
         make_plan, terrain, friction=friction, weights=weights, begun=begun, tolerance=tolerance
     )
     try:
-        fast = timing == "fast"
-        planners = [path_planner(terrain, one, least, searched, fast=fast) for one in robots]
+        planner_of, fast = courses().planner, timing == "fast"
+        planners = [planner_of(terrain, one, least, searched, fast=fast) for one in robots]
     except NoStandingPose as error:
         return document(robot, problem=no_standing_pose(terrain, robot, error))
     except InputError as error:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import time as clock
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -31,7 +32,7 @@ from stairwright.planning.smoothing.node_margins import BEYOND_REPAIR, Motor
 from stairwright.planning.smoothing.path_document import PathPoses, make_plan
 from stairwright.planning.smoothing.path_timing import path_parameter
 from stairwright.planning.smoothing.refine import Refined, refine
-from stairwright.planning.smoothing.repair import STAGES, repair
+from stairwright.planning.smoothing.repair import STAGES, Stage, repair
 from stairwright.planning.standing import StandingPose, find_standing_poses
 from stairwright.planning.threads import still_wanted
 from stairwright.planning.timing.fast import TimingProblem
@@ -137,6 +138,7 @@ class PathPlanner(PathProblem):
     """A problem and the ways to its answer."""
 
     fast: bool = False  # whether the path is to be driven fast
+    thorough: bool = False  # whether to repair what overloads motors, searched without regard to it
     searches: Searches = field(default_factory=dict)
     tried: Outcomes = field(default_factory=dict, init=False)
 
@@ -216,6 +218,18 @@ class PathPlanner(PathProblem):
         return self._searched(torques=True)
 
     @cached_property
+    def repairing_all(self) -> PathPlanner:
+        """The same problem, which also repairs what overloads motors; to be asked after this one.
+
+        What came of other attempts is as it was.
+        """
+        other = replace(self, thorough=True)
+        for how, end in self.tried.items():
+            if isinstance(end, Solved) or end.weak is None:
+                other.tried[how] = end
+        return other
+
+    @cached_property
     def regardless(self) -> PathPlanner:
         """The same problem, searched without regard to torques, as every question is at first."""
         return self._searched(torques=False)
@@ -275,9 +289,7 @@ class PathPlanner(PathProblem):
         still_wanted()
         found = refine(self, self.ends, finding.s, finding.body)
         judged: Refined | None = None
-        # No local repair makes motors hold much more: another path does.
-        stages = () if found.margins.torque_excess > BEYOND_REPAIR else STAGES
-        for stage in (*stages, None):
+        for stage in (*self._stages(found), None):
             still_wanted()
             if found is not judged:
                 judged, bad = found, found.margins.bad
@@ -292,6 +304,18 @@ class PathPlanner(PathProblem):
         weak = found.margins.overloaded
         share = found.margins.torque_share if weak else math.inf
         return Blocked((float(worst[0]), float(worst[1])), True, weak, share=share)
+
+    def _stages(self, found: Refined) -> Sequence[Stage]:
+        """The kinds of repair that are tried.
+
+        No local repair makes motors hold much more: another path does. Pieces that are searched
+        without regard to torques seldom make them hold a little more, and take longer than a path
+        within torques.
+        """
+        excess = found.margins.torque_excess
+        if excess > BEYOND_REPAIR:
+            return ()
+        return STAGES if excess <= 0.0 or self.torques or self.thorough else STAGES[:1]
 
     def _certified(self, nodes: Refined) -> Solved:
         """The path with its certificate, passed or not."""

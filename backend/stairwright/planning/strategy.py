@@ -10,7 +10,8 @@
 A path of the first two steps with little CoM margin, or motors that have next to nothing to spare,
 is compared with what the next step finds.
 Where motors are too weak for the path found, or all but so, all of it is done again with torques
-looked at in the search; where the user's weights find none, again with the default weights.
+looked at in the search, and where that leads to none, without, but with such paths repaired at all
+cost; where the user's weights find none, again with the default weights.
 """
 
 from __future__ import annotations
@@ -59,6 +60,11 @@ def solve(
         held = solve(planner.within_torques, pool, any_path, likely)
         if isinstance(held, Solved):
             return held
+        if not planner.thorough:
+            repaired = _search(planner.repairing_all, pool, any_path, likely)
+            if isinstance(repaired, Solved):
+                return repaired
+            found = repaired
         return replace(held, weak=held.weak or found.weak, share=min(held.share, found.share))
     return solve(planner.unweighted, pool, any_path, likely) if planner.unweighted else found
 
@@ -181,7 +187,7 @@ def _make(
             tried[attempt] = answer
             if isinstance(answer, Solved) and first:
                 break
-            if isinstance(answer, Blocked) and answer.opened and attempts[-1].probe:
+            if (isinstance(answer, Solved) or answer.opened) and attempts[-1].probe:
                 break
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from stairwright.errors import InputError
+from stairwright.planning.courses import kept_in
 from stairwright.planning.plan import Plan
 from stairwright.planning.planner import plan as make_plan
 from stairwright.planning.smoothing.path_document import distance_covered, least_margins
@@ -28,7 +29,7 @@ def evaluate(questions: Questions, point: tuple[Value, ...]) -> Record:
     except InputError as error:
         return complete({"state": REFUSED, "reason": "bad-input", "message": str(error)})
     try:
-        with one_by_one():
+        with one_by_one(), kept_in(questions.courses):
             return complete(_answer(questions.study, question, _diagnosed(questions.study, point)))
     except Exception as error:  # noqa: BLE001 - one cell must not end the others
         why = f"{type(error).__name__}: {error}"

@@ -41,7 +41,8 @@ def levels(length: int, *, numeric: bool = True) -> Ints:
 def coarse_first(axes: Sequence[Axis]) -> Ints:
     """All cells of a grid, those of a coarse picture before those between them.
 
-    Within a level neighbours follow each other, so that what they share is derived once.
+    Within a level neighbours follow each other, first those that differ in friction alone, so that
+    what they share is derived once.
     """
     shape = tuple(len(axis.points) for axis in axes)
     tops = [levels(n, numeric=axis.numeric) for n, axis in zip(shape, axes, strict=True)]
@@ -52,8 +53,10 @@ def coarse_first(axes: Sequence[Axis]) -> Ints:
             spread = [1] * len(shape)
             spread[k] = -1
             level = np.minimum(level, (each + most - each.max()).reshape(spread))
-    flat = level.ravel()
-    return np.argsort(-flat, kind="stable")
+    friction_last = sorted(range(len(axes)), key=lambda k: axes[k].name == "friction")
+    cells = np.arange(level.size).reshape(shape).transpose(friction_last).ravel()
+    ordered: Ints = cells[np.argsort(-level.ravel()[cells], kind="stable")]
+    return ordered
 
 
 @lru_cache(maxsize=8)

@@ -13,6 +13,7 @@ from stairwright.arguments import as_friction
 from stairwright.control.settings import parse_settings
 from stairwright.documents import parse, wording
 from stairwright.errors import InputError
+from stairwright.planning.courses import Courses
 from stairwright.planning.plan import Method, PlanTiming
 from stairwright.planning.tolerance import Tolerance, parse_tolerance
 from stairwright.planning.weights import parse_weights
@@ -97,6 +98,7 @@ class Questions:
                 check_value(where, axis.points[0])
             except InputError as error:
                 raise error.within("axes", i, "values") from None
+        self.courses = Courses()
         self._robots: OrderedDict[tuple[Any, ...], Robot] = OrderedDict()
 
     def at(self, point: Sequence[Value]) -> CellQuestion:

@@ -81,11 +81,11 @@ def search_between(
 ) -> Search:
     """A search between two stands; one of `searches` if it is there."""
     kept: Searches = {} if searches is None else searches
-    key = (id(q.robot), fine, bounds, begin.wheels, end.wheels, tuple(begin.body.tolist()))
+    key = (fine, bounds, begin.wheels, end.wheels, tuple(begin.body.tolist()))
     search = kept.get(key)
     if search is None:
         search = Search(q, begin, end, make_lattice(q.robot, fine), bounds)
-        finest = sum(one[1] <= 1.0 for one in kept)
+        finest = sum(one[0] <= 1.0 for one in kept)
         if len(kept) < _KEPT and (fine > 1.0 or finest < _KEPT_FINE):
             kept[key] = search
     return search
