@@ -16,7 +16,7 @@ constexpr double kRecalled = 0.006;  // m; how well rear wheels know what front 
 constexpr double kReach = 0.5;  // m along the curve that a face or tread is looked for
 constexpr double kInto = 0.02;  // m that a wheel must be on a face or tread
 constexpr double kSameGround = 1e-3;  // m
-constexpr double kLeastFace = 0.008, kLeastTread = 0.006;  // m; less is not worth another plan
+constexpr double kLeastFace = 0.008, kLeastEdge = 0.02, kLeastTread = 0.006;  // m; less is not worth another plan
 
 }  // namespace
 
@@ -37,7 +37,8 @@ void Estimator::find_map_error() {
     if (std::min(left.known, right.known) < kSettled || left.on_face != right.on_face || left.missed || right.missed) return;
     const double off = left.on_face ? offset_[0].x : offset_[0].z, s = 0.5 * (left.s + right.s);
     remember(s, left.on_face, off);
-    if (std::abs(off) < (left.on_face ? kLeastFace : kLeastTread)) return;
+    const double least = path_.on_arc(left.s) ? kLeastEdge : left.on_face ? kLeastFace : kLeastTread;
+    if (std::abs(off) < least) return;
     estimate_.map_error = MapError{left.on_face, s, offset_[0]};
 }
 
