@@ -21,7 +21,7 @@ def position_after(front: float, rear: float) -> float:
     follower = _core.PlanFollower(
         AT, grid[1], rows[first:], np.full(len(grid) - first, 0.1), maximum_lead=0.012
     )
-    places = [AT + front, AT + front, AT + rear, AT + rear]
+    places = AT + np.array([front, front, rear, rear])
     for _ in range(250):
         follower.advance(places, True, 0.002)
     return float(follower.position)
