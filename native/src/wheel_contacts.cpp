@@ -6,6 +6,9 @@ namespace stairwright {
 
 namespace {
 
+constexpr double kEarly = 0.06;     // m before its place that a drop may come
+constexpr double kNoticed = 0.035;  // m round its edge that a wheel is by the time it has been noticed
+
 // What a wheel between two faces leans on.
 enum Lean { kFirstFace = 0, kSecondFace = 1, kBothFaces = 2 };
 
@@ -41,6 +44,12 @@ bool tilts(const WheelPath& path, double s, double other) {
 
 enum Timing { kInTime = 0, kLate = 1, kLittleLate = 2, kAhead = 3 };
 
+// The contact of a wheel at `s` on a face that is turned as at `other`: the direction decides.
+void add_turned(Counted& out, const WheelPath& path, double s, double other, double friction) {
+    const Vec2 normal = path.normal(other);
+    out.add({path.centre(s) - path.radius() * normal, normal, friction});
+}
+
 // Contacts of a wheel that is not where it was planned.
 void add_strayed(Counted& out, const WheelPath& path, double s, double friction, int timing, double lag) {
     if (timing == kInTime) {
@@ -53,9 +62,14 @@ void add_strayed(Counted& out, const WheelPath& path, double s, double friction,
         const std::size_t k = path.corner_from(s);
         if (k < path.corners().size() && path.corners()[k] < other) other = s;
     }
-    // The straying wheel's normal at the planned centre: the direction decides.
-    const Vec2 centre = path.centre(s), normal = path.normal(other);
-    out.add({centre - path.radius() * normal, normal, friction});
+    add_turned(out, path, s, other, friction);
+}
+
+// Where on its edge a wheel at `s` may be if a drop ahead comes kEarly before it is planned, and is noticed `noticed`
+// round the edge; `s` if there is none.
+double early_place(const WheelPath& path, double s, double noticed) {
+    const double drop = path.next_drop(s);
+    return drop < s + kEarly ? std::max(s, std::min(s + kEarly, drop + noticed)) : s;
 }
 
 }  // namespace
@@ -112,6 +126,30 @@ Interval steady_interval(const WheelPath& path, WheelPlaces s, double friction) 
     return out;
 }
 
+namespace {
+
+// What is left of `in_time` where a pair is over a drop before it is planned: of the drops that leave anything, the
+// farthest round.
+Interval early_interval(const WheelPath& path, WheelPlaces s, double friction, const Interval& in_time) {
+    Interval out = in_time;
+    for (const int pair : {kFront, kRear}) {
+        for (const double noticed : {kNoticed, 0.5 * kNoticed}) {
+            const double other = early_place(path, s[pair], noticed);
+            if (other == s[pair]) break;
+            Counted counted;
+            add_turned(counted, path, s[pair], other, friction);
+            counted.add_all(wheel_contacts(path, s[pair == kFront ? kRear : kFront], friction));
+            const Interval both = out.intersect(com_interval(counted.span(), kGentleRays));
+            if (both.empty()) continue;
+            out = both;
+            break;
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
 Interval lagged_interval(const WheelPath& path, WheelPlaces s, double friction, double lag) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Interval out{-infinity, infinity};
@@ -125,7 +163,7 @@ Interval lagged_interval(const WheelPath& path, WheelPlaces s, double friction, 
             if (out.empty()) return out;
         }
     }
-    return out;
+    return early_interval(path, s, friction, out);
 }
 
 NodeIntervals node_intervals(const WheelPath& path, WheelPlaces s, double friction, double reserve, double lag) {

@@ -14,6 +14,7 @@ using std::numbers::pi;
 
 constexpr double kShortest = 1e-9;  // m; shorter pieces are dropped
 constexpr double kKink = 1e-3;      // rad; a larger jump of the normal towards the wheel is a concave corner
+constexpr double kSteep = 0.7;  // x of a face's normal that is no tread
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Offset segments and the arcs between them, untrimmed; their arc lengths are still 0.
@@ -161,6 +162,12 @@ WheelPath::WheelPath(std::vector<Piece> pieces, std::vector<double> corners, dou
 std::size_t WheelPath::piece(double s) const {
     const auto k = std::upper_bound(starts_.begin(), starts_.end(), s) - starts_.begin();
     return static_cast<std::size_t>(std::max<std::ptrdiff_t>(k - 1, 0));
+}
+
+double WheelPath::next_drop(double s) const {
+    for (std::size_t k = piece(s); k < pieces_.size(); ++k)
+        if (pieces_[k].arc && pieces_[k].at(pieces_[k].length, radius_).normal.x > kSteep) return pieces_[k].s;
+    return kInfinity;
 }
 
 std::size_t WheelPath::corner_from(double s) const {

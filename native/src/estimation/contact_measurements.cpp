@@ -14,6 +14,8 @@ namespace {
 constexpr double kGripUsed = 0.25;     // share of the normal force from which on traction makes slip likely
 constexpr double kAtRest = 0.015;      // m/s of rolling
 constexpr double kRound = 3.0;          // of the noise off a face: errors last longer round an edge
+constexpr double kEarly = 0.06;        // m before its place that an edge may come
+constexpr double kMayEnd = 25.0;       // of the variance of a place on a tread that may end
 constexpr double kNearEdge = 0.015;    // m along the curve
 constexpr double kEdgeStray = 0.012;   // m that the map's edge may be off
 constexpr double kLevel = 0.95;        // cosine of the slope of a face on which the wheels' scale is estimated
@@ -30,8 +32,14 @@ double dot_of(const Error& a, const Error& b) {
 
 }  // namespace
 
+// Whether a wheel is on a tread that may end under it, in an edge that leads down and comes early.
+bool Estimator::before_drop(const CurveMatch& on) const {
+    return !on.corner && !path_.pieces()[on.piece].arc && on.point.normal.z > kTread && path_.next_drop(on.s) < on.s + kEarly;
+}
+
 void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error) {
-    const double variance = noise_.place * noise_.place * std::max(1.0, noise_.place_lasts / dt);
+    const double doubt = before_drop(on) ? kMayEnd : 1.0;
+    const double variance = doubt * noise_.place * noise_.place * std::max(1.0, noise_.place_lasts / dt);
     const Vec2 off = on.point.centre - centre;
     const auto row = [&](Vec2 d) {
         Error h;
@@ -117,7 +125,7 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
         return;
     }
     // Round an edge a face is only as well known as the place on it.
-    const bool edge = path_.on_arc(on.s) || path_.on_arc(on.s - kNearEdge) || path_.on_arc(on.s + kNearEdge);
+    const bool edge = before_drop(on) || path_.on_arc(on.s) || path_.on_arc(on.s - kNearEdge) || path_.on_arc(on.s + kNearEdge);
     const double askew = edge ? std::abs(w.cruise) * std::min(1.0, kEdgeStray / radius) : 0.0;
     Vec3 t = {n.z, 0.0, -n.x};
     const double aside = dot3(t, axis);

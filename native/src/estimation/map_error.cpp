@@ -16,14 +16,16 @@ constexpr double kRecalled = 0.006;  // m; how well rear wheels know what front 
 constexpr double kReach = 0.5;  // m along the curve that a face or tread is looked for
 constexpr double kInto = 0.02;  // m that a wheel must be on a face or tread
 constexpr double kSameGround = 1e-3;  // m
-constexpr double kLeastFace = 0.008, kLeastTread = 0.006;  // m; less is not worth another plan
+constexpr double kLeastFace = 0.008, kLeastEdge = 0.02, kLeastTread = 0.006;  // m; less is not worth another plan
 
 }  // namespace
 
 void Estimator::compare_with_map(int i, const CurveMatch& on, double dt) {
     WheelState& w = wheels_[i];
-    const bool felt = estimate_.touching[i] && (on.corner || !path_.pieces()[on.piece].arc);
-    const bool face = on.corner || on.point.normal.z < kTread;
+    // An edge that leads down tells where the face below it is.
+    const bool drop = !on.corner && path_.pieces()[on.piece].arc && path_.next_drop(on.s) <= on.s;
+    const bool felt = estimate_.touching[i] && (on.corner || drop || !path_.pieces()[on.piece].arc);
+    const bool face = on.corner || drop || on.point.normal.z < kTread;
     if (!felt || face != w.on_face) w.known = 0.0;
     w.on_face = face;
     if (felt) w.known += dt;
@@ -35,7 +37,8 @@ void Estimator::find_map_error() {
     if (std::min(left.known, right.known) < kSettled || left.on_face != right.on_face || left.missed || right.missed) return;
     const double off = left.on_face ? offset_[0].x : offset_[0].z, s = 0.5 * (left.s + right.s);
     remember(s, left.on_face, off);
-    if (std::abs(off) < (left.on_face ? kLeastFace : kLeastTread)) return;
+    const double least = path_.on_arc(left.s) ? kLeastEdge : left.on_face ? kLeastFace : kLeastTread;
+    if (std::abs(off) < least) return;
     estimate_.map_error = MapError{left.on_face, s, offset_[0]};
 }
 

@@ -36,7 +36,11 @@ class PlanFollower {
         double share;
     };
     Spot spot(double position) const;
-    double wheel_lag(Spot at, const std::array<double, 4>& places) const;
+    struct Lag {
+        double mean = 0.0;   // of the wheels behind the plan [m]
+        double apart = 0.0;  // of rear wheels behind front ones, beyond what is planned [m]
+    };
+    Lag wheel_lag(Spot at, const std::array<double, 4>& places) const;
     double planned_acceleration(Spot at) const;
     void set_target(Spot at);
 

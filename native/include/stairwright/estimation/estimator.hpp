@@ -142,6 +142,7 @@ class Estimator {
     void recall(WheelState& rear);
     std::size_t straight_piece(double s, bool face) const;
     bool is_face(std::size_t piece) const;
+    bool before_drop(const CurveMatch& on) const;
     double nearest_corner(double s) const;  // along the curve, to the place `s` on it [m]
     void measure_place(int wheel, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error);
     void measure_rolling(int wheel, const CurveMatch& on, const Readings& readings, const Error& along_x, const Error& along_z, double dt, Error& error);

@@ -1,0 +1,36 @@
+"""The plan's clock: how it goes with wheels that are not where it is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from stairwright import _core
+from stairwright.control.setpoint import RATES, WHEELS, WIDTH
+
+AT = 0.5  # m along the plan
+
+
+def position_after(front: float, rear: float) -> float:
+    """Where the clock is after half a second beside wheels that stay ahead of `AT` by that [m]."""
+    grid = np.linspace(0.0, 1.0, 201)
+    rows = np.zeros((len(grid), WIDTH))
+    rows[:, WHEELS] = grid[:, None]
+    rows[:, RATES : RATES + 2] = 1.0
+    first = 100
+    follower = _core.PlanFollower(
+        AT, grid[1], rows[first:], np.full(len(grid) - first, 0.1), maximum_lead=0.012
+    )
+    places = AT + np.array([front, front, rear, rear])
+    for _ in range(250):
+        follower.advance(places, True, 0.002)
+    return float(follower.position)
+
+
+def test_it_waits_for_front_wheels_that_are_over_an_edge_before_it() -> None:
+    assert position_after(0.04, 0.0) == pytest.approx(AT)
+
+
+@pytest.mark.parametrize(("front", "rear"), [(0.04, 0.04), (0.015, 0.0), (0.0, 0.04)])
+def test_it_goes_on_with_wheels_that_are_ahead_otherwise(front: float, rear: float) -> None:
+    assert position_after(front, rear) > AT + 0.01
