@@ -6,7 +6,6 @@ namespace stairwright {
 
 namespace {
 
-constexpr double kEarly = 0.06;     // m before its place that a drop may come
 constexpr double kNoticed = 0.035;  // m round its edge that a wheel is by the time it has been noticed
 
 // What a wheel between two faces leans on.
@@ -65,11 +64,11 @@ void add_strayed(Counted& out, const WheelPath& path, double s, double friction,
     add_turned(out, path, s, other, friction);
 }
 
-// Where on its edge a wheel at `s` may be if a drop ahead comes kEarly before it is planned, and is noticed `noticed`
+// Where on its edge a wheel at `s` may be if a drop ahead comes kEarlyDrop before it is planned, and is noticed `noticed`
 // round the edge; `s` if there is none.
 double early_place(const WheelPath& path, double s, double noticed) {
     const double drop = path.next_drop(s);
-    return drop < s + kEarly ? std::max(s, std::min(s + kEarly, drop + noticed)) : s;
+    return drop < s + kEarlyDrop ? std::max(s, std::min(s + kEarlyDrop, drop + noticed)) : s;
 }
 
 }  // namespace

@@ -36,6 +36,8 @@ struct Piece {
     double parameter(Vec2 p, double radius) const;
 };
 
+inline constexpr double kEarlyDrop = 0.06;  // m before its place that an edge which leads down a face may come
+
 class WheelPath {
   public:
     // Throws std::invalid_argument if the profile is too short to hold a wheel.

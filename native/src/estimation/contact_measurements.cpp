@@ -14,7 +14,6 @@ namespace {
 constexpr double kGripUsed = 0.25;     // share of the normal force from which on traction makes slip likely
 constexpr double kAtRest = 0.015;      // m/s of rolling
 constexpr double kRound = 3.0;          // of the noise off a face: errors last longer round an edge
-constexpr double kEarly = 0.06;        // m before its place that an edge may come
 constexpr double kMayEnd = 25.0;       // of the variance of a place on a tread that may end
 constexpr double kNearEdge = 0.015;    // m along the curve
 constexpr double kEdgeStray = 0.012;   // m that the map's edge may be off
@@ -34,7 +33,7 @@ double dot_of(const Error& a, const Error& b) {
 
 // Whether a wheel is on a tread that may end under it, in an edge that leads down and comes early.
 bool Estimator::before_drop(const CurveMatch& on) const {
-    return !on.corner && !path_.pieces()[on.piece].arc && on.point.normal.z > kTread && path_.next_drop(on.s) < on.s + kEarly;
+    return !on.corner && !path_.pieces()[on.piece].arc && on.point.normal.z > kTread && path_.next_drop(on.s) < on.s + kEarlyDrop;
 }
 
 void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error) {
