@@ -34,6 +34,7 @@ from .routes import (
     scene,
     sessions,
     studies,
+    study_cells,
     terrains,
     trials,
     tuning,
@@ -104,6 +105,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         margins,
         jobs,
         studies,
+        study_cells,
         designs,
         sessions,
     ):

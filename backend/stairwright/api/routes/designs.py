@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import hashlib
-import time
-from collections.abc import AsyncIterator
 from functools import partial
 from typing import Annotated, Any
 
 import orjson
 from fastapi import APIRouter, Path, Request, Response
-from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
+from fastapi.sse import format_sse_event
 
+from stairwright.api import event_streams
 from stairwright.api.deps import (
     JSON_BODY,
     Idempotent,
@@ -40,7 +39,6 @@ from stairwright.studies.design_shelf import (
 from stairwright.studies.service import Following
 from stairwright.studies.version import engine_of
 
-from . import event_streams
 from .studies import be_sure_of_packages
 
 EVENTS = """Events named `design`, each with how far the search is, as in the list of searches, as
@@ -135,25 +133,21 @@ async def design_events(
     if following is None:
         raise not_found("search of this service", design_id)
     seen = event_streams.revision_seen(last_event_id)
-    if following.job.finished and seen >= following.job.revision:
-        return Response(status_code=204)  # tells an EventSource not to come back
-    return event_streams.streamed(_events(services, following))
+    return event_streams.streamed(following.job, seen, _events(services, following))
 
 
-async def _events(services: Services, following: Following) -> AsyncIterator[bytes]:
-    told, spoken = (0, -1), time.monotonic()
+async def _events(services: Services, following: Following) -> event_streams.Events:
+    told = (0, -1)
     while True:
         now, finished = (following.job.revision, following.done), following.job.finished
         if now != told:
-            told, spoken = now, time.monotonic()
+            told = now
             shown = await asyncio.to_thread(_document, services, following)
             event = shown.model_dump_json()
             yield format_sse_event(data_str=event, event="design", id=str(now[0]))
-        elif time.monotonic() - spoken >= event_streams.QUIET:
-            spoken = time.monotonic()
-            yield KEEPALIVE_COMMENT
         if finished:
             return
+        yield None
         await asyncio.sleep(EVERY)
 
 

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import AsyncIterator
 from typing import Annotated, Literal, cast
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
-from fastapi.sse import KEEPALIVE_COMMENT, format_sse_event
+from fastapi.sse import format_sse_event
 
+from stairwright.api import event_streams
 from stairwright.api.bodies import JobDocument
 from stairwright.api.deps import Limit, Offset, Service
 from stairwright.api.problems import describe, not_found
 from stairwright.api.responses import models_json
 from stairwright.jobs.job import Job, State
 from stairwright.jobs.live import EVERY, LiveSeries
-
-from . import event_streams
 
 EVENTS = """Events named `job`, each with the job as JSON and its revision as the event's id; and,
 while a rollout runs, events named `series` without an id, about ten a second, each with the samples
@@ -110,17 +108,16 @@ async def job_events(
 ) -> Response:
     """The job now and at every change until it is finished, and its series as it grows."""
     seen = event_streams.revision_seen(last_event_id)
-    if job.finished and seen >= job.revision:
-        return Response(status_code=204)  # tells an EventSource not to come back
-    return event_streams.streamed(
-        _events(job, seen if seen < job.revision else 0, job.live if series else None)
-    )
+    changes = job.changes(seen if seen < job.revision else 0)
+    events = _events(job, changes, job.live if series else None)
+    return event_streams.streamed(job, seen, events)
 
 
-async def _events(job: Job, seen: int, live: LiveSeries | None) -> AsyncIterator[bytes]:
-    changes, offset = job.changes(seen), 0
+async def _events(
+    job: Job, changes: AsyncIterator[int], live: LiveSeries | None
+) -> event_streams.Events:
+    offset = 0
     look_every = event_streams.QUIET if live is None else EVERY
-    spoken = time.monotonic()
     while True:
         following = asyncio.ensure_future(anext(changes, None))
         try:
@@ -130,11 +127,8 @@ async def _events(job: Job, seen: int, live: LiveSeries | None) -> AsyncIterator
                 chunks, offset = ([], 0) if live is None else live.after(offset)
                 for chunk in chunks:
                     yield format_sse_event(data_str=chunk.decode(), event="series")
-                if chunks or done:
-                    spoken = time.monotonic()
-                elif time.monotonic() - spoken >= event_streams.QUIET:
-                    spoken = time.monotonic()
-                    yield KEEPALIVE_COMMENT
+                if not chunks:
+                    yield None
         except BaseException:
             following.cancel()
             raise
