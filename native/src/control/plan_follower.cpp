@@ -53,7 +53,7 @@ PlanFollower::Lag PlanFollower::wheel_lag(Spot at, const std::array<double, 4>& 
             rear - front};
 }
 
-const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool moving, double dt, bool hanging) {
+const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool moving, double dt, bool hanging, bool before_drop) {
     const Spot now = spot(position_);
     const Lag lag = wheel_lag(now, places);
     lag_ = lag.mean;
@@ -65,8 +65,8 @@ const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool
             rate = allowed * std::min(1.0, std::max(-0.5, 2.0 * (most - lag_) / most));
         else
             rate = allowed * std::min(kHurry, 1.0 - lag_ / maximum_lead_ * (kHurry - 1.0));
-        // Front wheels that are over an edge before the plan is: it waits for them to come back.
-        if (lag.apart > kMostApart) rate = std::min(rate, 0.0);
+        // Front wheels are over the edge: it waits for them to come back.
+        if (before_drop && lag.apart > kMostApart) rate = std::min(rate, 0.0);
     }
     const double reach = std::max(kRateAcceleration, planned_acceleration(now)) * dt;
     rate = std::min(std::max(rate, rate_ - 4 * reach), rate_ + reach);

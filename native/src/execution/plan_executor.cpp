@@ -24,6 +24,11 @@ bool PlanExecutor::hangs(const control::Ahead& ahead) const {
     return (ahead.hanging[kFront] && loaded(kFront)) || (ahead.hanging[kRear] && loaded(kRear));
 }
 
+bool PlanExecutor::before_drop() const {
+    const double front = follower_.target().value.wheels[kFront];
+    return controller_.path().next_drop(front) < front + kEarlyDrop;
+}
+
 const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool moving, double time, double dt) {
     if (safe_stop_.why() != control::Stop::none) return stand_;
     moving = moving && grip_test_.over() && !waits_;
@@ -33,7 +38,7 @@ const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool 
     const bool searching = moving && seen.ahead.any();
     std::array<double, 4> places = controller_.places();
     for (std::size_t i = 0; i < 4; ++i) places[i] -= early_face_.ahead()[i / 2];
-    const control::Reference& drawn = follower_.advance(places, moving && !searching, dt, hangs(seen.ahead));
+    const control::Reference& drawn = follower_.advance(places, moving && !searching, dt, hangs(seen.ahead), before_drop());
     if (!seen.places) return drawn;
     if (!grip_test_.over() && plan_change_.over()) {
         adapted_ = grip_test_.step(drawn, seen.state, seen.used_grip, seen.ahead.on_tread[0] && seen.ahead.on_tread[1], dt);

@@ -59,6 +59,8 @@ class PlanExecutor {
   private:
     // Whether wheels hang in the air that are to carry weight: not where the plan itself hardly loads them.
     bool hangs(const control::Ahead& ahead) const;
+    // Whether the plan has the front wheels where an edge that leads down may come before its place, or on it.
+    bool before_drop() const;
     const control::Reference& next_target(const Perceived& seen, bool moving, double time, double dt);
 
     control::Controller controller_;
