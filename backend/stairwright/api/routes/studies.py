@@ -1,4 +1,4 @@
-"""Studies: ask one, follow its cells as they come, look at one of them, take the dataset along."""
+"""Studies: ask one, see how far it is, stop it, go on with it, remove it."""
 
 from __future__ import annotations
 
