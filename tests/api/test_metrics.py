@@ -39,8 +39,12 @@ def test_times_and_outcomes(server: Server) -> None:
         cancelled = long_rollout(api, seed)
         wait_for(api, cancelled, "running")
         api.delete(f"/jobs/{cancelled}")
-        time.sleep(0.5)
-    after = figures(server)
+    counted = "stairwright_work_total{outcome=cancelled,pool=rollouts}"
+    for _ in range(100):  # its worker is asked first, and then killed
+        after = figures(server)
+        if after.get(counted, 0.0) > before.get(counted, 0.0):
+            break
+        time.sleep(0.1)
 
     def more(name: str) -> float:
         return after.get(f"stairwright_{name}", 0.0) - before.get(f"stairwright_{name}", 0.0)
