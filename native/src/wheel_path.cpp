@@ -165,7 +165,7 @@ std::size_t WheelPath::piece(double s) const {
 }
 
 double WheelPath::next_drop(double s) const {
-    for (std::size_t k = piece(s); k < pieces_.size(); ++k)
+    for (std::size_t k = piece(s); k < pieces_.size() && pieces_[k].s < s + kEarlyDrop; ++k)
         if (pieces_[k].arc && pieces_[k].at(pieces_[k].length, radius_).normal.x > kSteep) return pieces_[k].s;
     return kInfinity;
 }
