@@ -33,6 +33,11 @@ PASTE = """text => {
   document.dispatchEvent(
     new ClipboardEvent("paste", { clipboardData: data, bubbles: true }));
 }"""
+# Whether the state in the address holds a text: the address follows a moment after the page.
+LINKED = """text => {
+  const state = new URLSearchParams(location.hash.slice(1)).get("s") ?? "";
+  return atob(state.replace(/-/g, "+").replace(/_/g, "/")).includes(text);
+}"""
 PATIENCE = 120_000  # ms; for a rollout or a proof that there is no way, on a busy machine
 
 
@@ -79,6 +84,11 @@ class Product:
         """Drop a file on the canvas."""
         self.page.evaluate(DROP, [name, text])
         return self
+
+    def linked(self, text: str) -> str:
+        """The address once the state in it holds a text (JSON without spaces)."""
+        self.page.wait_for_function(LINKED, arg=text)
+        return self.page.url
 
     def has_corners(self, count: int) -> Product:
         """Wait until so many corners are drawn."""

@@ -155,8 +155,7 @@ def test_every_number_of_every_preset_makes_a_robot_that_the_service_takes(
 def test_a_link_carries_the_edited_robot(product: Product) -> None:
     page = product.page
     _type(product, "front.thigh.length", "0.22")
-    page.wait_for_function("location.hash.length > 1500")
-    address = page.evaluate("location.href")
+    address = product.linked('"length":0.22,')
     other = page.context.new_page()
     opened = Product(other)
     opened.open(address)

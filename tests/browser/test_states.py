@@ -190,14 +190,6 @@ def test_undo_brings_back_settings_and_deleted_terrains(shared: Product) -> None
     page.keyboard.press("Escape")
 
 
-# Whether the address tells of a rollout.
-LINKED = """() => {
-  const text = new URLSearchParams(location.hash.slice(1)).get("s") ?? "";
-  const state = text && JSON.parse(atob(text.replace(/-/g, "+").replace(/_/g, "/")));
-  return Boolean(state && state.ro);
-}"""
-
-
 def test_link_restores_terrain_set_up_and_result(shared: Product, second: Product) -> None:
     product = shared.fresh("ramp-30deg-025")
     product.drag(2, 0, -12).planned()
@@ -205,8 +197,7 @@ def test_link_restores_terrain_set_up_and_result(shared: Product, second: Produc
     speed.press("PageUp")
     product.planned()
     outcome = product.run()
-    product.page.wait_for_function(LINKED)
-    second.open(product.page.url)
+    second.open(product.linked('"ro":'))
     second.page.locator(f".app[data-run={outcome}]").wait_for(timeout=PATIENCE)
     assert second.corner(2) == product.corner(2)
     second.page.get_by_role("button", name="Reset Speed").wait_for()
