@@ -21,7 +21,7 @@ import httpx
 
 from stairwright.answers import JobState, ServiceError, ask
 from stairwright.documents import Model, parse
-from stairwright.planning.plan import Method, Plan, PlanTiming
+from stairwright.planning.plan import Facing, Method, Plan, PlanTiming
 from stairwright.robot.description import Robot
 from stairwright.robot.importing.report import Imported
 from stairwright.terrain.profile import Terrain
@@ -143,9 +143,12 @@ class Client:
         weights: Mapping[str, float] | None = None,
         timing: PlanTiming = "steady",
         tolerance: Mapping[str, float] | None = None,
+        facing: Facing = "forward",
     ) -> Plan:
         """Plan; an infeasible terrain gives a plan with a problem, no error."""
         body = {**_question(terrain, robot, friction, method, weights), "timing": timing}
+        if facing != "forward":
+            body["facing"] = facing
         if tolerance:
             body["tolerance"] = dict(tolerance)
         return parse(Plan, self._json("POST", "/plans", json=body))

@@ -227,6 +227,7 @@ def _plan(source: str, given: Arguments) -> Plan:
         weights=_settings(given.weight, "weights"),
         solver=given.solver,
         timing=given.timing or "steady",
+        facing=given.facing or "forward",
         tolerance=_settings(given.tolerance, "tolerance"),
     )
 
@@ -241,7 +242,15 @@ def _plan_or_file(given: Arguments) -> Plan:
         if path.suffix.lower() == ".npz" or _schema(path) != "terrain":
             document = load(path)
             if isinstance(document, Plan):
-                for name in ("robot", "method", "solver", "weight", "timing", "tolerance"):
+                for name in (
+                    "robot",
+                    "method",
+                    "solver",
+                    "weight",
+                    "timing",
+                    "facing",
+                    "tolerance",
+                ):
                     if getattr(given, name):
                         raise InputError("the plan says it already", (name,))
                 return document

@@ -157,6 +157,25 @@ def test_a_number_over_a_key_pose_takes_the_clock_there(product: Product) -> Non
     assert clock.get_attribute("aria-valuenow") == second
 
 
+def test_a_robot_turns_about(product: Product) -> None:
+    """The question says it, the robot is drawn with its other end in front, undo turns it back."""
+    page = product.page
+    with page.expect_request(re.compile(r"/api/v1/plans$")) as asked:
+        page.get_by_role("radio", name="Backward").click()
+    assert asked.value.post_data_json["facing"] == "backward"
+    product.planned()
+    assert product.status == "feasible"
+    link = product.linked('"b":1')
+    page.keyboard.press("Control+z")
+    page.get_by_role("radio", name="Forward", checked=True).wait_for()
+    page.wait_for_function("link => location.href !== link", arg=link)
+    page.evaluate("link => { location.href = link; }", link)
+    page.get_by_role("radio", name="Backward", checked=True).wait_for()
+    product.planned()
+    page.get_by_role("radio", name="Forward").click()
+    product.planned()
+
+
 def test_a_fast_plan_tells_what_limits_its_speed(product: Product) -> None:
     """Poses have names of limits; band, legend and label show the same as the service's plan."""
     page = product.page

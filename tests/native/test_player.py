@@ -58,6 +58,23 @@ def test_it_drives_to_the_end_and_stands_there(plan):
     assert player.done == pytest.approx(1.0)
 
 
+def test_it_drives_backward(plan):
+    """Motors keep their numbers and signs, the IMU its axes: the robot is built as it was."""
+    own = plan.robot_description.model_dump(mode="json", by_alias=True)
+    plan = sw.plan(CURB, own, friction=0.6, facing="backward")
+    player, robot = _core.Player(player_plan(plan)), LowLevelRobot(plan)
+    imu, motors = robot.sense()
+    along, _ = LowLevelRobot(plan.model_copy(update={"facing": "forward"})).sense()
+    np.testing.assert_allclose(imu, np.array([-1.0, -1.0, 1.0] * 2) * along)
+    # Its own front right leg, whose thigh turns the other way by its file, comes last.
+    rear_thigh = plan.poses[0].q[2]
+    assert motors[1, 0] == pytest.approx(rear_thigh, abs=0.05)
+    assert motors[4, 0] == pytest.approx(-rear_thigh, abs=0.05)
+    while robot.run.time < 40.0 and player.phase != "arrived":
+        robot.act(player.step(robot.run.time, *robot.sense()))
+    assert player.phase == "arrived"
+
+
 def test_torques_stay_within_the_motors_and_angles_within_the_joints(plan):
     player, robot = standing(plan)
     imu, motors = robot.sense()

@@ -125,6 +125,16 @@ def test_fast_plans_take_less_time(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+def test_robots_may_face_either_way(tmp_path: Path) -> None:
+    ways = ["forward", "backward"]
+    asked = study({"name": "facing", "values": ways}, terrain="curb-015")
+    both = sw.study(asked, workers=1, store=tmp_path / "f.zarr")
+    ids = both.dataset.plan_id.values.tolist()
+    assert ids == [sw.plan("curb-015", "a1_wheeled", facing=way).id for way in ways]
+    with pytest.raises(InputError, match="unknown facing; there are: forward, backward"):
+        load_study(asked | {"axes": [{"name": "facing", "values": ["sideways"]}]})
+
+
 def test_rollouts_and_trials(tmp_path: Path) -> None:
     low = {"name": "step.height", "values": [0.04]}
     run = sw.study(study(low, compute="rollout"), workers=1, store=tmp_path / "r.zarr").dataset

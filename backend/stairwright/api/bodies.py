@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag
 from stairwright.arguments import MOST_SEED
 from stairwright.documents import Model
 from stairwright.export.table import Kind as Exported
-from stairwright.planning.plan import Method, Plan, PlanTiming
+from stairwright.planning.plan import Facing, Method, Plan, PlanTiming
 from stairwright.planning.tolerance import Tolerance
 from stairwright.robot.description import Robot
 from stairwright.simulation.disturbance import Disturbance
@@ -73,6 +73,8 @@ Id = Annotated[str, Field(min_length=1, max_length=64)]
 
 TIMING = "fast: a path as fast as friction, torques and speeds allow, see `aggressiveness`"
 
+FACING = "backward: the robot's rear leads, see `facing` of a plan"
+
 TOLERANCE = (
     "how far the world may be from what is drawn, with the certificate holding for all of it; of "
     "the method `path`"
@@ -102,6 +104,7 @@ class PlanRequest(Model):
     method: Method = "path"
     weights: Weights = Field(None, description="cost weights by name, see GET /settings")
     timing: PlanTiming = Field("steady", description=TIMING)
+    facing: Facing = Field("forward", description=FACING)
     tolerance: Tolerance | None = Field(None, description=TOLERANCE)
 
 
@@ -115,6 +118,7 @@ class Simulation(Model):
     method: Method = Field("path", description="with `terrain`")
     weights: Weights = Field(None, description="with `terrain`")
     timing: PlanTiming = Field("steady", description="with `terrain`")
+    facing: Facing = Field("forward", description="with `terrain`")
     tolerance: Tolerance | None = Field(None, description="with `terrain`")
     friction: Friction | None = Field(
         None, description="friction in the simulation (and of the plan, with `terrain`)"

@@ -16,6 +16,7 @@ from stairwright.jobs.planning import Answer, Planning
 from stairwright.jobs.questions import PlanQuestion
 from stairwright.planning.plan import PlanTiming
 from stairwright.robot.description import Robot
+from stairwright.robot.turning import turned
 from stairwright.terrain.profile import Terrain
 
 from .problems import Problem
@@ -74,10 +75,12 @@ class Replanning:
 
 def _question(plan: Mapping[str, Any], weights: Weights) -> PlanQuestion:
     terrain = parse(Terrain, plan["terrain"])
-    robot = parse(Robot, plan["robot_description"])
+    robot, facing = parse(Robot, plan["robot_description"]), plan.get("facing", "forward")
+    if facing == "backward":
+        robot = turned(robot)
     timing: PlanTiming = "fast" if plan["timing"]["rule"] == "fast" else "steady"
     chosen = {**plan["weights"], **weights}
-    asked = (plan["friction"], plan["method"], chosen, timing, plan.get("tolerance"))
+    asked = (plan["friction"], plan["method"], chosen, timing, plan.get("tolerance"), facing)
     return PlanQuestion.of(terrain, robot, *asked)
 
 

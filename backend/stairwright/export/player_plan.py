@@ -8,10 +8,11 @@ from stairwright.control.controller import gains
 from stairwright.control.native import OF_ROBOT, OF_SETTINGS
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
-from stairwright.planning.plan import Plan
+from stairwright.planning.plan import Facing, Plan
 from stairwright.robot.description import JOINTS, LEGS, Robot
 from stairwright.robot.legs import Leg, LinkForm
 from stairwright.robot.parts import Actuator
+from stairwright.robot.turning import opposite
 from stairwright.simulation.governor import lead_of, plan_track
 from stairwright.simulation.measured import SETTLE
 from stairwright.simulation.replanning import ENOUGH, TESTED, needed_friction
@@ -37,10 +38,11 @@ def player_plan(plan: Plan) -> str:
         f"# {robot.name} on {plan.terrain.name or 'a terrain'}; SI units and radians",
         f"plan {plan.id}",
         _line("friction", plan.friction),
+        _line("facing", -1.0 if plan.facing == "backward" else 1.0),
         *_robot(robot),
         *_gains(robot),
         "# number, name, what it is: drive JOINT SIGN OFFSET, hold ANGLE, or none",
-        *_motors(robot),
+        *_motors(robot, plan.facing),
         *_course(plan, robot),
     ]
     return "\n".join(lines) + "\n"
@@ -79,12 +81,12 @@ def _gains(robot: Robot) -> Iterator[str]:
     yield _line("hold", HOLD * own.joint_stiffness, own.joint_damping)
 
 
-def _motors(robot: Robot) -> Iterator[str]:
+def _motors(robot: Robot, facing: Facing) -> Iterator[str]:
     """Abduction turns about x forward, so that a left leg leans outward where it is positive."""
     signs, offsets = robot.ros_frames
 
     def drive(number: int, joint: str) -> str:
-        j = JOINTS.index(joint)
+        j = JOINTS.index(opposite(joint) if facing == "backward" else joint)
         role = _line("drive", j, signs[j], offsets[j])
         return f"motor {number} {robot.ros_joints[j]} {role}"
 

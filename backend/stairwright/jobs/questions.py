@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Literal
 
 from stairwright.documents import content_hash, parse
 from stairwright.errors import InputError
-from stairwright.planning.plan import Method, Plan, PlanTiming
+from stairwright.planning.plan import Facing, Method, Plan, PlanTiming
 from stairwright.planning.tolerance import Tolerance, parse_tolerance
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
@@ -29,6 +29,7 @@ class PlanQuestion:
     weights: Mapping[str, float]
     timing: PlanTiming = "steady"
     tolerance: Tolerance | None = None
+    facing: Facing = "forward"
 
     @classmethod
     def of(
@@ -40,6 +41,7 @@ class PlanQuestion:
         weights: Mapping[str, float] | None,
         timing: PlanTiming = "steady",
         tolerance: Mapping[str, float] | Tolerance | None = None,
+        facing: Facing = "forward",
     ) -> PlanQuestion:
         """Fill in defaults.
 
@@ -52,7 +54,7 @@ class PlanQuestion:
         complete = parse_weights(method, weights).model_dump(mode="json")
         mu = terrain.friction if friction is None else friction
         stood = parse_tolerance(tolerance, method, mu)
-        return cls(terrain, robot, mu, method, complete, timing, stood)
+        return cls(terrain, robot, mu, method, complete, timing, stood, facing)
 
     @classmethod
     def restored(cls, data: Mapping[str, Any]) -> PlanQuestion:
@@ -64,7 +66,7 @@ class PlanQuestion:
         terrain, robot = parse(Terrain, data["terrain"]), parse(Robot, data["robot"])
         timing = data.get("timing", "steady")
         asked = (data["friction"], data["method"], data["weights"], timing)
-        return cls.of(terrain, robot, *asked, data.get("tolerance"))
+        return cls.of(terrain, robot, *asked, data.get("tolerance"), data.get("facing", "forward"))
 
     @cached_property
     def data(self) -> dict[str, Any]:
@@ -79,6 +81,8 @@ class PlanQuestion:
         }
         if self.tolerance is not None:  # the key of what was asked before there was one stays
             data["tolerance"] = self.tolerance.asked
+        if self.facing != "forward":
+            data["facing"] = self.facing
         return data
 
     @cached_property

@@ -28,6 +28,7 @@ def of_plan(plan: Plan) -> dict[str, Any]:
         "friction": plan.friction,
         "weights": changed,
         "timing": "fast" if plan.timing.rule == "fast" else "steady",
+        "facing": plan.facing,
         "tolerance": plan.tolerance.asked if plan.tolerance else {},
         "margins": _least(plan.poses),
         "duration": plan.timing.total if plan.feasible else None,

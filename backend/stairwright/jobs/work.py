@@ -73,6 +73,7 @@ def _plan(question: Question, certified: bool = True) -> Plan:
     asked = {key: question[key] for key in ("terrain", "friction", "method", "weights")}
     machine = _robot(orjson.dumps(question["robot"]))
     asked["timing"] = question.get("timing", "steady")
+    asked["facing"] = question.get("facing", "forward")
     return plan(robot=machine, certified=certified, tolerance=question.get("tolerance"), **asked)
 
 

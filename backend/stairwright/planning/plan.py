@@ -133,6 +133,7 @@ class Certificate(Model):
 
 
 Bend = Literal["back", "forward"]
+Facing = Literal["forward", "backward"]
 Quantity = Literal["clearance", "com", "friction", "torque", "wheel_torque", "joint_limit"]
 
 
@@ -178,6 +179,11 @@ class Plan(Model):
     solve_time: float = Field(description="[s]")
     certificate: Certificate | None = None
     knees: Knees | None = Field(None, description="where the robot's knees bend both ways")
+    facing: Facing = Field(
+        "forward",
+        description="backward: the robot's rear leads, and `robot_description` and all poses are "
+        "of the robot turned about, whose front legs are the rear ones of `robot`",
+    )
     binding: Binding | None = Field(None, description="which margin is least")
     energy: Later = Field(
         None,
@@ -237,6 +243,7 @@ def plan_id(
     weights: dict[str, Any],
     rule: str = "limits",
     tolerance: Tolerance | None = None,
+    facing: Facing = "forward",
 ) -> str:
     """Content hash that names a plan: the same question has the same id.
 
@@ -248,4 +255,6 @@ def plan_id(
         key.append(rule)
     if tolerance is not None:
         key.append({"tolerance": tolerance.asked})
+    if facing == "backward":
+        key.append(facing)
     return "p-" + content_hash(key).removeprefix("sha256:")

@@ -14,10 +14,11 @@ from stairwright.errors import InputError
 from stairwright.library import load_robot, load_terrain
 from stairwright.planning.energy import with_energy
 from stairwright.planning.knees import configurations, knees_of
-from stairwright.planning.plan import Method, Plan, PlanTiming, plan_id
+from stairwright.planning.plan import Facing, Method, Plan, PlanTiming, plan_id
 from stairwright.planning.tolerance import Tolerance, parse_tolerance
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
+from stairwright.robot.turning import turned
 from stairwright.terrain.profile import Terrain
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ def plan(
     weights: Mapping[str, float] | Model | None = None,
     *,
     timing: PlanTiming = "steady",
+    facing: Facing = "forward",
     tolerance: Mapping[str, float] | Tolerance | None = None,
     certified: bool = True,
     diagnose: bool = True,
@@ -54,6 +56,8 @@ def plan(
         weights: Cost weights by name, see `stairwright.planning.weights`.
         timing: ``steady``, or of a ``path`` ``fast``: time-optimal under friction, torque and speed
             limits with the dynamics in them, as hard as the weight ``aggressiveness`` says.
+        facing: ``backward`` has the robot's rear lead, as many robots do down stairs: the plan is
+            that of the robot turned about, see `Plan.facing`.
         tolerance: Of a ``path``: how far the world may be from what is drawn, by name (`height`,
             `place` [m], `friction`), see `Tolerance`. The certificate holds for all of it.
         certified: Check single poses and the motion between them; without, ``critical`` is sooner.
@@ -84,6 +88,8 @@ def plan(
         raise InputError(f"must be one of: {', '.join(get_args(PlanTiming))}", ("timing",))
     if timing == "fast" and method != "path":
         raise InputError("fast belongs to the method path", ("timing",))
+    if facing not in get_args(Facing):
+        raise InputError(f"must be one of: {', '.join(get_args(Facing))}", ("facing",))
     stood = parse_tolerance(tolerance, method, mu)
     if solver not in (None, *get_args(PoseSolver)):
         there = ", ".join(get_args(PoseSolver))
@@ -95,7 +101,8 @@ def plan(
     ):
         if value is not None and method != "critical":
             raise InputError("belongs to the method critical", (field,))
-    configured = list(configurations(machine))
+    leading = turned(machine) if facing == "backward" else machine
+    configured = list(configurations(leading))
     if method == "path":
         from stairwright.planning.path import plan_path
 
@@ -113,10 +120,13 @@ def plan(
 
         found = _first_feasible(plan_nominal(ground, one, mu, chosen) for one in configured)
     found = with_energy(found)
-    if len(configured) == 1 and configured[0] is machine:
+    if configured == [machine]:
         return found
-    identity = plan_id(ground, machine, mu, method, found.weights, found.timing.rule, stood)
-    return found.model_copy(update={"id": identity, "knees": knees_of(found.robot_description)})
+    asked = (found.weights, found.timing.rule, stood, facing)
+    known: dict[str, Any] = {"id": plan_id(ground, machine, mu, method, *asked), "facing": facing}
+    if configured != [leading]:
+        known["knees"] = knees_of(found.robot_description)
+    return found.model_copy(update=known)
 
 
 def _first_feasible(plans: Iterable[Plan]) -> Plan:

@@ -24,6 +24,7 @@ from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
 from stairwright.robot.description import JOINTS, LEGS
+from stairwright.robot.turning import opposite
 
 from .disturbance import Disturbance
 from .end_error import end_error
@@ -124,6 +125,10 @@ class LowLevelRobot:
         self._sensors = _core.RobotSensors(_core.SensorErrors(noise), seed)
         self._torques = np.zeros(12)
         self._signs, self._offsets = plan.robot_description.ros_frames
+        self._motor_of, self._facing = MOTOR_OF, np.ones(6)
+        if plan.facing == "backward":  # its motors and its IMU are as they were built
+            self._motor_of = MOTOR_OF[[JOINTS.index(opposite(joint)) for joint in JOINTS]]
+            self._facing = np.array([-1.0, -1.0, 1.0] * 2)
         self._abduction = _Abduction(self.run)
         self.peak = np.zeros(2)
 
@@ -134,15 +139,15 @@ class LowLevelRobot:
             np.ascontiguousarray(data.qpos), np.ascontiguousarray(data.qvel), self._torques, self.dt
         )
         motors = np.zeros((MOTORS, 3))
-        motors[MOTOR_OF, 0] = self._signs * (np.array(joints) - self._offsets)
-        motors[MOTOR_OF, 1] = self._signs * np.array(rates)
-        motors[MOTOR_OF, 2] = self._signs * np.array(torques)
+        motors[self._motor_of, 0] = self._signs * (np.array(joints) - self._offsets)
+        motors[self._motor_of, 1] = self._signs * np.array(rates)
+        motors[self._motor_of, 2] = self._signs * np.array(torques)
         motors[ABDUCTION_OF] = self._abduction.state()
-        return np.array([*gyro, *force]), motors
+        return self._facing * np.array([*gyro, *force]), motors
 
     def act(self, command: Floats) -> None:
         """One control step with what the motors are told (16, 5)."""
-        data, own = self.run.data, command[MOTOR_OF]
+        data, own = self.run.data, command[self._motor_of]
         q, dq = self._signs * (data.qpos[7:] - self._offsets), self._signs * data.qvel[6:]
         wanted = own[:, 2] + own[:, 3] * (own[:, 0] - q) + own[:, 4] * (own[:, 1] - dq)
         rates = np.ascontiguousarray(data.qvel[6:])

@@ -110,6 +110,8 @@ class OriginalRun(Run):
         for name in _OUR_MODEL:
             if getattr(disturbance, name):
                 raise InputError("is for our own model of the robot", ("disturbance", name))
+        if plan.facing == "backward":
+            raise InputError("a backward plan is carried out by our own model", ("model",))
         self.upload, self.reading = read_original(model, plan.robot_description)
         maps = (f"{ours} <- {own.name}" for ours, own in self.reading.joints.items())
         self.simulated = f"{self.reading.robot.source}: {', '.join(maps)}"

@@ -57,7 +57,7 @@ def plan_anew(old: Plan, terrain: Terrain, friction: float) -> Plan | None:
         )
     except InputError:
         return None
-    return new if new.feasible else None
+    return new.model_copy(update={"facing": old.facing}) if new.feasible else None
 
 
 def after_slip(plan: Plan, need: float, found: float, *, front: bool) -> Decision:

@@ -52,6 +52,7 @@ def _answer(study: Study, question: CellQuestion, diagnose: bool) -> Record:
         question.method,
         dict(question.weights),
         timing=question.timing,
+        facing=question.facing,
         tolerance=question.tolerance,
         diagnose=diagnose,
     )

@@ -12,7 +12,7 @@ from pydantic import BaseModel
 
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
-from stairwright.planning.plan import Method
+from stairwright.planning.plan import Facing, Method
 from stairwright.planning.tolerance import Tolerance
 from stairwright.planning.weights import MODELS
 from stairwright.robot.description import Robot
@@ -21,7 +21,7 @@ from stairwright.terrain.generation import FlatParameters, RampParameters, Stair
 
 Part = Literal[
     "terrain", "friction", "payload", "weights", "method", "robot", "robot_file", "controller",
-    "disturbance", "seed", "tolerance",
+    "disturbance", "seed", "tolerance", "facing",
 ]  # fmt: skip
 Generated = StairParameters | RampParameters | FlatParameters
 
@@ -95,13 +95,15 @@ def target(name: str, method: Method = "path") -> Target:
         for part, unit in plain.items():
             if part == head:
                 return Target(part, unit=unit)
-        if head == "method":
-            return Target("method", words=True)
+        worded: tuple[Part, ...] = ("method", "facing")
+        for part in worded:
+            if part == head:
+                return Target(part, words=True)
     groups = ", ".join(f"{group}.{measures(group)[0]}" for group in GROUPS)
     raise InputError(
         f"nothing is called {name[:60]!r}; there are: {groups} and their other measures, "
-        "friction, payload, speed, method, weights.NAME, robot, robot.PATH, controller.NAME, "
-        "disturbance.NAME, tolerance.NAME, seed"
+        "friction, payload, speed, method, facing, weights.NAME, robot, robot.PATH, "
+        "controller.NAME, disturbance.NAME, tolerance.NAME, seed"
     )
 
 
@@ -140,8 +142,9 @@ def check_value(where: Target, value: float | str) -> None:
     """
     if where.words != isinstance(value, str):
         raise InputError(f"must be {'words' if where.words else 'numbers'}")
-    if where.part == "method" and value not in get_args(Method):
-        raise InputError(f"unknown method; there are: {', '.join(get_args(Method))}")
+    for part, known in (("method", Method), ("facing", Facing)):
+        if where.part == part and value not in get_args(known):
+            raise InputError(f"unknown {part}; there are: {', '.join(get_args(known))}")
 
 
 def _described_unit(model: type[BaseModel], field: str) -> str | None:

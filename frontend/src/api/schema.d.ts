@@ -1058,6 +1058,13 @@ export interface components {
              * @enum {string}
              */
             timing: "steady" | "fast";
+            /**
+             * Facing
+             * @description which end of the robot leads, as for a plan
+             * @default forward
+             * @enum {string}
+             */
+            facing: "forward" | "backward";
             /** @description that plans of the method path shall stand; axes may vary it */
             tolerance?: components["schemas"]["Tolerance"] | null;
             /**
@@ -2466,6 +2473,13 @@ export interface components {
             certificate?: components["schemas"]["Certificate"] | null;
             /** @description where the robot's knees bend both ways */
             knees?: components["schemas"]["Knees"] | null;
+            /**
+             * Facing
+             * @description backward: the robot's rear leads, and `robot_description` and all poses are of the robot turned about, whose front legs are the rear ones of `robot`
+             * @default forward
+             * @enum {string}
+             */
+            facing: "forward" | "backward";
             /** @description which margin is least */
             binding?: components["schemas"]["Binding"] | null;
             /**
@@ -2554,6 +2568,13 @@ export interface components {
              * @enum {string}
              */
             timing: "steady" | "fast";
+            /**
+             * Facing
+             * @description backward: the robot's rear leads, see `facing` of a plan
+             * @default forward
+             * @enum {string}
+             */
+            facing: "forward" | "backward";
             /** @description how far the world may be from what is drawn, with the certificate holding for all of it; of the method `path` */
             tolerance?: components["schemas"]["Tolerance"] | null;
         };
@@ -3230,6 +3251,13 @@ export interface components {
              * @enum {string}
              */
             timing: "steady" | "fast";
+            /**
+             * Facing
+             * @description with `terrain`
+             * @default forward
+             * @enum {string}
+             */
+            facing: "forward" | "backward";
             /** @description with `terrain` */
             tolerance?: components["schemas"]["Tolerance"] | null;
             /**
@@ -3435,6 +3463,13 @@ export interface components {
              * @enum {string}
              */
             timing: "steady" | "fast";
+            /**
+             * Facing
+             * @description with `terrain`
+             * @default forward
+             * @enum {string}
+             */
+            facing: "forward" | "backward";
             /** @description with `terrain` */
             tolerance?: components["schemas"]["Tolerance"] | null;
             /**
@@ -3622,6 +3657,13 @@ export interface components {
              * @enum {string}
              */
             timing: "steady" | "fast";
+            /**
+             * Facing
+             * @description which end of the robot leads, as for a plan
+             * @default forward
+             * @enum {string}
+             */
+            facing: "forward" | "backward";
             /** @description that plans of the method path shall stand; axes may vary it */
             tolerance?: components["schemas"]["Tolerance"] | null;
             /** Axes */
@@ -4012,6 +4054,13 @@ export interface components {
              * @enum {string}
              */
             timing: "steady" | "fast";
+            /**
+             * Facing
+             * @description with `terrain`
+             * @default forward
+             * @enum {string}
+             */
+            facing: "forward" | "backward";
             /** @description with `terrain` */
             tolerance?: components["schemas"]["Tolerance"] | null;
             /**

@@ -3,6 +3,7 @@
 import { call, json } from "./client";
 import type { components } from "./schema";
 import type {
+  Facing,
   Margins,
   Method,
   Metrics,
@@ -29,6 +30,7 @@ export interface Summary {
   seed?: number;
   disturbance?: SettingValues;
   timing?: PlanTiming;
+  facing?: Facing;
   margins?: Margins | null;
   /** [s] */
   duration?: number | null;

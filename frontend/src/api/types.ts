@@ -21,6 +21,7 @@ export type RobotDocument = Schemas["RobotDocument"];
 export type SentRobot = Omit<RobotDocument, "readonly" | "version">;
 export type ImportedRobot = Schemas["Imported"];
 export type Method = Schemas["PlanRequest"]["method"];
+export type Facing = NonNullable<Schemas["PlanRequest"]["facing"]>;
 export type PlanTiming = NonNullable<Schemas["PlanRequest"]["timing"]>;
 export type Margins = Schemas["Margins"];
 
@@ -187,5 +188,6 @@ export interface PlanRequest {
   method: Method;
   weights?: SettingValues;
   timing?: PlanTiming;
+  facing?: Facing;
   tolerance?: SettingValues;
 }

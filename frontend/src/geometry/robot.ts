@@ -107,6 +107,29 @@ export function robotShape(file: SentRobot): RobotShape {
   };
 }
 
+/** The robot turned about: its rear leads, as plans that face backward have it. */
+export function turned(shape: RobotShape): RobotShape {
+  const flip = ([x, z]: Vec2): Vec2 => [-x, z];
+  const link = ({ length, capsules }: LinkShape): LinkShape => ({
+    length,
+    capsules: capsules.map((c) => ({ ...c, from: flip(c.from), to: flip(c.to) })),
+  });
+  const leg = ({ hip, thigh, calf }: LegShape): LegShape => ({
+    hip: flip(hip),
+    thigh: link(thigh),
+    calf: link(calf),
+  });
+  const { legs, limits, payload, collisionPoints: points } = shape;
+  return {
+    ...shape,
+    outline: shape.outline.map((piece) => piece.map(flip)),
+    payload: payload && { ...payload, place: flip(payload.place) },
+    legs: [leg(legs[1]), leg(legs[0])],
+    limits: [limits[1], limits[0]],
+    collisionPoints: { ...points, trunk: points.trunk.map(flip) },
+  };
+}
+
 function linkShape(link: SentRobot["thigh"]): LinkShape {
   const { length, radius } = link;
   const shape = link.shape ?? [];

@@ -1,7 +1,7 @@
 /** Method, comparison, weights and controller: every row is built from the service's schema. */
 
 import { useState } from "preact/hooks";
-import type { Method, PlanTiming } from "../api/types";
+import type { Facing, Method, PlanTiming } from "../api/types";
 import { Effect } from "../plan/effect";
 import {
   changedCount,
@@ -9,6 +9,7 @@ import {
   compare,
   controller,
   controllerSchema,
+  facing,
   method,
   resetAll,
   setController,
@@ -29,6 +30,11 @@ import { DisturbancesAndTrials } from "./trials";
 const METHODS: [Method, string][] = [
   ["path", "Path"],
   ["critical", "Paper: critical poses"],
+];
+
+const FACINGS: [Facing, string][] = [
+  ["forward", "Forward"],
+  ["backward", "Backward"],
 ];
 
 const TIMINGS: [PlanTiming, string][] = [
@@ -109,6 +115,14 @@ function Planning() {
           }}
         />
       )}
+      <Segments
+        label="Facing"
+        options={FACINGS}
+        value={facing.value}
+        onChoose={(next) => {
+          facing.value = next;
+        }}
+      />
       <div class="r2 cmp-row">
         <span class="lab">Compare</span>
         <div class="ab">

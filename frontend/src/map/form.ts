@@ -111,8 +111,14 @@ export function ground(now: Form): string {
 
 /** What the page's settings make of every plan of the map, in a few words. */
 export function manner(): string {
-  const { timing, tolerance } = request.value ?? {};
-  return `${timing === "fast" ? ", fast" : ""}${tolerance ? ", with the tolerance set" : ""}`;
+  const { timing, facing, tolerance } = request.value ?? {};
+  return [
+    timing === "fast" && ", fast",
+    facing === "backward" && ", backward",
+    tolerance && ", with the tolerance set",
+  ]
+    .filter(Boolean)
+    .join("");
 }
 
 /** The study; null while the page has nothing to plan with. */
@@ -151,6 +157,7 @@ export function documentOf(now: Form): StudyDocument | null {
     method: page.method,
     ...(page.weights ? { weights: page.weights } : {}),
     ...(page.timing ? { timing: page.timing } : {}),
+    ...(page.facing ? { facing: page.facing } : {}),
     ...(page.tolerance ? { tolerance: page.tolerance } : {}),
     ...rest,
     axes,

@@ -3,7 +3,7 @@
 import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Vec2 } from "../api/types";
 import { collisionPoints, Details, Figure } from "../profile-editor/figure";
-import { robot, robotDocument } from "../state/setup";
+import { robotAsBuilt, robotDocument } from "../state/setup";
 import { Ranges } from "./captions";
 import { type Dimension, dimensions } from "./dimensions";
 import { hold, letGo, pull } from "./drag";
@@ -44,7 +44,7 @@ export function SideView() {
 }
 
 function Drawing() {
-  const shape = robot.value;
+  const shape = robotAsBuilt.value;
   const file = robotDocument.value;
   const pose = bones.value;
   if (!shape || !file || !pose) return null;
@@ -90,7 +90,7 @@ function Floor() {
 
 /** One tint a leg. */
 function Reach() {
-  const shape = robot.value!;
+  const shape = robotAsBuilt.value!;
   const file = robotDocument.value!;
   const at = frame.value!;
   const to = projection.value;

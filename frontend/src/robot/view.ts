@@ -5,7 +5,7 @@ import type { Vec2 } from "../api/types";
 import { type Frame, robotShape, type Skeleton, skeleton } from "../geometry/robot";
 import { stance } from "../geometry/stance";
 import type { Projection } from "../profile-editor/viewport";
-import { robot, robotDocument } from "../state/setup";
+import { robotAsBuilt, robotDocument } from "../state/setup";
 import { base, posture } from "./edit";
 
 export const LAYERS = {
@@ -77,5 +77,5 @@ export const frame = computed<Frame | null>(() => {
 });
 
 export const bones = computed<Skeleton | null>(() =>
-  robot.value && frame.value ? skeleton(robot.value, frame.value) : null,
+  robotAsBuilt.value && frame.value ? skeleton(robotAsBuilt.value, frame.value) : null,
 );

@@ -47,6 +47,7 @@ export function chips({ summary: s }: Entry): string[] {
     ...(s.friction === undefined ? [] : [`μ ${fixed(s.friction, 2)}`]),
     ...(s.method && METHODS[s.method] ? [METHODS[s.method]!] : []),
     ...(s.timing === "fast" ? ["fast"] : []),
+    ...(s.facing === "backward" ? ["backward"] : []),
     ...(s.bundle ? [`${s.bundle} disturbances`] : []),
     ...group(s.weights, s.method && known?.weights[s.method]?.properties),
     ...group(s.tolerance, known?.tolerance.properties),

@@ -3,7 +3,16 @@
 import { computed } from "@preact/signals";
 import type { Method, PlanRequest } from "../api/types";
 import { drawing, isEmpty, terrainDocument } from "./drawing";
-import { changedWeights, method, robotSource, robots, settings, timing, tolerance } from "./setup";
+import {
+  changedWeights,
+  facing,
+  method,
+  robotSource,
+  robots,
+  settings,
+  timing,
+  tolerance,
+} from "./setup";
 
 export const request = computed<PlanRequest | null>(() => {
   if (isEmpty.value || robots.value.length === 0 || !settings.value) return null;
@@ -36,6 +45,7 @@ function ask(by: Method, weights: PlanRequest["weights"]): PlanRequest {
     friction: state.friction,
     method: by,
     ...(by === "path" && timing.value === "fast" ? { timing: "fast" as const } : {}),
+    ...(facing.value === "backward" ? { facing: "backward" as const } : {}),
     ...(by === "path" && Object.keys(tolerance.value).length > 0
       ? { tolerance: tolerance.value }
       : {}),

@@ -2,6 +2,7 @@
 
 import { batch, computed, signal } from "@preact/signals";
 import type {
+  Facing,
   Method,
   PlanTiming,
   RobotDocument,
@@ -12,7 +13,7 @@ import type {
   SettingValues,
   TerrainDocument,
 } from "../api/types";
-import { type RobotShape, robotShape } from "../geometry/robot";
+import { type RobotShape, robotShape, turned } from "../geometry/robot";
 
 export const terrains = signal<TerrainDocument[]>([]);
 export const robots = signal<RobotDocument[]>([]);
@@ -22,6 +23,8 @@ export const robotName = signal("a1_wheeled_x");
 export const method = signal<Method>("path");
 /** How a path is timed: within limits of speed, or as fast as its dynamics allow. */
 export const timing = signal<PlanTiming>("steady");
+/** Which end of the robot leads. */
+export const facing = signal<Facing>("forward");
 export const compare = signal(false);
 export const seed = signal(0);
 /** Only what differs from the default, by method. */
@@ -62,9 +65,15 @@ export function sentRobot(document: RobotDocument): SentRobot {
   return sent;
 }
 
-export const robot = computed<RobotShape | null>(() =>
+/** As its file has it. */
+export const robotAsBuilt = computed<RobotShape | null>(() =>
   robotDocument.value ? robotShape(robotDocument.value) : null,
 );
+/** As plans have it: the end that leads is its front. */
+export const robot = computed<RobotShape | null>(() => {
+  const shape = robotAsBuilt.value;
+  return shape && facing.value === "backward" ? turned(shape) : shape;
+});
 
 export const weightSchema = computed<Record<string, SettingSchema>>(
   () => settings.value?.weights[method.value]?.properties ?? {},
@@ -120,6 +129,7 @@ export const choices = computed(() => ({
   robotEdits: robotEdits.value,
   method: method.value,
   timing: timing.value,
+  facing: facing.value,
   seed: seed.value,
   weights: weights.value,
   tolerance: tolerance.value,
@@ -134,6 +144,7 @@ export function choose(again: Choices): void {
     robotEdits.value = again.robotEdits;
     method.value = again.method;
     timing.value = again.timing;
+    facing.value = again.facing;
     seed.value = again.seed;
     weights.value = again.weights;
     tolerance.value = again.tolerance;

@@ -16,6 +16,7 @@ import {
   compare,
   controller,
   disturbance,
+  facing,
   method,
   robotEdits,
   robotName,
@@ -38,6 +39,8 @@ interface Shared {
   m: Method;
   /** Fast timing. */
   f?: 1;
+  /** Backward. */
+  b?: 1;
   w?: Partial<Record<Method, SettingValues>>;
   /** Tolerance. */
   l?: SettingValues;
@@ -88,6 +91,7 @@ function currentState(): Shared {
     ...(typeof source === "string" ? {} : { rd: source }),
     m: method.value,
     ...(timing.value === "fast" ? { f: 1 as const } : {}),
+    ...(facing.value === "backward" ? { b: 1 as const } : {}),
     ...(filled(changed) ? { w: changed } : {}),
     ...(filled(tolerance.value) ? { l: tolerance.value } : {}),
     ...(filled(controller.value) ? { c: controller.value } : {}),
@@ -133,6 +137,7 @@ export function restoreFromAddress(instead = "the sample is shown instead"): Res
   }
   method.value = state.m;
   timing.value = state.f ? "fast" : "steady";
+  facing.value = state.b ? "backward" : "forward";
   weights.value = state.w ?? {};
   tolerance.value = state.l ?? {};
   controller.value = state.c ?? {};

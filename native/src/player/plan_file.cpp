@@ -34,6 +34,7 @@ class Lines {
         return parsed(key, entry, count);
     }
     double number(const std::string& key) { return numbers(key, 1)[0]; }
+    bool has(const std::string& key) const { return entries_.contains(key); }
     std::vector<Numbers> table(const std::string& key, std::size_t count) {
         std::vector<Numbers> out;
         for (const Entry& entry : take(key)) out.push_back(parsed(key, entry, count));
@@ -156,6 +157,7 @@ PlanFile read_plan_file(std::istream& text) {
     PlanFile out;
     out.plan = lines.text("plan");
     out.friction = lines.number("friction");
+    out.facing = lines.has("facing") ? lines.number("facing") : 1.0;  // older files have none
     out.robot = robot(lines);
     out.gains = gains(lines);
     out.motors = motors(lines);
@@ -172,6 +174,7 @@ PlanFile read_plan_file(std::istream& text) {
         out.rows.push_back(std::bit_cast<control::Reference>(numbers));
     }
     lines.end();
+    if (std::abs(out.facing) != 1.0) throw std::runtime_error("facing must be 1 or -1");
     if (!(out.friction > 0.0) || !(out.settle >= 0.0)) throw std::runtime_error("friction must be positive, settle not negative");
     return out;
 }

@@ -91,6 +91,7 @@ estimation::Readings Player::readings(const LowState& state) const {
         out.joint_rates[role.joint] = role.sign * own.dq, out.torques[role.joint] = role.sign * own.tau;
     }
     out.angular_rate = state.gyro, out.specific_force = state.accelerometer;
+    for (std::size_t i = 0; i < 2; ++i) out.angular_rate[i] *= file_.facing, out.specific_force[i] *= file_.facing;
     return out;
 }
 

@@ -49,7 +49,7 @@ def plan_question(services: Services, body: PlanRequest) -> PlanQuestion:
     """The question behind a request, names resolved and defaults filled in."""
     terrain = resolve_terrain(services, body.terrain)
     robot = resolve_robot(services, body.robot)
-    asked = (body.friction, body.method, body.weights, body.timing, body.tolerance)
+    asked = (body.friction, body.method, body.weights, body.timing, body.tolerance, body.facing)
     return PlanQuestion.of(terrain, robot, *asked)
 
 

@@ -67,7 +67,9 @@ def source_of(services: Services, body: Simulation) -> PlanQuestion | Plan | str
     if body.plan is not None:
         return _under_its_own_id(services, body.plan)
     if body.terrain is not None:
-        names = ("terrain", "robot", "friction", "method", "weights", "timing", "tolerance")
+        names = (
+            "terrain", "robot", "friction", "method", "weights", "timing", "tolerance", "facing",
+        )  # fmt: skip
         values = {name: getattr(body, name) for name in names}
         return plan_question(services, PlanRequest.model_construct(**values))
     entry = services.store.documents.get("plan", str(body.plan_id))

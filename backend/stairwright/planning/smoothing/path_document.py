@@ -180,6 +180,7 @@ def make_plan(
         solve_time=clock.perf_counter() - begun,
         certificate=None,
         knees=None,
+        facing="forward",
         binding=poses.binding() if poses else None,
         tolerance=tolerance,
     )

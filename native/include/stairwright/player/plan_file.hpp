@@ -7,6 +7,7 @@
 //   motor 1 FR_thigh drive 3 1 0         number, name, joint of ours, sign and offset: ours = sign theirs + offset
 //   motor 0 FR_hip hold 0.1              kept at an angle of its own
 //   motor 0 FR_hip none                  not there
+//   facing -1                            the robot's rear leads (1 if left out)
 //   vertex -1.5 0                        of the terrain [m]
 //   row 0.12 ...                         allowed speed [m/s], then the 41 numbers of control::Reference
 #pragma once
@@ -35,6 +36,7 @@ struct PlanFile {
     Robot robot;
     std::vector<Vec2> terrain; // m
     double friction = 0.0;     // that the plan was made for
+    double facing = 1.0;       // -1 where the robot's rear leads: x and y of its IMU point the other way
     control::Gains gains;
     std::vector<control::Reference> rows;
     std::vector<double> speeds;          // m/s, allowed at each row

@@ -1,0 +1,50 @@
+"""Which end of the robot leads: asked over REST and at the command line."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import httpx
+import pytest
+
+import stairwright as sw
+from stairwright.cli import main
+
+if TYPE_CHECKING:
+    from tests.conftest import Server
+
+CURB = {"points": [[-1.2, 0.0], [0.0, 0.0], [0.0, 0.05], [1.2, 0.05]]}
+
+
+@pytest.fixture
+def api(server: Server) -> Iterator[httpx.Client]:
+    with httpx.Client(base_url=f"{server.url}/api/v1", timeout=60) as client:
+        yield client
+
+
+def test_a_backward_plan_is_that_of_python(server: Server, api: httpx.Client) -> None:
+    own = sw.plan(CURB, facing="backward")
+    with sw.Client(server.url) as service:
+        plan = service.plan(CURB, facing="backward")
+        job = api.post("/rollouts", json={"terrain": CURB, "facing": "backward"}).json()
+        run = service.result(service.wait(job["id"]))
+    assert (plan.id, plan.facing, plan.poses) == (own.id, "backward", own.poses)
+    assert (run.plan_id, run.outcome) == (own.id, "success")
+    listed = {entry["id"]: entry["summary"] for entry in api.get("/plans").json()}
+    assert listed[plan.id]["facing"] == "backward"
+
+
+def test_a_way_that_is_none_is_told_by_its_field(api: httpx.Client) -> None:
+    answer = api.post("/plans", json={"terrain": CURB, "facing": "sideways"})
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["field"] == "facing"
+
+
+def test_the_command_line_asks_for_it(tmp_path: Path) -> None:
+    terrain, out = tmp_path / "curb.json", tmp_path / "plan.json"
+    terrain.write_text(json.dumps(CURB))
+    assert main(["plan", str(terrain), "--facing", "backward", "-o", str(out)]) == 0
+    assert json.loads(out.read_text())["id"] == sw.plan(CURB, facing="backward").id
