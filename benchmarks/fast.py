@@ -2,7 +2,7 @@
 
     python benchmarks/fast.py [--first 0] [--count 30] [--robots a1_wheeled,a1_wheeled_x,go2w]
                               [--aggressiveness 0.75] [--bundle laboratory] [--sensing ideal]
-                              [--friction 0.6] [--quick]
+                              [--friction 0.6] [--facing forward] [--quick]
 
 Five stairs of 0.18 m by 0.28 m up and down, and random profiles (`profiles.py`). Speeds are those
 over the faces: from the first contact with the first one to all wheels on the landing. With
@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
+from functools import partial
 from statistics import median
 
 from profiles import random_profile
@@ -48,8 +49,10 @@ def compare(
     ratios, speeds, failures = [], [], []
     for seed, terrain in enumerate(questions):
         weights = {"aggressiveness": options.aggressiveness}
-        asked = (terrain, robot, options.friction)
-        fast = sw.plan(*asked, weights=weights, timing="fast", diagnose=False)
+        make = partial(
+            sw.plan, terrain, robot, options.friction, facing=options.facing, diagnose=False
+        )
+        fast = make(weights=weights, timing="fast")
         if not fast.feasible:
             outcomes["no plan"] += 1
             continue
@@ -58,7 +61,7 @@ def compare(
         if run.outcome != "success":
             failures.append(f"{terrain.name}: {run.outcome}: {run.reason}")
             continue
-        slow = sw.plan(*asked, diagnose=False)
+        slow = make()
         if not slow.feasible:
             failures.append(f"{terrain.name}: no steady plan beside the fast one")
             continue
@@ -80,6 +83,7 @@ def main() -> None:
     parser.add_argument("--robots", default=ROBOTS)
     parser.add_argument("--aggressiveness", type=float, default=0.75)
     parser.add_argument("--friction", type=float, default=0.6)
+    parser.add_argument("--facing", choices=("forward", "backward"), default="forward")
     parser.add_argument("--bundle")
     parser.add_argument("--sensing", choices=("robot", "ideal"))
     parser.add_argument("--quick", action="store_true", help="one robot, three profiles")

@@ -132,7 +132,7 @@ def test_robots_may_face_either_way(tmp_path: Path) -> None:
     ids = both.dataset.plan_id.values.tolist()
     assert ids == [sw.plan("curb-015", "a1_wheeled", facing=way).id for way in ways]
     with pytest.raises(InputError, match="unknown facing; there are: forward, backward"):
-        load_study(asked | {"axes": [{"name": "facing", "values": ["sideways"]}]})
+        Questions(load_study(asked | {"axes": [{"name": "facing", "values": [*ways, "aside"]}]}))
 
 
 def test_rollouts_and_trials(tmp_path: Path) -> None:

@@ -98,7 +98,8 @@ class Questions:
                     ("axes", i, "name"),
                 )
             try:
-                check_value(where, axis.points[0])
+                for value in axis.points:
+                    check_value(where, value)
             except InputError as error:
                 raise error.within("axes", i, "values") from None
         self.courses = Courses()
