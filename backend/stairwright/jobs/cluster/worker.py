@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import gc
 import os
 import threading
@@ -69,6 +70,8 @@ class Watch:
                 os._exit(3)
 
 
+_TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3  # of glibc's mallopt
+
 watch = Watch()
 _cancelled: set[str] = set()  # keys of tasks at work here that nobody wants any more
 
@@ -76,6 +79,18 @@ _cancelled: set[str] = set()  # keys of tasks at work here that nobody wants any
 def is_cancelled(key: str) -> bool:
     """Whether nobody waits any more for the task that runs here under this key."""
     return key in _cancelled
+
+
+def _keep_memory() -> None:
+    """Keep up to 64 MB between plans, where the C library can be told so (glibc).
+
+    Dask starts workers with MALLOC_TRIM_THRESHOLD_=65536: whatever a plan frees goes back to the
+    system, and the next plan faults it in again, page by page, for 4 to 7 % of its time.
+    """
+    tell = getattr(ctypes.CDLL(None), "mallopt", None)
+    if tell is not None:
+        tell(_TRIM_THRESHOLD, 64 << 20)
+        tell(_MMAP_THRESHOLD, 32 << 20)
 
 
 class CorePlugin:
@@ -94,6 +109,7 @@ class CorePlugin:
 
         with contextlib.suppress(OSError, AttributeError):
             os.nice(max(0, NICENESS - os.nice(0)))
+        _keep_memory()
         plan(GENTLE)  # brings everything into memory
         gc.freeze()  # a collector that looks at all of that takes 7 % of what a plan does
         if worker.nanny is not None:
