@@ -6,7 +6,7 @@ import asyncio
 import logging
 import time
 
-from stairwright.jobs import launch, work
+from stairwright.jobs import launch, warming
 from stairwright.jobs.pool import WorkerPool
 
 from .trouble import Trouble
@@ -41,7 +41,7 @@ class Readiness:
         try:
             while not self.ready:
                 try:
-                    await self._pool.run(work.rehearse, deadline=REHEARSAL_DEADLINE)
+                    await self._pool.run(warming.rehearse, deadline=REHEARSAL_DEADLINE)
                 except Exception as error:  # noqa: BLE001 - it is told, and tried again
                     trouble.failed(error)
                     self._trouble = f"a trial plan failed ({error}); the log says more"

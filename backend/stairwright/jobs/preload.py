@@ -13,7 +13,7 @@ import signal
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_variable] = "1"
 
-from stairwright.jobs import work  # noqa: E402 - numeric libraries read the variables
+from stairwright.jobs import warming  # noqa: E402 - numeric libraries read the variables
 from stairwright.jobs.stage import Stage  # noqa: E402
 
 TICK = 0.5  # s between looks whether the service is still there
@@ -34,14 +34,14 @@ signal.setitimer(signal.ITIMER_REAL, TICK, TICK)
 def _warm_rollouts(*_: object) -> None:
     """At the first tick: by then the workers that somebody may wait for have been forked."""
     signal.signal(signal.SIGALRM, _end_if_orphaned)
-    work.warm_rollouts()
+    warming.warm_rollouts()
 
 
 def _warm_plans() -> None:
     """One small plan brings everything into memory."""
     stage = Stage.inherited()
     stage.tell("loading the planner")
-    work.warm_plans()
+    warming.warm_plans()
     stage.tell("starting workers")
 
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import gzip
-import logging
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
@@ -15,7 +13,6 @@ import orjson
 
 from stairwright.documents import parse
 from stairwright.errors import InputError
-from stairwright.library import load_robot, robots
 from stairwright.robot.description import Robot
 from stairwright.storage.artefacts import Artefacts, name_of
 
@@ -32,7 +29,6 @@ if TYPE_CHECKING:
     from stairwright.simulation.trials_result import Trials
 
 Question = Mapping[str, Any]
-GENTLE = {"name": "warm-up", "points": [[-1.0, 0.0], [0.0, 0.0], [0.0, 0.04], [1.0, 0.04]]}
 PLANNING_SHARE = 0.1  # of a rollout's progress, where it has to plan first
 
 
@@ -265,44 +261,3 @@ def _document(kind: Kind, content: bytes) -> Any:
     from stairwright.simulation.result import Rollout
 
     return Rollout.model_validate(orjson.loads(content))
-
-
-def warm_plans() -> None:
-    """Import and load what the first plan would otherwise wait for."""
-    with _logged():
-        from stairwright.planning.planner import plan
-
-        plan(GENTLE, robots()[0], method="path")
-        plan(GENTLE, robots()[0], method="critical")
-
-
-def rehearse() -> None:
-    """A small plan in a worker, so that the first one that counts meets warm memory.
-
-    Raises:
-        Exception: Whatever would keep other plans from being answered too.
-    """
-    _plan(
-        {"terrain": GENTLE, "robot": load_robot(robots()[0]).model_dump(mode="json"),
-         "friction": 0.6, "method": "path", "weights": {}}
-    )  # fmt: skip
-
-
-def warm_rollouts() -> None:
-    """The same for rollouts, and for the other robots."""
-    with _logged():
-        from stairwright.planning.planner import plan
-        from stairwright.simulation.rollout import rollout
-
-        for robot in robots():
-            rollout(plan(GENTLE, robot, method="path"))
-            plan(GENTLE, robot, method="critical")
-
-
-@contextlib.contextmanager
-def _logged() -> Iterator[None]:
-    """What fails while warming up will fail again, and be answered, where it is needed."""
-    try:
-        yield
-    except Exception:
-        logging.getLogger(__name__).exception("warming up failed")

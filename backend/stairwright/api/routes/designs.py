@@ -36,7 +36,7 @@ from stairwright.studies.design_shelf import (
     read_result,
     summary_of,
 )
-from stairwright.studies.service import Following
+from stairwright.studies.following import Following
 from stairwright.studies.version import engine_of
 
 from .studies import be_sure_of_packages

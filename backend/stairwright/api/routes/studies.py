@@ -25,10 +25,10 @@ from stairwright.api.services import Services
 from stairwright.api.study_bodies import AxisDocument, StudyDocument
 from stairwright.documents import parse
 from stairwright.studies.document import Study, check_budget
+from stairwright.studies.following import Following
 from stairwright.studies.packages import absent, missing
 from stairwright.studies.question import Questions, check_axes
 from stairwright.studies.resolve import resolve
-from stairwright.studies.service import Following
 from stairwright.studies.targets import target
 from stairwright.studies.version import engine_of
 

@@ -18,10 +18,10 @@ from stairwright.api.study_bodies import CellDocument
 from stairwright.documents import parse
 from stairwright.errors import InputError
 from stairwright.studies.document import Study
+from stairwright.studies.following import Following
 from stairwright.studies.formats import FORMATS
 from stairwright.studies.grid import point
 from stairwright.studies.question import Questions
-from stairwright.studies.service import Following
 
 from .studies import FoundStudy, study_document
 

@@ -104,7 +104,7 @@ class CorePlugin:
 
     def setup(self, worker: Worker) -> None:
         """Called once on every worker, new ones included."""
-        from stairwright.jobs.work import GENTLE
+        from stairwright.jobs.warming import GENTLE
         from stairwright.planning.planner import plan
 
         with contextlib.suppress(OSError, AttributeError):
