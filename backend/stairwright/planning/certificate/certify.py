@@ -13,9 +13,9 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright import _core
 from stairwright.arguments import as_model
 from stairwright.errors import InputError
-from stairwright.planning.certificate.distances import Distances
 from stairwright.planning.certificate.dynamics import dynamics_of
 from stairwright.planning.certificate.equilibrium import TOUCH, WHEEL_GAP, balanced, near_faces
 from stairwright.planning.certificate.motion import Motion, Samples, sampled
@@ -103,19 +103,20 @@ class _Checker:
     def __init__(self, samples: Samples) -> None:
         self.samples, self.progress = samples, samples.motion.progress
         self.unsettled = np.zeros(int(samples.interval.max(initial=-1)) + 1, np.bool_)
-        motion, wheels = samples.motion, samples.frames.wheels.reshape(-1, 2)
-        self.near = near_faces(motion.vertices, wheels, motion.robot.wheel.radius + WHEEL_GAP)
+        self.ground = _core.CertificateGround(samples.motion.vertices)
+        wheels, radius = samples.frames.wheels, samples.motion.robot.wheel.radius
+        self.near = near_faces(self.ground, wheels.reshape(-1, 2), radius + WHEEL_GAP)
 
     def checks(self) -> list[Check]:
         """All checks in the order of a reader's interest."""
-        distances = Distances(self.samples)
-        rims = distances.wheels(self.near)
+        postures, ground = self.samples.postures, self.ground
+        rims = [postures.rims(leg, ground) for leg in range(2)]
         return [
             self._most("gap between wheels and ground", np.max(rims, axis=0), WHEEL_GAP),
             self._most("wheels sunk into the ground", -np.min(rims, axis=0), WHEEL_SINK),
-            self._clear("clearance of the trunk", distances.trunk()),
-            self._clear("clearance of the links", distances.links()),
-            self._least("gap between front and rear leg", distances.legs(), LEGS_GAP, "m"),
+            self._clear("clearance of the trunk", postures.trunk(ground)),
+            self._clear("clearance of the links", postures.links(ground)),
+            self._least("gap between front and rear leg", postures.between_legs(), LEGS_GAP, "m"),
             self._least("slack of the joint limits", self._limits(), 0.0, "rad"),
             self._balance(),
         ]

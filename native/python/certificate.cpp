@@ -1,0 +1,156 @@
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "stairwright/certificate/equilibrium.hpp"
+#include "stairwright/certificate/postures.hpp"
+
+namespace stairwright::python {
+
+namespace {
+
+using namespace certificate;
+
+using Array = nb::ndarray<nb::numpy, double>;
+using Pair = std::array<double, 2>;
+using Capsules = std::vector<std::tuple<Pair, Pair, double>>;
+using ThreeByTwo = In<double, nb::shape<-1, kFaces, 2>>;
+
+Vec2 vec2(const Pair& p) { return {p[0], p[1]}; }
+
+Link link(double length, double mass, const Pair& com, const Capsules& capsules) {
+    Link out{length, mass, vec2(com), {}};
+    for (const auto& [begin, end, radius] : capsules) out.capsules.push_back({vec2(begin), vec2(end), radius});
+    return out;
+}
+
+Robot robot(const std::vector<std::vector<Pair>>& trunk, double mass, const Pair& com, const std::array<Leg, 2>& legs, double wheel_radius) {
+    Robot out{{}, mass, vec2(com), legs, wheel_radius};
+    for (const std::vector<Pair>& piece : trunk) {
+        if (piece.empty()) throw nb::value_error("a piece of the trunk needs corners");
+        std::transform(piece.begin(), piece.end(), std::back_inserter(out.trunk.emplace_back()), vec2);
+    }
+    return out;
+}
+
+Postures postures(const Robot& robot, const In<double, nb::shape<-1, 3>>& body, const In<double, nb::shape<-1, 4>>& joints) {
+    if (body.shape(0) != joints.shape(0)) throw nb::value_error("as many trunks as joints, please");
+    nb::gil_scoped_release release;
+    Postures out(robot);
+    for (std::size_t k = 0; k < body.shape(0); ++k)
+        out.add({body(k, 0), body(k, 1)}, body(k, 2), {joints(k, 0), joints(k, 1), joints(k, 2), joints(k, 3)});
+    return out;
+}
+
+// A number of each posture.
+template <typename Tell>
+Array of_each(const Postures& postures, Tell tell) {
+    std::vector<double> out;
+    {
+        nb::gil_scoped_release release;
+        out.reserve(postures.all().size());
+        for (const Posture& posture : postures.all()) out.push_back(tell(posture));
+    }
+    return give(std::move(out));
+}
+
+Array joints(const Postures& postures) {
+    std::vector<double> out;
+    out.reserve(12 * postures.all().size());
+    for (const Posture& posture : postures.all())
+        for (const Vec2 Posture::Joints::* joint : {&Posture::Joints::hip, &Posture::Joints::knee, &Posture::Joints::wheel})
+            for (const Posture::Joints& leg : posture.legs) out.insert(out.end(), {(leg.*joint).x, (leg.*joint).z});
+    return give(std::move(out), {postures.all().size(), 3, 2, 2});
+}
+
+Array centres_of_mass(const Postures& postures) {
+    std::vector<double> out;
+    for (const Posture& posture : postures.all()) {
+        const Vec2 com = postures.com(posture);
+        out.insert(out.end(), {com.x, com.z});
+    }
+    return give(std::move(out), {postures.all().size(), 2});
+}
+
+std::tuple<Array, Array, Array> faces(const Ground& ground, const Points& centres, double sight) {
+    const std::size_t n = centres.shape(0);
+    std::vector<double> at, normals, distances;
+    {
+        nb::gil_scoped_release release;
+        at.reserve(2 * kFaces * n), normals.reserve(2 * kFaces * n), distances.reserve(kFaces * n);
+        for (std::size_t k = 0; k < n; ++k)
+            for (const Face& face : ground.faces({centres(k, 0), centres(k, 1)}, sight)) {
+                at.insert(at.end(), {face.at.x, face.at.z});
+                normals.insert(normals.end(), {face.normal.x, face.normal.z});
+                distances.push_back(face.distance);
+            }
+    }
+    return {give(std::move(at), {n, kFaces, 2}), give(std::move(normals), {n, kFaces, 2}), give(std::move(distances), {n, kFaces})};
+}
+
+nb::ndarray<nb::numpy, bool> balanced_samples(const ThreeByTwo& at, const ThreeByTwo& normals, const In<bool, nb::shape<-1, kFaces>>& touched,
+                                              const Vector& com_x, double friction) {
+    const std::size_t n = com_x.size(), wheels = 2 * n;
+    if (at.shape(0) != wheels || normals.shape(0) != wheels || touched.shape(0) != wheels) throw nb::value_error("two wheels a sample, please");
+    auto* out = new bool[n];
+    nb::capsule owner(out, [](void* p) noexcept { delete[] static_cast<bool*>(p); });
+    {
+        nb::gil_scoped_release release;
+        for (std::size_t k = 0; k < n; ++k) {
+            std::array<Face, 2 * kFaces> found;
+            std::size_t count = 0;
+            for (std::size_t w = 2 * k; w < 2 * k + 2; ++w)
+                for (std::size_t f = 0; f < kFaces; ++f)
+                    if (touched(w, f)) found[count++] = {{at(w, f, 0), at(w, f, 1)}, {normals(w, f, 0), normals(w, f, 1)}};
+            out[k] = balanced({found.data(), count}, com_x(k), friction);
+        }
+    }
+    return {out, {n}, owner};
+}
+
+}  // namespace
+
+void bind_certificate(nb::module_& m) {
+    nb::class_<Link>(m, "CertificateLink").def("__init__", [](Link* self, double length, double mass, const Pair& com, const Capsules& capsules) {
+        new (self) Link(link(length, mass, com, capsules));
+    }, nb::arg("length"), nb::arg("mass"), nb::arg("com"), nb::arg("capsules"));
+    nb::class_<Leg>(m, "CertificateLeg").def("__init__", [](Leg* self, const Pair& hip, const Link& thigh, const Link& calf, double wheel_mass) {
+        new (self) Leg{vec2(hip), thigh, calf, wheel_mass};
+    }, nb::arg("hip"), nb::arg("thigh"), nb::arg("calf"), nb::arg("wheel_mass"));
+    nb::class_<Robot>(m, "CertificateRobot").def("__init__", [](Robot* self, const std::vector<std::vector<Pair>>& trunk, double mass, const Pair& com,
+                                                                 const std::array<Leg, 2>& legs, double wheel_radius) {
+        new (self) Robot(robot(trunk, mass, com, legs, wheel_radius));
+    }, nb::arg("trunk"), nb::arg("trunk_mass"), nb::arg("trunk_com"), nb::arg("legs"), nb::arg("wheel_radius"));
+    nb::class_<Ground>(m, "CertificateGround")
+        .def("__init__", [](Ground* self, const Points& vertices) { new (self) Ground(points(vertices)); }, nb::arg("vertices"))
+        .def("faces", &faces, nb::arg("centres"), nb::arg("sight"),
+             "Faces near to wheels (n, 2): points (n, 3, 2), normals (n, 3, 2) and distances (n, 3) [m], nearest first.");
+    nb::class_<Postures>(m, "CertificatePostures")
+        .def("__init__", [](Postures* self, const Robot& robot, const In<double, nb::shape<-1, 3>>& body, const In<double, nb::shape<-1, 4>>& joints) {
+            new (self) Postures(postures(robot, body, joints));
+        }, nb::arg("robot"), nb::arg("body"), nb::arg("joints"))
+        .def("joints", &joints, "Hips, knees and wheels (n, 3, 2, 2): joint, front and rear, x and z [m].")
+        .def("com", &centres_of_mass, "Centres of mass (n, 2) [m].")
+        .def("trunk", [](const Postures& p, const Ground& ground) {
+            return of_each(p, [&](const Posture& each) { return p.trunk(each, ground); });
+        }, nb::arg("ground"), "Distance (n,) of the trunk from the ground [m]; -1 below it.")
+        .def("links", [](const Postures& p, const Ground& ground) {
+            return of_each(p, [&](const Posture& each) { return p.links(each, ground); });
+        }, nb::arg("ground"), "Distance (n,) of thighs and calves from the ground [m]; -1 and less below it.")
+        .def("rims", [](const Postures& p, std::size_t leg, const Ground& ground) {
+            if (leg > 1) throw nb::value_error("leg 0 or 1, please");
+            return of_each(p, [&](const Posture& each) { return p.rim(each, leg, ground); });
+        }, nb::arg("leg"), nb::arg("ground"), "Distance (n,) of front (0) or rear wheels from the ground [m]; negative where sunk.")
+        .def("between_legs", [](const Postures& p) {
+            return of_each(p, [&](const Posture& each) { return p.between_legs(each); });
+        }, "Distance (n,) between links and wheels of the front and of the rear leg [m].");
+    m.def("certificate_balanced", &balanced_samples, nb::arg("points"), nb::arg("normals"), nb::arg("touched"), nb::arg("com_x"), nb::arg("friction"),
+          "Whether faces (2 n, 3) that the wheels of n samples in turn touch can hold the robot in balance (n,).");
+    m.attr("CERTIFICATE_STRONGEST") = kStrongest;
+}
+
+}  // namespace stairwright::python
