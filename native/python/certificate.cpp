@@ -3,6 +3,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -40,40 +41,38 @@ Robot robot(const std::vector<std::vector<Pair>>& trunk, double mass, const Pair
 Postures postures(const Robot& robot, const In<double, nb::shape<-1, 3>>& body, const In<double, nb::shape<-1, 4>>& joints) {
     if (body.shape(0) != joints.shape(0)) throw nb::value_error("as many trunks as joints, please");
     nb::gil_scoped_release release;
-    Postures out(robot);
+    std::vector<Pose> poses;
+    poses.reserve(body.shape(0));
     for (std::size_t k = 0; k < body.shape(0); ++k)
-        out.add({body(k, 0), body(k, 1)}, body(k, 2), {joints(k, 0), joints(k, 1), joints(k, 2), joints(k, 3)});
-    return out;
-}
-
-// A number of each posture.
-template <typename Tell>
-Array of_each(const Postures& postures, Tell tell) {
-    std::vector<double> out;
-    {
-        nb::gil_scoped_release release;
-        out.reserve(postures.all().size());
-        for (const Posture& posture : postures.all()) out.push_back(tell(posture));
-    }
-    return give(std::move(out));
+        poses.push_back({{body(k, 0), body(k, 1)}, body(k, 2), {joints(k, 0), joints(k, 1), joints(k, 2), joints(k, 3)}});
+    return Postures(robot, poses);
 }
 
 Array joints(const Postures& postures) {
-    std::vector<double> out;
-    out.reserve(12 * postures.all().size());
-    for (const Posture& posture : postures.all())
-        for (const Vec2 Posture::Joints::* joint : {&Posture::Joints::hip, &Posture::Joints::knee, &Posture::Joints::wheel})
-            for (const Posture::Joints& leg : posture.legs) out.insert(out.end(), {(leg.*joint).x, (leg.*joint).z});
-    return give(std::move(out), {postures.all().size(), 3, 2, 2});
+    using Joints = decltype(Posture::joints);
+    static_assert(sizeof(Joints) == 12 * sizeof(double));
+    const std::size_t n = postures.all().size();
+    std::vector<double> out(12 * n);
+    for (std::size_t k = 0; k < n; ++k) std::memcpy(&out[12 * k], &postures.all()[k].joints, sizeof(Joints));
+    return give(std::move(out), {n, 3, 2, 2});
 }
 
 Array centres_of_mass(const Postures& postures) {
     std::vector<double> out;
-    for (const Posture& posture : postures.all()) {
-        const Vec2 com = postures.com(posture);
-        out.insert(out.end(), {com.x, com.z});
-    }
+    out.reserve(2 * postures.all().size());
+    for (const Vec2 com : postures.com()) out.insert(out.end(), {com.x, com.z});
     return give(std::move(out), {postures.all().size(), 2});
+}
+
+// Numbers (n,) that are found while Python goes on.
+template <auto tell, typename... Arguments>
+Array numbers(const Postures& postures, Arguments... arguments) {
+    std::vector<double> out;
+    {
+        nb::gil_scoped_release release;
+        out = (postures.*tell)(arguments...);
+    }
+    return give(std::move(out));
 }
 
 std::tuple<Array, Array, Array> faces(const Ground& ground, const Points& centres, double sight) {
@@ -135,19 +134,14 @@ void bind_certificate(nb::module_& m) {
         }, nb::arg("robot"), nb::arg("body"), nb::arg("joints"))
         .def("joints", &joints, "Hips, knees and wheels (n, 3, 2, 2): joint, front and rear, x and z [m].")
         .def("com", &centres_of_mass, "Centres of mass (n, 2) [m].")
-        .def("trunk", [](const Postures& p, const Ground& ground) {
-            return of_each(p, [&](const Posture& each) { return p.trunk(each, ground); });
-        }, nb::arg("ground"), "Distance (n,) of the trunk from the ground [m]; -1 below it.")
-        .def("links", [](const Postures& p, const Ground& ground) {
-            return of_each(p, [&](const Posture& each) { return p.links(each, ground); });
-        }, nb::arg("ground"), "Distance (n,) of thighs and calves from the ground [m]; -1 and less below it.")
-        .def("rims", [](const Postures& p, std::size_t leg, const Ground& ground) {
-            if (leg > 1) throw nb::value_error("leg 0 or 1, please");
-            return of_each(p, [&](const Posture& each) { return p.rim(each, leg, ground); });
-        }, nb::arg("leg"), nb::arg("ground"), "Distance (n,) of front (0) or rear wheels from the ground [m]; negative where sunk.")
-        .def("between_legs", [](const Postures& p) {
-            return of_each(p, [&](const Posture& each) { return p.between_legs(each); });
-        }, "Distance (n,) between links and wheels of the front and of the rear leg [m].");
+        .def("trunk", &numbers<&Postures::trunk, const Ground&>, nb::arg("ground"), "Distance (n,) of the trunk from the ground [m]; -1 below it.")
+        .def("links", &numbers<&Postures::links, const Ground&>, nb::arg("ground"),
+             "Distance (n,) of thighs and calves from the ground [m]; less than -1 where they begin below it.")
+        .def("rims", [](const Postures& postures, std::size_t pair, const Ground& ground) {
+            if (pair > 1) throw nb::value_error("front wheels are 0, rear ones 1");
+            return numbers<&Postures::rims, std::size_t, const Ground&>(postures, pair, ground);
+        }, nb::arg("pair"), nb::arg("ground"), "Distance (n,) of the front (0) or rear (1) wheels' rims from the ground [m]; negative where sunk.")
+        .def("between_legs", &numbers<&Postures::between_legs>, "Distance (n,) between links and wheels of the front and of the rear leg [m].");
     m.def("certificate_balanced", &balanced_samples, nb::arg("points"), nb::arg("normals"), nb::arg("touched"), nb::arg("com_x"), nb::arg("friction"),
           "Whether faces (2 n, 3) that the wheels of n samples in turn touch can hold the robot in balance (n,).");
     m.attr("CERTIFICATE_STRONGEST") = kStrongest;

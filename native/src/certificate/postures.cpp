@@ -1,5 +1,6 @@
 #include "stairwright/certificate/postures.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -7,10 +8,23 @@ namespace stairwright::certificate {
 
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kBelow = -1.0;  // m; what is below the ground is said to be so far from it
 
 // A leg's angle is 0 where it points down, and grows as it swings backward.
 Vec2 along(double angle) { return {-std::sin(angle), -std::cos(angle)}; }
+
+Posture posture_of(const Robot& robot, const Pose& pose) {
+    Posture out{pose.trunk, Turn::by(pose.pitch), {}};
+    for (std::size_t pair = 0; pair < 2; ++pair) {
+        const Leg& leg = robot.legs[pair];
+        const double thigh = pose.pitch + pose.joints[2 * pair], calf = thigh + pose.joints[2 * pair + 1];
+        const Vec2 hip = out.trunk + out.turn * leg.hip, knee = hip + leg.thigh.length * along(thigh);
+        out.joints[kHip][pair] = hip, out.joints[kKnee][pair] = knee;
+        out.joints[kWheel][pair] = knee + leg.calf.length * along(calf);
+    }
+    return out;
+}
 
 // A link in the world, between its joints.
 struct Placed {
@@ -23,72 +37,30 @@ struct Placed {
     Segment axis(const Link::Capsule& capsule) const { return {place(capsule.begin), place(capsule.end)}; }
 };
 
-std::array<Placed, 2> placed(const Leg& leg, const Posture::Joints& at) {
-    return {Placed(leg.calf, at.knee, at.wheel), Placed(leg.thigh, at.hip, at.knee)};
+// Calf and thigh of a pair: what is lower is near to the ground more often.
+std::array<Placed, 2> links_of(const Robot& robot, const Posture& at, std::size_t pair) {
+    const Vec2 knee = at.joints[kKnee][pair];
+    return {Placed(robot.legs[pair].calf, knee, at.joints[kWheel][pair]), Placed(robot.legs[pair].thigh, at.joints[kHip][pair], knee)};
 }
 
-struct Round {
-    Segment axis;
-    double radius;
-    Box box;
-
-    Round(const Segment& axis, double radius) : axis(axis), radius(radius), box(box_of(axis)) {}
-};
-
-void add_rounds(std::vector<Round>& out, const Leg& leg, const Posture::Joints& at, double wheel_radius) {
-    out.clear();
-    out.emplace_back(Segment{at.wheel, at.wheel}, wheel_radius);
-    for (const Placed& link : placed(leg, at))
-        for (const Link::Capsule& capsule : link.link.capsules) out.emplace_back(link.axis(capsule), capsule.radius);
-}
-
-}  // namespace
-
-void Postures::add(Vec2 trunk, double pitch, const std::array<double, 4>& joints) {
-    Posture posture{trunk, Turn::by(pitch), {}};
-    for (std::size_t k = 0; k < 2; ++k) {
-        const Leg& leg = robot_.legs[k];
-        const double thigh = pitch + joints[2 * k], calf = thigh + joints[2 * k + 1];
-        const Vec2 hip = trunk + posture.turn * leg.hip, knee = hip + leg.thigh.length * along(thigh);
-        posture.legs[k] = {hip, knee, knee + leg.calf.length * along(calf)};
-    }
-    postures_.push_back(posture);
-}
-
-Vec2 Postures::com(const Posture& posture) const {
-    double mass = robot_.trunk_mass;
-    Vec2 sum = mass * (posture.trunk + posture.turn * robot_.trunk_com);
-    for (std::size_t k = 0; k < 2; ++k) {
-        const Leg& leg = robot_.legs[k];
-        mass += 2.0 * leg.wheel_mass;
-        sum += 2.0 * leg.wheel_mass * posture.legs[k].wheel;
-        for (const Placed& link : placed(leg, posture.legs[k])) {
-            mass += 2.0 * link.link.mass;
-            sum += 2.0 * link.link.mass * link.place(link.link.com);
+Vec2 com_of(const Robot& robot, const Posture& at) {
+    double mass = robot.trunk_mass;
+    Vec2 sum = mass * (at.trunk + at.turn * robot.trunk_com);
+    for (std::size_t pair = 0; pair < 2; ++pair) {
+        const double wheels = 2.0 * robot.legs[pair].wheel_mass;
+        mass += wheels, sum += wheels * at.joints[kWheel][pair];
+        for (const Placed& each : links_of(robot, at, pair)) {
+            const double links = 2.0 * each.link.mass;
+            mass += links, sum += links * each.place(each.link.com);
         }
     }
     return (1.0 / mass) * sum;
 }
 
-double Postures::trunk(const Posture& posture, const Ground& ground) const {
-    double least = std::numeric_limits<double>::infinity();
-    std::vector<Vec2> corners;
-    for (const std::vector<Vec2>& piece : robot_.trunk) {
-        corners.clear();
-        Vec2 middle;
-        for (const Vec2 corner : piece) {
-            corners.push_back(posture.trunk + posture.turn * corner);
-            middle += (1.0 / static_cast<double>(piece.size())) * corners.back();
-        }
-        least = std::min(least, ground.above(middle) ? ground.distance(corners, std::max(0.0, least)) : kBelow);
-    }
-    return least;
-}
-
-double Postures::links(const Posture& posture, const Ground& ground) const {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < 2; ++k)
-        for (const Placed& link : placed(robot_.legs[k], posture.legs[k]))
+double links_from(const Robot& robot, const Posture& at, const Ground& ground) {
+    double least = kInfinity;
+    for (std::size_t pair = 0; pair < 2; ++pair)
+        for (const Placed& link : links_of(robot, at, pair))
             for (const Link::Capsule& capsule : link.link.capsules) {
                 const Segment axis = link.axis(capsule);
                 const double enough = std::max(0.0, least + capsule.radius);
@@ -98,24 +70,83 @@ double Postures::links(const Posture& posture, const Ground& ground) const {
     return least;
 }
 
-double Postures::rim(const Posture& posture, std::size_t leg, const Ground& ground) const {
-    const Vec2 centre = posture.legs[leg].wheel;
-    const double distance = ground.distance(std::array{centre});
-    return (ground.above(centre) ? distance : -distance) - robot_.wheel_radius;
+// A capsule in the world, or a wheel: its axis has no length.
+struct Round {
+    Segment axis;
+    double radius;
+    Box box;
+
+    Round(const Segment& axis, double radius) : axis(axis), radius(radius), box(box_of(axis)) {}
+};
+
+void place_leg(const Robot& robot, const Posture& at, std::size_t pair, std::vector<Round>& out) {
+    const Vec2 wheel = at.joints[kWheel][pair];
+    out.assign(1, Round({wheel, wheel}, robot.wheel_radius));
+    for (const Placed& link : links_of(robot, at, pair))
+        for (const Link::Capsule& capsule : link.link.capsules) out.emplace_back(link.axis(capsule), capsule.radius);
 }
 
-double Postures::between_legs(const Posture& posture) const {
-    double least = std::numeric_limits<double>::infinity();
-    std::vector<Round> front, rear;
-    add_rounds(front, robot_.legs[0], posture.legs[0], robot_.wheel_radius);
-    add_rounds(rear, robot_.legs[1], posture.legs[1], robot_.wheel_radius);
-    for (const Round& a : front)
-        for (const Round& b : rear) {
-            const double enough = std::max(0.0, least + a.radius + b.radius);
-            if (square_distance(a.box, b.box) < enough * enough)
-                least = std::min(least, std::sqrt(square_distance(a.axis, b.axis)) - a.radius - b.radius);
+}  // namespace
+
+Postures::Postures(Robot robot, std::span<const Pose> poses) : robot_(std::move(robot)) {
+    postures_.reserve(poses.size());
+    for (const Pose& pose : poses) postures_.push_back(posture_of(robot_, pose));
+}
+
+std::vector<Vec2> Postures::com() const {
+    std::vector<Vec2> out;
+    out.reserve(postures_.size());
+    for (const Posture& at : postures_) out.push_back(com_of(robot_, at));
+    return out;
+}
+
+std::vector<double> Postures::trunk(const Ground& ground) const {
+    std::vector<double> out(postures_.size(), kInfinity);
+    for (const std::vector<Vec2>& piece : robot_.trunk) {
+        std::vector<Vec2> corners(piece.size());
+        Vec2 middle;
+        for (const Vec2 corner : piece) middle += (1.0 / static_cast<double>(piece.size())) * corner;
+        for (std::size_t k = 0; k < out.size(); ++k) {
+            const auto place = [&at = postures_[k]](Vec2 p) { return at.trunk + at.turn * p; };
+            std::transform(piece.begin(), piece.end(), corners.begin(), place);
+            const double distance = ground.above(place(middle)) ? ground.distance(corners, std::max(0.0, out[k])) : kBelow;
+            out[k] = std::min(out[k], distance);
         }
-    return least;
+    }
+    return out;
+}
+
+std::vector<double> Postures::links(const Ground& ground) const {
+    std::vector<double> out;
+    out.reserve(postures_.size());
+    for (const Posture& at : postures_) out.push_back(links_from(robot_, at, ground));
+    return out;
+}
+
+std::vector<double> Postures::rims(std::size_t pair, const Ground& ground) const {
+    std::vector<double> out;
+    out.reserve(postures_.size());
+    for (const Posture& at : postures_) {
+        const Vec2 centre = at.joints[kWheel][pair];
+        const double distance = ground.distance(std::array{centre});
+        out.push_back((ground.above(centre) ? distance : -distance) - robot_.wheel_radius);
+    }
+    return out;
+}
+
+std::vector<double> Postures::between_legs() const {
+    std::vector<double> out(postures_.size(), kInfinity);
+    std::vector<Round> front, rear;
+    for (std::size_t k = 0; k < out.size(); ++k) {
+        place_leg(robot_, postures_[k], 0, front), place_leg(robot_, postures_[k], 1, rear);
+        for (const Round& a : front)
+            for (const Round& b : rear) {
+                const double enough = std::max(0.0, out[k] + a.radius + b.radius);
+                if (square_distance(a.box, b.box) < enough * enough)
+                    out[k] = std::min(out[k], std::sqrt(square_distance(a.axis, b.axis)) - a.radius - b.radius);
+            }
+    }
+    return out;
 }
 
 }  // namespace stairwright::certificate

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "stairwright/certificate/ground.hpp"
@@ -35,32 +36,35 @@ struct Robot {
     double wheel_radius = 0.0;
 };
 
-struct Posture {
-    struct Joints {
-        Vec2 hip, knee, wheel;
-    };
+inline constexpr std::size_t kHip = 0, kKnee = 1, kWheel = 2;
 
+struct Posture {
     Vec2 trunk;
     Turn turn;
-    std::array<Joints, 2> legs;
+    std::array<std::array<Vec2, 2>, 3> joints;  // hips, knees and wheels; front, rear
 };
 
-// Postures of a robot in the world.
+// A robot's trunk, pitch and angles of front thigh, front calf, rear thigh and rear calf.
+struct Pose {
+    Vec2 trunk;
+    double pitch = 0.0;
+    std::array<double, 4> joints{};
+};
+
+// Postures of a robot in the world, and numbers of each of them [m].
 class Postures {
   public:
-    explicit Postures(Robot robot) : robot_(std::move(robot)) {}
-    // Trunk and pitch, then angles of front thigh, front calf, rear thigh and rear calf.
-    void add(Vec2 trunk, double pitch, const std::array<double, 4>& joints);
+    Postures(Robot robot, std::span<const Pose> poses);
 
     const std::vector<Posture>& all() const { return postures_; }
-    Vec2 com(const Posture& posture) const;
+    std::vector<Vec2> com() const;
     // Distance from the ground; -1 where the trunk, or where a link begins, is below it. Links less their radius.
-    double trunk(const Posture& posture, const Ground& ground) const;
-    double links(const Posture& posture, const Ground& ground) const;
+    std::vector<double> trunk(const Ground& ground) const;
+    std::vector<double> links(const Ground& ground) const;
     // Of the rims of the front or the rear wheels from the ground; negative where sunk.
-    double rim(const Posture& posture, std::size_t leg, const Ground& ground) const;
+    std::vector<double> rims(std::size_t pair, const Ground& ground) const;
     // Between links and wheels of the front and of the rear leg; negative where they overlap.
-    double between_legs(const Posture& posture) const;
+    std::vector<double> between_legs() const;
 
   private:
     Robot robot_;
