@@ -65,14 +65,19 @@ Array centres_of_mass(const Postures& postures) {
 }
 
 // Numbers (n,) that are found while Python goes on.
-template <auto tell, typename... Arguments>
-Array numbers(const Postures& postures, Arguments... arguments) {
+template <typename Find>
+Array found(Find find) {
     std::vector<double> out;
     {
         nb::gil_scoped_release release;
-        out = (postures.*tell)(arguments...);
+        out = find();
     }
     return give(std::move(out));
+}
+
+std::span<const double> slack_of(const Postures& postures, const Vector& slack) {
+    if (slack.size() != postures.all().size()) throw nb::value_error("as many slacks as postures, please");
+    return view(slack);
 }
 
 std::tuple<Array, Array, Array> faces(const Ground& ground, const Points& centres, double sight) {
@@ -134,14 +139,21 @@ void bind_certificate(nb::module_& m) {
         }, nb::arg("robot"), nb::arg("body"), nb::arg("joints"))
         .def("joints", &joints, "Hips, knees and wheels (n, 3, 2, 2): joint, front and rear, x and z [m].")
         .def("com", &centres_of_mass, "Centres of mass (n, 2) [m].")
-        .def("trunk", &numbers<&Postures::trunk, const Ground&>, nb::arg("ground"), "Distance (n,) of the trunk from the ground [m]; -1 below it.")
-        .def("links", &numbers<&Postures::links, const Ground&>, nb::arg("ground"),
-             "Distance (n,) of thighs and calves from the ground [m]; less than -1 where they begin below it.")
+        .def("way", [](const Postures& postures) { return give(std::vector(postures.way())); },
+             "From the first to each posture (n,) [m]: from one to the next no joint and no point of the trunk moves farther.")
+        .def("trunk", [](const Postures& postures, const Ground& ground, const Vector& slack) {
+            return found([&, s = slack_of(postures, slack)] { return postures.trunk(ground, s); });
+        }, nb::arg("ground"), nb::arg("slack"),
+           "Distance (n,) of the trunk from the ground [m], -1 below it; a bound where it is more than the slack (n,) and not the least.")
+        .def("links", [](const Postures& postures, const Ground& ground, const Vector& slack) {
+            return found([&, s = slack_of(postures, slack)] { return postures.links(ground, s); });
+        }, nb::arg("ground"), nb::arg("slack"), "The same of thighs and calves, less than -1 where they begin below the ground.")
         .def("rims", [](const Postures& postures, std::size_t pair, const Ground& ground) {
             if (pair > 1) throw nb::value_error("front wheels are 0, rear ones 1");
-            return numbers<&Postures::rims, std::size_t, const Ground&>(postures, pair, ground);
+            return found([&] { return postures.rims(pair, ground); });
         }, nb::arg("pair"), nb::arg("ground"), "Distance (n,) of the front (0) or rear (1) wheels' rims from the ground [m]; negative where sunk.")
-        .def("between_legs", &numbers<&Postures::between_legs>, "Distance (n,) between links and wheels of the front and of the rear leg [m].");
+        .def("between_legs", [](const Postures& postures) { return found([&] { return postures.between_legs(); }); },
+             "Distance (n,) between links and wheels of the front and of the rear leg [m]; a bound where it is not the least.");
     m.def("certificate_balanced", &balanced_samples, nb::arg("points"), nb::arg("normals"), nb::arg("touched"), nb::arg("com_x"), nb::arg("friction"),
           "Whether faces (2 n, 3) that the wheels of n samples in turn touch can hold the robot in balance (n,).");
     m.attr("CERTIFICATE_STRONGEST") = kStrongest;

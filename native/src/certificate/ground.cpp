@@ -23,7 +23,7 @@ Ground::Ground(std::vector<Vec2> vertices) : vertices_(std::move(vertices)) {
 }
 
 bool Ground::above(Vec2 p) const {
-    if (p.x < vertices_.front().x || p.x > vertices_.back().x) return true;
+    if (!spans(p, 0.0)) return true;
     const auto first = std::lower_bound(vertices_.begin(), vertices_.end(), p.x - kSameX, kBefore);
     const auto last = std::upper_bound(first, vertices_.end(), p.x + kSameX, kAfter);
     if (first == last) {
@@ -57,10 +57,12 @@ double Ground::distance(std::span<const Vec2> corners, double enough) const {
 
 Faces Ground::faces(Vec2 centre, double sight) const {
     Faces out;
+    const Box here{centre, centre};
     const auto [first, last] = between(centre.x - sight, centre.x + sight);
     for (std::size_t found = 0; found < kFaces; ++found) {
         Face& next = out[found];
         for (std::size_t k = first; k < last; ++k) {
+            if (square_distance(boxes_[k], here) > sight * sight) continue;
             const Vec2 at = nearest(centre, segment(k)), off = centre - at;
             const double distance = norm(off);
             if (distance < kOnGround || distance > sight || distance >= next.distance) continue;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sparing.hpp"
+
 namespace stairwright::certificate {
 
 namespace {
@@ -26,6 +28,21 @@ Posture posture_of(const Robot& robot, const Pose& pose) {
     return out;
 }
 
+double trunk_reach(const Robot& robot) {
+    double most = 0.0;
+    for (const std::vector<Vec2>& piece : robot.trunk)
+        for (const Vec2 corner : piece) most = std::max(most, norm(corner));
+    return most;
+}
+
+// The most that a joint or a point of the trunk moves.
+double step(const Posture& from, const Posture& to, double turned, double reach) {
+    double most = norm(to.trunk - from.trunk) + reach * std::abs(turned);
+    for (std::size_t joint : {kHip, kKnee, kWheel})
+        for (std::size_t pair = 0; pair < 2; ++pair) most = std::max(most, norm(to.joints[joint][pair] - from.joints[joint][pair]));
+    return most;
+}
+
 // A link in the world, between its joints.
 struct Placed {
     const Link& link;
@@ -39,8 +56,43 @@ struct Placed {
 
 // Calf and thigh of a pair: what is lower is near to the ground more often.
 std::array<Placed, 2> links_of(const Robot& robot, const Posture& at, std::size_t pair) {
-    const Vec2 knee = at.joints[kKnee][pair];
-    return {Placed(robot.legs[pair].calf, knee, at.joints[kWheel][pair]), Placed(robot.legs[pair].thigh, at.joints[kHip][pair], knee)};
+    const Vec2 hip = at.joints[kHip][pair], knee = at.joints[kKnee][pair], wheel = at.joints[kWheel][pair];
+    return {Placed(robot.legs[pair].calf, knee, wheel), Placed(robot.legs[pair].thigh, hip, knee)};
+}
+
+// Capsules of all links: how far their ends are from the upper joint, and how many times farther they may move than the
+// joints do. An end at upper + a d + c (d turned by a right angle), where d leads to the lower joint, moves no more than
+// |1 - a| + |a| + 2 |c| times as far as that joint which moves more.
+struct Extent {
+    double reach = 0.0, stretch = 1.0;
+
+    explicit Extent(const Robot& robot) {
+        for (const Leg& leg : robot.legs)
+            for (const Link* link : {&leg.thigh, &leg.calf})
+                for (const Link::Capsule& capsule : link->capsules)
+                    for (const Vec2 end : {capsule.begin, capsule.end}) {
+                        const double a = -end.z / link->length, c = end.x / link->length;
+                        reach = std::max(reach, norm(end));
+                        stretch = std::max(stretch, std::abs(1.0 - a) + std::abs(a) + 2.0 * std::abs(c));
+                    }
+    }
+};
+
+// A capsule in the world, or a wheel: its axis has no length.
+struct Round {
+    Segment axis;
+    double radius;
+    Box box;
+
+    Round(const Segment& axis, double radius) : axis(axis), radius(radius), box(box_of(axis)) {}
+};
+
+std::vector<Round> rounds_of(const Robot& robot, const Posture& at, std::size_t pair) {
+    const Vec2 wheel = at.joints[kWheel][pair];
+    std::vector<Round> out(1, Round({wheel, wheel}, robot.wheel_radius));
+    for (const Placed& link : links_of(robot, at, pair))
+        for (const Link::Capsule& capsule : link.link.capsules) out.emplace_back(link.axis(capsule), capsule.radius);
+    return out;
 }
 
 Vec2 com_of(const Robot& robot, const Posture& at) {
@@ -57,40 +109,16 @@ Vec2 com_of(const Robot& robot, const Posture& at) {
     return (1.0 / mass) * sum;
 }
 
-double links_from(const Robot& robot, const Posture& at, const Ground& ground) {
-    double least = kInfinity;
-    for (std::size_t pair = 0; pair < 2; ++pair)
-        for (const Placed& link : links_of(robot, at, pair))
-            for (const Link::Capsule& capsule : link.link.capsules) {
-                const Segment axis = link.axis(capsule);
-                const double enough = std::max(0.0, least + capsule.radius);
-                const double distance = ground.above(axis.begin) ? ground.distance(std::array{axis.begin, axis.end}, enough) : kBelow;
-                least = std::min(least, distance - capsule.radius);
-            }
-    return least;
-}
-
-// A capsule in the world, or a wheel: its axis has no length.
-struct Round {
-    Segment axis;
-    double radius;
-    Box box;
-
-    Round(const Segment& axis, double radius) : axis(axis), radius(radius), box(box_of(axis)) {}
-};
-
-void place_leg(const Robot& robot, const Posture& at, std::size_t pair, std::vector<Round>& out) {
-    const Vec2 wheel = at.joints[kWheel][pair];
-    out.assign(1, Round({wheel, wheel}, robot.wheel_radius));
-    for (const Placed& link : links_of(robot, at, pair))
-        for (const Link::Capsule& capsule : link.link.capsules) out.emplace_back(link.axis(capsule), capsule.radius);
-}
-
 }  // namespace
 
 Postures::Postures(Robot robot, std::span<const Pose> poses) : robot_(std::move(robot)) {
-    postures_.reserve(poses.size());
-    for (const Pose& pose : poses) postures_.push_back(posture_of(robot_, pose));
+    const double reach = trunk_reach(robot_);
+    postures_.reserve(poses.size()), way_.reserve(poses.size());
+    for (const Pose& pose : poses) {
+        postures_.push_back(posture_of(robot_, pose));
+        const std::size_t k = way_.size();
+        way_.push_back(k == 0 ? 0.0 : way_.back() + step(postures_[k - 1], postures_[k], pose.pitch - poses[k - 1].pitch, reach));
+    }
 }
 
 std::vector<Vec2> Postures::com() const {
@@ -100,27 +128,50 @@ std::vector<Vec2> Postures::com() const {
     return out;
 }
 
-std::vector<double> Postures::trunk(const Ground& ground) const {
-    std::vector<double> out(postures_.size(), kInfinity);
+std::vector<double> Postures::trunk(const Ground& ground, std::span<const double> slack) const {
+    std::vector<Vec2> middles, corners;
     for (const std::vector<Vec2>& piece : robot_.trunk) {
-        std::vector<Vec2> corners(piece.size());
-        Vec2 middle;
+        Vec2& middle = middles.emplace_back();
         for (const Vec2 corner : piece) middle += (1.0 / static_cast<double>(piece.size())) * corner;
-        for (std::size_t k = 0; k < out.size(); ++k) {
-            const auto place = [&at = postures_[k]](Vec2 p) { return at.trunk + at.turn * p; };
-            std::transform(piece.begin(), piece.end(), corners.begin(), place);
-            const double distance = ground.above(place(middle)) ? ground.distance(corners, std::max(0.0, out[k])) : kBelow;
-            out[k] = std::min(out[k], distance);
-        }
     }
-    return out;
+    const auto exact = [&](std::size_t k) {
+        const auto place = [&at = postures_[k]](Vec2 p) { return at.trunk + at.turn * p; };
+        double least = kInfinity;
+        for (std::size_t i = 0; i < middles.size(); ++i) {
+            corners.clear();
+            for (const Vec2 corner : robot_.trunk[i]) corners.push_back(place(corner));
+            least = std::min(least, ground.above(place(middles[i])) ? ground.distance(corners, std::max(0.0, least)) : kBelow);
+        }
+        return least;
+    };
+    const auto inside = [&, reach = trunk_reach(robot_)](std::size_t k) { return ground.spans(postures_[k].trunk, reach); };
+    return sparing_distances(slack, exact, [&](std::size_t j, std::size_t k) {
+        return inside(j) && inside(k) ? std::abs(way_[k] - way_[j]) : kInfinity;
+    });
 }
 
-std::vector<double> Postures::links(const Ground& ground) const {
-    std::vector<double> out;
-    out.reserve(postures_.size());
-    for (const Posture& at : postures_) out.push_back(links_from(robot_, at, ground));
-    return out;
+std::vector<double> Postures::links(const Ground& ground, std::span<const double> slack) const {
+    const auto exact = [&](std::size_t k) {
+        double least = kInfinity;
+        for (std::size_t pair = 0; pair < 2; ++pair)
+            for (const Placed& link : links_of(robot_, postures_[k], pair))
+                for (const Link::Capsule& capsule : link.link.capsules) {
+                    const auto [begin, end] = link.axis(capsule);
+                    const double enough = std::max(0.0, least + capsule.radius);
+                    const double distance = ground.above(begin) ? ground.distance(std::array{begin, end}, enough) : kBelow;
+                    least = std::min(least, distance - capsule.radius);
+                }
+        return least;
+    };
+    const Extent extent(robot_);
+    const auto inside = [&](std::size_t k) {
+        const auto& [hips, knees, _] = postures_[k].joints;
+        const auto spans = [&](Vec2 joint) { return ground.spans(joint, extent.reach); };
+        return spans(hips[0]) && spans(hips[1]) && spans(knees[0]) && spans(knees[1]);
+    };
+    return sparing_distances(slack, exact, [&](std::size_t j, std::size_t k) {
+        return inside(j) && inside(k) ? extent.stretch * std::abs(way_[k] - way_[j]) : kInfinity;
+    });
 }
 
 std::vector<double> Postures::rims(std::size_t pair, const Ground& ground) const {
@@ -135,18 +186,20 @@ std::vector<double> Postures::rims(std::size_t pair, const Ground& ground) const
 }
 
 std::vector<double> Postures::between_legs() const {
-    std::vector<double> out(postures_.size(), kInfinity);
-    std::vector<Round> front, rear;
-    for (std::size_t k = 0; k < out.size(); ++k) {
-        place_leg(robot_, postures_[k], 0, front), place_leg(robot_, postures_[k], 1, rear);
-        for (const Round& a : front)
+    const auto exact = [&](std::size_t k) {
+        double least = kInfinity;
+        const std::vector<Round> rear = rounds_of(robot_, postures_[k], 1);
+        for (const Round& a : rounds_of(robot_, postures_[k], 0))
             for (const Round& b : rear) {
-                const double enough = std::max(0.0, out[k] + a.radius + b.radius);
+                const double touch = a.radius + b.radius, enough = std::max(0.0, least + touch);
                 if (square_distance(a.box, b.box) < enough * enough)
-                    out[k] = std::min(out[k], std::sqrt(square_distance(a.axis, b.axis)) - a.radius - b.radius);
+                    least = std::min(least, std::sqrt(square_distance(a.axis, b.axis)) - touch);
             }
-    }
-    return out;
+        return least;
+    };
+    return sparing_distances(std::vector<double>(postures_.size()), exact, [&, stretch = Extent(robot_).stretch](std::size_t j, std::size_t k) {
+        return 2.0 * stretch * std::abs(way_[k] - way_[j]);
+    });
 }
 
 }  // namespace stairwright::certificate

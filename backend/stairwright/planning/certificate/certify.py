@@ -8,6 +8,7 @@ little to tell, samples lie closer still.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import reduce
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -109,13 +110,13 @@ class _Checker:
 
     def checks(self) -> list[Check]:
         """All checks in the order of a reader's interest."""
-        postures, ground = self.samples.postures, self.ground
+        postures, ground, slack = self.samples.postures, self.ground, self.samples.slack
         rims = [postures.rims(leg, ground) for leg in range(2)]
         return [
-            self._most("gap between wheels and ground", np.max(rims, axis=0), WHEEL_GAP),
-            self._most("wheels sunk into the ground", -np.min(rims, axis=0), WHEEL_SINK),
-            self._clear("clearance of the trunk", postures.trunk(ground)),
-            self._clear("clearance of the links", postures.links(ground)),
+            self._most("gap between wheels and ground", np.maximum(*rims), WHEEL_GAP),
+            self._most("wheels sunk into the ground", -np.minimum(*rims), WHEEL_SINK),
+            self._clear("clearance of the trunk", postures.trunk(ground, slack)),
+            self._clear("clearance of the links", postures.links(ground, slack)),
             self._least("gap between front and rear leg", postures.between_legs(), LEGS_GAP, "m"),
             self._least("slack of the joint limits", self._limits(), 0.0, "rad"),
             self._balance(),
@@ -147,8 +148,7 @@ class _Checker:
         """Least distance of the joints from their limits (n,) [rad]."""
         low, high = kin.limits(self.samples.motion.robot).T
         joints = self.samples.motion.joints
-        slack: Floats = np.minimum(joints - low, high - joints).min(axis=1)
-        return slack
+        return reduce(np.minimum, (*(joints - low).T, *(high - joints).T))
 
     def second_faces(self) -> Floats:
         """How near a second face must be to a wheel's centre (n, 2) for balance to lean on it [m].

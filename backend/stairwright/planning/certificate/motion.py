@@ -82,16 +82,13 @@ class Samples:
         self.interval = np.arange(n - 1) if interval is None else interval
         self.at_pose = np.append(np.diff(self.interval, prepend=-1) > 0, True)
         self.postures = motion.postures
-        self.frames = Frames(*np.moveaxis(self.postures.joints(), 1, 0))
+        self.frames = Frames(*self.postures.joints().swapaxes(0, 1))
         self.com = self.postures.com()
 
 
 def sampled(motion: Motion, closer: NDArray[np.bool_] | None = None) -> Samples:
     """Samples of a motion of two poses or more; more of them where `closer` (poses - 1,)."""
-    x, z, turn = np.diff(motion.body, axis=0).T
-    trunk = np.sqrt(x * x + z * z) + motion.robot.body.span * np.abs(turn)
-    x, z = np.diff(motion.postures.joints().reshape(-1, 6, 2), axis=0).T
-    stride = np.maximum(trunk, np.sqrt((x * x + z * z).max(axis=0)))
+    stride = np.diff(motion.postures.way())
     parts = np.maximum(1, np.ceil(stride / _STRIDE)).astype(int)
     if closer is not None:
         parts *= np.where(closer, _CLOSER, 1)

@@ -24,6 +24,8 @@ class Ground {
     // Vertices of a profile whose x never falls [m]. Throws std::invalid_argument if there are fewer than two.
     explicit Ground(std::vector<Vec2> vertices);
 
+    // Whether there is ground below all points that are no farther than `reach` from `p`.
+    bool spans(Vec2 p, double reach) const { return p.x - reach >= vertices_.front().x && p.x + reach <= vertices_.back().x; }
     // Whether `p` lies above the ground; beyond the profile's ends there is none.
     bool above(Vec2 p) const;
     // Distance [m] of a convex shape by its corners (see shapes.hpp), 0 where they meet; `enough` if it is no less.
