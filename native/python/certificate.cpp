@@ -82,15 +82,14 @@ std::span<const double> slack_of(const Postures& postures, const Vector& slack) 
 
 std::tuple<Array, Array, Array> faces(const Ground& ground, const Points& centres, double sight) {
     const std::size_t n = centres.shape(0);
-    std::vector<double> at, normals, distances;
+    std::vector<double> at(2 * kFaces * n), normals(2 * kFaces * n), distances(kFaces * n);
     {
         nb::gil_scoped_release release;
-        at.reserve(2 * kFaces * n), normals.reserve(2 * kFaces * n), distances.reserve(kFaces * n);
-        for (std::size_t k = 0; k < n; ++k)
+        for (std::size_t k = 0, row = 0; k < n; ++k)
             for (const Face& face : ground.faces({centres(k, 0), centres(k, 1)}, sight)) {
-                at.insert(at.end(), {face.at.x, face.at.z});
-                normals.insert(normals.end(), {face.normal.x, face.normal.z});
-                distances.push_back(face.distance);
+                at[2 * row] = face.at.x, at[2 * row + 1] = face.at.z;
+                normals[2 * row] = face.normal.x, normals[2 * row + 1] = face.normal.z;
+                distances[row++] = face.distance;
             }
     }
     return {give(std::move(at), {n, kFaces, 2}), give(std::move(normals), {n, kFaces, 2}), give(std::move(distances), {n, kFaces})};

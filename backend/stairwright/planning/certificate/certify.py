@@ -163,8 +163,7 @@ class _Checker:
         out = np.full(wheels.shape[:2], r + TOUCH)
         if ends.all():
             return out
-        near = self.near.touched(r + TOUCH, np.full(2 * len(ends), r + TOUCH))
-        wedged = near[:, 1].reshape(-1, 2)[ends]
+        wedged = (self.near.distances[:, 1] <= r + TOUCH).reshape(-1, 2)[ends]
         moved = np.linalg.norm(np.diff(wheels[ends], axis=0), axis=2)
         stays = wedged[:-1] & wedged[1:] & (moved <= 2 * TOUCH)
         out[~ends] = np.where(stays[samples.interval[~ends[:-1]]], r + WHEEL_GAP, r + TOUCH)
