@@ -105,6 +105,14 @@ def test_a_wheel_in_a_corner_touches_both_faces():
     assert sorted(map(tuple, np.round(normals[0, :2], 9))) == [(-1.0, 0.0), (0.0, 1.0)]
 
 
+@pytest.mark.parametrize(("bend", "faces"), [(20.0, 2), (0.5, 1)])
+def test_faces_that_hardly_differ_are_one(bend, faces):
+    bend = math.radians(bend)
+    vertices = np.array([[-1.0, 0.0], [0.0, 0.0], [1.0, math.tan(bend)]])
+    centre = np.array([[-0.05 * math.tan(bend / 2), 0.05]])
+    assert touching(vertices, centre, 0.0501, np.full(1, 0.0501))[2].sum() == faces
+
+
 def test_a_wheel_a_millimetre_from_a_wall_does_not_lean_on_it():
     vertices = np.array([[-1.0, 0.0], [0.0, 0.0], [0.0, 0.3], [1.0, 0.3]])
     centres = np.array([[-0.0501, 0.0501], [-0.051, 0.05]])

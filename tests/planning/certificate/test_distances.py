@@ -234,6 +234,13 @@ def test_any_robot_and_its_kinematics():
     assert bounded > 50
 
 
+def test_ground_all_inside_the_trunk_is_no_clearance():
+    speck = np.array([[-0.01, 0.0], [0.01, 0.0]])
+    body, joints = np.array([[0.0, 0.005, 0.0]]), np.zeros((1, 4))
+    motion = Motion(speck, load_robot("a1_wheeled"), 0.6, body, joints, np.zeros(1))
+    assert trunk(Samples(motion)) == 0.0
+
+
 def test_a_robot_far_beyond_the_profile_fails_without_an_error():
     plan = sw.plan("curb-015", "a1_wheeled")
     motion = Motion.of(plan)
