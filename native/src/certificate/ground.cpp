@@ -67,7 +67,8 @@ Faces Ground::faces(Vec2 centre, double sight) const {
             const double distance = norm(off);
             if (distance < kOnGround || distance > sight || distance >= next.distance) continue;
             const auto alike = [&](const Face& face) { return dot(off, face.normal) >= kAlike * distance; };
-            if (std::none_of(out.begin(), out.begin() + found, alike)) next = {at, {off.x / distance, off.z / distance}, distance};
+            if (std::none_of(out.begin(), out.begin() + found, alike))
+                next = {at, {off.x / distance, off.z / distance}, distance};
         }
         if (std::isinf(next.distance)) break;
     }

@@ -39,7 +39,8 @@ double trunk_reach(const Robot& robot) {
 double step(const Posture& from, const Posture& to, double turned, double reach) {
     double most = norm(to.trunk - from.trunk) + reach * std::abs(turned);
     for (std::size_t joint : {kHip, kKnee, kWheel})
-        for (std::size_t pair = 0; pair < 2; ++pair) most = std::max(most, norm(to.joints[joint][pair] - from.joints[joint][pair]));
+        for (std::size_t pair = 0; pair < 2; ++pair)
+            most = std::max(most, norm(to.joints[joint][pair] - from.joints[joint][pair]));
     return most;
 }
 
@@ -60,8 +61,8 @@ std::array<Placed, 2> links_of(const Robot& robot, const Posture& at, std::size_
     return {Placed(robot.legs[pair].calf, knee, wheel), Placed(robot.legs[pair].thigh, hip, knee)};
 }
 
-// Capsules of all links: how far their ends are from the upper joint, and how many times farther they may move than the
-// joints do. An end at upper + a d + c (d turned by a right angle), where d leads to the lower joint, moves no more than
+// Capsules of all links: how far their ends are from the upper joint, and how many times as far as the joints they may
+// move. An end at upper + a d + c (d turned by a right angle), where d leads to the lower joint, moves no more than
 // |1 - a| + |a| + 2 |c| times as far as that joint which moves more.
 struct Extent {
     double reach = 0.0, stretch = 1.0;
@@ -114,10 +115,12 @@ Vec2 com_of(const Robot& robot, const Posture& at) {
 Postures::Postures(Robot robot, std::span<const Pose> poses) : robot_(std::move(robot)) {
     const double reach = trunk_reach(robot_);
     postures_.reserve(poses.size()), way_.reserve(poses.size());
-    for (const Pose& pose : poses) {
-        postures_.push_back(posture_of(robot_, pose));
-        const std::size_t k = way_.size();
-        way_.push_back(k == 0 ? 0.0 : way_.back() + step(postures_[k - 1], postures_[k], pose.pitch - poses[k - 1].pitch, reach));
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+        postures_.push_back(posture_of(robot_, poses[k]));
+        if (k == 0)
+            way_.push_back(0.0);
+        else
+            way_.push_back(way_.back() + step(postures_[k - 1], postures_[k], poses[k].pitch - poses[k - 1].pitch, reach));
     }
 }
 
@@ -140,7 +143,8 @@ std::vector<double> Postures::trunk(const Ground& ground, std::span<const double
         for (std::size_t i = 0; i < middles.size(); ++i) {
             corners.clear();
             for (const Vec2 corner : robot_.trunk[i]) corners.push_back(place(corner));
-            least = std::min(least, ground.above(place(middles[i])) ? ground.distance(corners, std::max(0.0, least)) : kBelow);
+            const double enough = std::max(0.0, least);
+            least = std::min(least, ground.above(place(middles[i])) ? ground.distance(corners, enough) : kBelow);
         }
         return least;
     };
@@ -197,7 +201,8 @@ std::vector<double> Postures::between_legs() const {
             }
         return least;
     };
-    return sparing_distances(std::vector<double>(postures_.size()), exact, [&, stretch = Extent(robot_).stretch](std::size_t j, std::size_t k) {
+    const double stretch = Extent(robot_).stretch;
+    return sparing_distances(std::vector<double>(postures_.size()), exact, [&](std::size_t j, std::size_t k) {
         return 2.0 * stretch * std::abs(way_[k] - way_[j]);
     });
 }

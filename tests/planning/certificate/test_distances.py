@@ -11,10 +11,10 @@ import shapely
 
 import stairwright as sw
 from stairwright import _core
+from stairwright.library import load_robot
 from stairwright.planning.certificate.certify import judge
 from stairwright.planning.certificate.equilibrium import near_faces
 from stairwright.planning.certificate.motion import Motion, Samples, sampled
-from stairwright.library import load_robot
 from stairwright.robot import kinematics as kin
 from stairwright.terrain.profile import Terrain, height_at
 from tests.robot.random_robots import random_robot
@@ -211,15 +211,15 @@ def test_any_robot_and_its_kinematics():
         motion = Motion(vertices, robot, 0.6, body, joints, share)
         samples, line = Samples(motion), WithLine(motion)
         frames = kin.forward(robot, *body.T, joints)
-        for own, reference in zip(vars(samples.frames).values(), vars(frames).values(), strict=True):
+        for points in ("hips", "knees", "wheels"):
+            own, reference = (getattr(each, points) for each in (samples.frames, frames))
             assert own == pytest.approx(reference, abs=1e-12)
         assert samples.com == pytest.approx(kin.com(robot, *body.T, frames), abs=1e-12)
 
         trunks, links = np.empty(len(body)), np.empty(len(body))
-        for k, (x, z, pitch) in enumerate(body):
-            turned = [
-                [x, z] + kin.rotate(pitch, np.array(piece.points)) for piece in robot.body.outline
-            ]
+        for k, pitch in enumerate(body[:, 2]):
+            pieces = [np.array(piece.points) for piece in robot.body.outline]
+            turned = [body[k, :2] + kin.rotate(pitch, piece) for piece in pieces]
             trunks[k] = min(signed(line, shapely.polygons(p), p.mean(axis=0)) for p in turned)
             links[k] = min(
                 signed(line, shapely.linestrings(axis), axis[0]) - radius
