@@ -1,9 +1,9 @@
 """The certificate: an independent, exact check of a plan, poses and the motion between.
 
 It shares no geometry or statics with the planner: what takes time is native, in a module of its own
-(native/src/certificate), which tests compare with shapely and linear programmes. Clearances count less half of what the robot
-moves between two samples of the motion: what is certified holds in between too. Where that is too
-little to tell, samples lie closer still.
+(native/src/certificate), which tests compare with shapely and linear programmes. Clearances count
+less half of what the robot moves between two samples of the motion: what is certified holds in
+between too. Where that is too little to tell, samples lie closer still.
 """
 
 from __future__ import annotations
