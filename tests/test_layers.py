@@ -51,3 +51,17 @@ def test_imports_point_left() -> None:
                     wrong.append(f"{'/'.join(parts)}:{node.lineno} imports {name}")
     assert wrong == []
     assert seen > 500
+
+
+def test_the_certificate_shares_no_native_code_with_the_planner() -> None:
+    native = PACKAGE.parents[1] / "native"
+    included = {
+        line.split('"')[1]
+        for folder in ("src", "include/stairwright")
+        for file in (native / folder / "certificate").iterdir()
+        for line in file.read_text().splitlines()
+        if line.startswith('#include "')
+    }
+    own = {name for name in included if name.startswith("stairwright/certificate/")}
+    assert own
+    assert included - own == {"stairwright/vec2.hpp", "sparing.hpp"}

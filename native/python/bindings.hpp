@@ -18,5 +18,6 @@ void bind_player(nanobind::module_& m);
 void bind_lattice(nanobind::module_& m);
 void bind_lattice_sweeps(nanobind::module_& m);
 void bind_lattice_tables(nanobind::module_& m);
+void bind_certificate(nanobind::module_& m);
 
 }  // namespace stairwright::python

@@ -21,4 +21,5 @@ NB_MODULE(_core, m) {
     bind_lattice(m);
     bind_lattice_sweeps(m);
     bind_lattice_tables(m);
+    bind_certificate(m);
 }

@@ -105,6 +105,7 @@ def calls() -> Iterator[str]:
     from stairwright import _core
     from stairwright.control.native import native_controller
     from stairwright.control.settings import ControllerSettings
+    from stairwright.planning.certificate.shape import shape_of
     from stairwright.planning.poses.pose_search import pose_problem
     from stairwright.terrain.wheel_path import wheel_path
     from tests.native import hostile
@@ -129,6 +130,14 @@ def calls() -> Iterator[str]:
         follow = _core.PlanFollower(start, step, odd(5, 33), odd(5), lead)
         for _ in range(4):
             follow.advance(odd(4), True, dt)
+
+    def certificate() -> None:
+        ground = _core.CertificateGround(odd(8, 2))
+        postures = _core.CertificatePostures(shape_of(robot), odd(12, 3), odd(12, 4))
+        postures.trunk(ground, odd(12)), postures.links(ground, odd(12)), postures.rims(0, ground)
+        postures.between_legs(), postures.joints(), postures.com(), postures.way()
+        points, normals, distances = ground.faces(odd(24, 2), odd(1)[0])
+        _core.certificate_balanced(points, normals, distances < 1.0, odd(12), odd(1)[0])
 
     def uneven() -> None:
         machine = hostile.uneven_robot(random)
@@ -187,6 +196,7 @@ def calls() -> Iterator[str]:
         "constraints": lambda: problem.constraints(task(), near()),
         "pose records": lambda: problem.pose_records(0.6, odd(4, 5), odd(4, 4)),
         "posture": lambda: problem.reference_posture(odd(1)[0]),
+        "certificate": certificate,
         "limits": lambda: _core.limit_torques(robot.native, odd(12), odd(12)),
         "controller": controller,
         "follower": follower,

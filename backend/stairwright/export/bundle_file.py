@@ -22,7 +22,8 @@ from .urdf_file import plan_urdf
 
 _README = Path(__file__).with_name("bundle_readme.md")
 _SOURCES = ("CMakeLists.txt", "include", "src", "player", "ros2")
-_STAY_HERE = ("rollout", "lattice", "poses", "smoothing", "timing")  # simulator and planner
+# Simulator and planner.
+_STAY_HERE = ("rollout", "lattice", "poses", "smoothing", "timing", "certificate")
 _DATE = (2000, 1, 1, 0, 0, 0)  # the same plan is the same file
 
 

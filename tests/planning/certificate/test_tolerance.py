@@ -10,8 +10,8 @@ import shapely
 from scipy.optimize import linprog
 
 import stairwright as sw
+from stairwright import _core
 from stairwright.planning.certificate.certify import TOUCH, tolerated
-from stairwright.planning.certificate.distances import Distances
 from stairwright.planning.certificate.motion import Motion, Samples
 from stairwright.planning.certificate.tolerance.checks import NAMES, ToleranceCheck
 from stairwright.planning.certificate.tolerance.ground import VariedGround
@@ -84,10 +84,11 @@ def test_no_terrain_of_the_set_leaves_less_than_the_bounds(plan: Plan) -> None:
         q = kin.inverse(robot, *body, wheels)
         low, high = kin.limits(robot).T
         one = Motion(real, robot, motion.friction, body[None], q[None], np.zeros(1))
-        distances = Distances(Samples(one))
+        postures, ground_there = Samples(one).postures, _core.CertificateGround(real)
         true = {
-            "trunk": distances.trunk()[0], "links": distances.links()[0],
-            "legs": distances.legs()[0], "joints": np.minimum(q - low, high - q).min(),
+            "trunk": postures.trunk(ground_there, np.zeros(1))[0],
+            "links": postures.links(ground_there, np.zeros(1))[0],
+            "legs": postures.between_legs()[0], "joints": np.minimum(q - low, high - q).min(),
         }  # fmt: skip
         for what, value in true.items():
             assert value >= told[what][k] - 1e-6, (what, k)

@@ -1,1 +1,1 @@
-"""The independent check of plans: own geometry and statics, numpy and shapely, no native code."""
+"""The independent check of plans: own geometry and statics, natively, in numpy and by shapely."""

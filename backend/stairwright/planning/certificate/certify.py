@@ -1,21 +1,23 @@
-"""The certificate: an independent, exact check of a plan (shapely), poses and the motion between.
+"""The certificate: an independent, exact check of a plan, poses and the motion between.
 
-It shares no geometry or statics with the planner. Clearances count less half of what the robot
-moves between two samples of the motion: what is certified holds in between too. Where that is too
-little to tell, samples lie closer still.
+It shares no geometry or statics with the planner: what takes time is native, in a module of its own
+(native/src/certificate), which tests compare with shapely and linear programmes. Clearances count
+less half of what the robot moves between two samples of the motion: what is certified holds in
+between too. Where that is too little to tell, samples lie closer still.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import reduce
 from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright import _core
 from stairwright.arguments import as_model
 from stairwright.errors import InputError
-from stairwright.planning.certificate.distances import Distances
 from stairwright.planning.certificate.dynamics import dynamics_of
 from stairwright.planning.certificate.equilibrium import TOUCH, WHEEL_GAP, balanced, near_faces
 from stairwright.planning.certificate.motion import Motion, Samples, sampled
@@ -103,19 +105,20 @@ class _Checker:
     def __init__(self, samples: Samples) -> None:
         self.samples, self.progress = samples, samples.motion.progress
         self.unsettled = np.zeros(int(samples.interval.max(initial=-1)) + 1, np.bool_)
-        motion, wheels = samples.motion, samples.frames.wheels.reshape(-1, 2)
-        self.near = near_faces(motion.vertices, wheels, motion.robot.wheel.radius + WHEEL_GAP)
+        self.ground = _core.CertificateGround(samples.motion.vertices)
+        wheels, radius = samples.frames.wheels, samples.motion.robot.wheel.radius
+        self.near = near_faces(self.ground, wheels.reshape(-1, 2), radius + WHEEL_GAP)
 
     def checks(self) -> list[Check]:
         """All checks in the order of a reader's interest."""
-        distances = Distances(self.samples)
-        rims = distances.wheels(self.near)
+        postures, ground, slack = self.samples.postures, self.ground, self.samples.slack
+        rims = [postures.rims(leg, ground) for leg in range(2)]
         return [
-            self._most("gap between wheels and ground", np.max(rims, axis=0), WHEEL_GAP),
-            self._most("wheels sunk into the ground", -np.min(rims, axis=0), WHEEL_SINK),
-            self._clear("clearance of the trunk", distances.trunk()),
-            self._clear("clearance of the links", distances.links()),
-            self._least("gap between front and rear leg", distances.legs(), LEGS_GAP, "m"),
+            self._most("gap between wheels and ground", np.maximum(*rims), WHEEL_GAP),
+            self._most("wheels sunk into the ground", -np.minimum(*rims), WHEEL_SINK),
+            self._clear("clearance of the trunk", postures.trunk(ground, slack)),
+            self._clear("clearance of the links", postures.links(ground, slack)),
+            self._least("gap between front and rear leg", postures.between_legs(), LEGS_GAP, "m"),
             self._least("slack of the joint limits", self._limits(), 0.0, "rad"),
             self._balance(),
         ]
@@ -146,8 +149,7 @@ class _Checker:
         """Least distance of the joints from their limits (n,) [rad]."""
         low, high = kin.limits(self.samples.motion.robot).T
         joints = self.samples.motion.joints
-        slack: Floats = np.minimum(joints - low, high - joints).min(axis=1)
-        return slack
+        return reduce(np.minimum, (*(joints - low).T, *(high - joints).T))
 
     def second_faces(self) -> Floats:
         """How near a second face must be to a wheel's centre (n, 2) for balance to lean on it [m].
@@ -162,8 +164,7 @@ class _Checker:
         out = np.full(wheels.shape[:2], r + TOUCH)
         if ends.all():
             return out
-        near = self.near.touched(r + TOUCH, np.full(2 * len(ends), r + TOUCH))
-        wedged = near[:, 1].reshape(-1, 2)[ends]
+        wedged = (self.near.distances[:, 1] <= r + TOUCH).reshape(-1, 2)[ends]
         moved = np.linalg.norm(np.diff(wheels[ends], axis=0), axis=2)
         stays = wedged[:-1] & wedged[1:] & (moved <= 2 * TOUCH)
         out[~ends] = np.where(stays[samples.interval[~ends[:-1]]], r + WHEEL_GAP, r + TOUCH)

@@ -11,9 +11,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright import _core
+from stairwright.planning.certificate.shape import shape_of
 from stairwright.planning.plan import Plan
-from stairwright.robot import kinematics as kin
 from stairwright.robot.description import Robot
+from stairwright.robot.kinematics import Frames
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -53,10 +55,9 @@ class Motion:
         )  # fmt: skip
 
     @property
-    def frames(self) -> kin.Frames:
-        """Hips, knees and wheels of the poses."""
-        x, z, pitch = self.body.T
-        return kin.forward(self.robot, x, z, pitch, self.joints)
+    def postures(self) -> _core.CertificatePostures:
+        """Its poses."""
+        return _core.CertificatePostures(shape_of(self.robot), self.body, self.joints)
 
 
 class Samples:
@@ -67,6 +68,7 @@ class Samples:
         slack: (n,) the most that a point of the robot moves halfway to the next samples [m].
         interval: (n - 1,) between which poses the motion after a sample lies.
         at_pose: (n,) which of them are poses.
+        postures: Tell distances.
         frames: Hips, knees and wheels.
         com: (n, 2) centre of mass [m].
     """
@@ -79,20 +81,14 @@ class Samples:
         self.slack = np.zeros(n) if slack is None else slack
         self.interval = np.arange(n - 1) if interval is None else interval
         self.at_pose = np.append(np.diff(self.interval, prepend=-1) > 0, True)
-        self.frames = motion.frames
-        x, z, pitch = motion.body.T
-        self.com = kin.com(motion.robot, x, z, pitch, self.frames)
+        self.postures = motion.postures
+        self.frames = Frames(*self.postures.joints().swapaxes(0, 1))
+        self.com = self.postures.com()
 
 
 def sampled(motion: Motion, closer: NDArray[np.bool_] | None = None) -> Samples:
     """Samples of a motion of two poses or more; more of them where `closer` (poses - 1,)."""
-    frames = motion.frames
-    x, z, pitch = motion.body.T
-    span = motion.robot.body.span
-    moved = [np.hypot(np.diff(x), np.diff(z)) + span * np.abs(np.diff(pitch))]
-    for points in (frames.hips, frames.knees, frames.wheels):
-        moved += [np.hypot(*np.diff(points[:, leg], axis=0).T) for leg in range(2)]
-    stride = np.max(moved, axis=0)
+    stride = np.diff(motion.postures.way())
     parts = np.maximum(1, np.ceil(stride / _STRIDE)).astype(int)
     if closer is not None:
         parts *= np.where(closer, _CLOSER, 1)
