@@ -210,13 +210,15 @@ def test_the_camera_follows_the_robot_and_keeps_its_angle(site, visit, plan):
     view = cameras.view("follow", np.zeros(3))
     offset = view.position - view.look_at
     session.playback(speed=8.0, playing=True)
-    end = plan["poses"][-1]
-    for _ in range(600):
-        if abs(client.camera.look_at[0] - end["x_c"] - 0.1) < 0.01:
+    end = plan["poses"][-1]["x_c"] + 0.1
+    # Of a slow browser reports come late, with where the camera was; then it has to come back.
+    rested = 0
+    for _ in range(120):
+        page.wait_for_timeout(500)
+        rested = rested + 1 if abs(client.camera.look_at[0] - end) < 0.01 else 0
+        if rested == 2:
             break
-        page.wait_for_timeout(100)
-    page.wait_for_timeout(500)
-    np.testing.assert_allclose(client.camera.look_at[0], end["x_c"] + 0.1, atol=0.01)
+    assert rested == 2
     np.testing.assert_allclose(client.camera.position - client.camera.look_at, offset, atol=0.02)
     assert seen(pixels(page))
 
