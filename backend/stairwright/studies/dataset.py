@@ -30,7 +30,8 @@ def grid_dataset(store: ResultStore) -> xr.Dataset:
     """Every variable over all axes, in memory."""
     import xarray as xr
 
-    opened: xr.Dataset = xr.open_zarr(store.path, consolidated=False).load()
+    # without chunks: nothing is asked of a cluster that the caller's process may be a client of
+    opened: xr.Dataset = xr.open_zarr(store.path, consolidated=False, chunks=None).load()
     ordered: xr.Dataset = opened[list(VARIABLES)]
     return ordered
 
