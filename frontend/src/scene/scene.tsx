@@ -29,8 +29,14 @@ const CAMERAS: [string, string][] = [
   ["iso", "Three-quarter"],
 ];
 
+/** A hand that has not moved for so long rests [ms]. */
+const REST = 120;
+let moved = Number.NEGATIVE_INFINITY;
+addEventListener("pointermove", (event) => (moved = event.timeStamp), true);
+
 /** Something is being dragged, and the page has to follow. */
-const handAtWork = () => dragging.peek() !== null || held.peek();
+const handMoves = () =>
+  (dragging.peek() !== null || held.peek()) && performance.now() - moved < REST;
 
 const moves = computed(() => duration.value > 0);
 
@@ -105,7 +111,7 @@ export function Scene() {
             src={`${address}?embedded=1&hideViserLogo`}
             title="3-D scene"
             allow="fullscreen"
-            onLoad={(event) => leaveTime(event.currentTarget.contentWindow!, handAtWork)}
+            onLoad={(event) => leaveTime(event.currentTarget.contentWindow!, handMoves)}
           />
         )}
         {!isEmpty.value && connected.value && <Tag />}
