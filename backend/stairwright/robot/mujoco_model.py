@@ -32,6 +32,7 @@ Floats = NDArray[np.float64]
 TIMESTEP = 0.001  # s
 TERRAIN_HALF_WIDTH = 1.0  # m
 TERRAIN_DEPTH = 0.5  # m below the lowest point
+RUN_OUT = 1.0  # m of level ground beyond either end
 SPIKE_WIDTH = 0.002  # m; a zero-width spike becomes a prism this thick
 _VERTICAL = 1e-6  # m; a face that advances less than this is vertical
 
@@ -141,8 +142,12 @@ def build_model(
 
 
 def prisms(terrain: Terrain) -> list[Floats]:
-    """Convex outlines (k, 2) of the ground: one under each stretch, thin ones for spikes."""
-    p = terrain.vertices
+    """Convex outlines (k, 2) of the ground: one under each stretch, thin ones for spikes.
+
+    The ground goes on level beyond its ends: a robot that is not quite where it believes rolls on.
+    """
+    run_out = np.array([RUN_OUT, 0.0])
+    p = np.vstack([terrain.vertices[0] - run_out, terrain.vertices, terrain.vertices[-1] + run_out])
     floor = float(p[:, 1].min()) - TERRAIN_DEPTH
     outlines = []
     for i in range(len(p) - 1):

@@ -56,7 +56,7 @@ def end_error(
         lost = lost + DRIFT * _since_last_face(plan, end[:, 0])
     off = np.maximum(0.0, np.abs(x - end[:, 0]) - lost)
     path = wheel_path(real, plan.robot_description.wheel.radius)
-    places = np.column_stack([x, z])
+    places = np.column_stack([np.clip(x, *real.vertices[[0, -1], 0]), z])  # level beyond the ends
     nearest = path.centres(np.array([path.project(place) for place in places]))
     off_ground = np.hypot(*(places - nearest).T)
     return float(np.hypot(off, off_ground).max())

@@ -112,7 +112,9 @@ void Estimator::see_legs(const Readings& readings, double dt) {
         const Vec2 at_knee = leg.hip + knee;
         w.leg = {world(leg.hip), world(at_knee), world(w.place), world(leg.hip + upper * leg.thigh.com),
                  world(at_knee + lower * leg.calf.com)};
-        const WheelForce f = wheel_force(leg, w.leg, readings.torques[3 * i], readings.torques[3 * i + 1], readings.torques[3 * i + 2]);
+        // What turns the joint: the motor's torque less what its own friction takes.
+        const auto torque = [&](int k, const Motor& motor) { return readings.torques[3 * i + k] - motor.damping * readings.joint_rates[3 * i + k]; };
+        const WheelForce f = wheel_force(leg, w.leg, torque(0, leg.thigh_motor), torque(1, leg.calf_motor), torque(2, leg.wheel_motor));
         if (f.known) w.felt += share * (f.force - w.felt);
         const double rate = readings.joint_rates[3 * i] + readings.joint_rates[3 * i + 1] + readings.joint_rates[3 * i + 2] + rate_[1];
         w.rolled = leg.wheel.radius * rate * dt;

@@ -42,7 +42,7 @@ struct Noise {
     double face_place = 0.018, tread_height = 0.010;
     double place = 0.002, rolling = 0.03, aside = 0.03, off_face = 0.02;
     // A loaded tyre rolls on a radius that is smaller by this [m].
-    double deflection = 0.0004;
+    double deflection = 0.0003;
     // A wheel creeps: under a traction of a quarter of the weight it moves slower than it rolls by this, until a test of
     // the grip tells better [m/s].
     double creep = 0.014;
