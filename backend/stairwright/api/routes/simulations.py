@@ -9,9 +9,9 @@ from typing import Any
 import orjson
 from fastapi import Response
 
-from stairwright.api.bodies import PlanRequest, Simulation
-from stairwright.api.deps import Idempotency
-from stairwright.api.problems import not_found
+from stairwright.api.bodies import JobDocument, PlanRequest, Simulation
+from stairwright.api.deps import JSON_BODY, Idempotency
+from stairwright.api.problems import describe, not_found
 from stairwright.api.services import Services
 from stairwright.control.settings import ControllerSettings
 from stairwright.documents import content_hash, parse
@@ -21,6 +21,13 @@ from stairwright.planning.plan import Plan
 
 from .jobs import job_document
 from .plans import plan_question
+
+STARTS_A_JOB: dict[str, Any] = {  # such a route in the API's description
+    "status_code": 202,
+    "response_model": JobDocument,
+    "dependencies": [JSON_BODY],
+    "responses": describe(404, 409, 415, 429, 503),
+}
 
 
 async def accepted(
