@@ -23,7 +23,7 @@ from stairwright.api.deps import (
     resolve_terrain,
 )
 from stairwright.api.problems import FieldError, Problem, describe, not_found
-from stairwright.api.responses import fresh_json, models_json, not_modified
+from stairwright.api.responses import accepted_json, fresh_json, models_json, not_modified
 from stairwright.api.services import Services
 from stairwright.api.study_bodies import DesignAnswer, DesignDocument
 from stairwright.documents import parse
@@ -66,8 +66,7 @@ async def post_design(services: Service, owner: Owner, body: Design, once: Idemp
     following = await services.studies.submit_design(design, owner)
     once.result = following.record.id
     shown = await asyncio.to_thread(_document, services, following)
-    headers = {"location": shown.links["self"], "retry-after": "1"}
-    return Response(shown.model_dump_json(), 202, headers=headers, media_type="application/json")
+    return accepted_json(shown, shown.links["self"])
 
 
 def _resolved(services: Services, body: Design) -> Design:

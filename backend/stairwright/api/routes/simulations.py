@@ -12,6 +12,7 @@ from fastapi import Response
 from stairwright.api.bodies import JobDocument, PlanRequest, Simulation
 from stairwright.api.deps import JSON_BODY, Idempotency
 from stairwright.api.problems import describe, not_found
+from stairwright.api.responses import accepted_json
 from stairwright.api.services import Services
 from stairwright.control.settings import ControllerSettings
 from stairwright.documents import content_hash, parse
@@ -40,8 +41,7 @@ async def accepted(
         job = await services.rollouts.submit(asked, owner)
         once.result = job.id
     shown = job_document(job)
-    headers = {"location": shown.links["self"], "retry-after": "1"}
-    return Response(shown.model_dump_json(), 202, headers=headers, media_type="application/json")
+    return accepted_json(shown, shown.links["self"])
 
 
 def settings_of(body: Simulation) -> dict[str, Any]:
