@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 from .border import border, flips, foretell, low_count, next_cells
 from .document import Study
 from .grid import levels
-from .progress import Meter, Report, Writer
+from .progress import Meter, Report
 from .serial import Engine, Finished, Stopped
 from .store import ResultStore
 from .variables import DONE, PENDING, Record
+from .writer import Writer
 
 CHECKED = 0.25  # of the rows have a cell off their border asked
 _NEAR, _FRINGE = 0.7, 0.15  # share of these close to the border; how close, of the axis

@@ -138,7 +138,7 @@ async def design_events(
 async def _events(services: Services, following: Following) -> event_streams.Events:
     told = (0, -1)
     while True:
-        now, finished = (following.job.revision, following.done), following.job.finished
+        now, finished = (following.job.revision, following.progress.done), following.job.finished
         if now != told:
             told = now
             shown = await asyncio.to_thread(_document, services, following)
@@ -218,7 +218,9 @@ def _state(summary: DesignSummary, following: Following | None) -> dict[str, Any
     job = following.job
     return {
         "state": job.state,
-        "progress": round(min(1.0, max(share, following.share)), 4),  # counts what is replayed, too
+        "progress": round(
+            min(1.0, max(share, following.progress.share)), 4
+        ),  # counts what is replayed, too
         "eta": following.eta,
         "stage": following.stage,
         "outdated": following.record.engine != engine_of(_asked(following).ask),
