@@ -26,10 +26,11 @@ from stairwright.robot.mujoco_model import TIMESTEP, build_spec
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
 
+from .physics import CONTROL_STEPS
+
 Floats = NDArray[np.float64]
 Command = Callable[[float], tuple[float, float]]
 
-CONTROL_STEPS = 2
 HALF_SIZE = 20.0  # m, of the flat ground
 ACCELERATION = 1.0  # m/s^2 of the commanded speed
 TURN_ACCELERATION = 2.0  # rad/s^2 of the commanded yaw rate
