@@ -12,6 +12,7 @@ import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from time import perf_counter
 
 import numpy as np
@@ -65,22 +66,13 @@ def plan_critical(
         The plan; infeasible with a problem where a pose has no solution or no equilibrium. The
         poses found before it are kept.
     """
-    started = perf_counter()
+    made = partial(assemble, "critical", terrain, robot, friction, weights, begun=perf_counter())
     try:
         path = wheel_path(terrain, robot.wheel.radius)
         begin, end = find_standing_poses(terrain, robot, path)
     except NoStandingPose as error:
         stop = no_standing_pose(terrain, robot, error)
-        return assemble(
-            "critical",
-            terrain,
-            robot,
-            friction,
-            weights,
-            [],
-            stop,
-            seconds=perf_counter() - started,
-        )
+        return made([], stop)
     search = solver(robot, path, friction, weights)
     obstacles = find_obstacles(path, begin.wheels[1], end.wheels[0])
     found, problem = _solve(search, obstacles, begin, end)
@@ -95,18 +87,8 @@ def plan_critical(
     poses = _poses(search, knots, weights.speed)
     if problem is None:
         problem = _unbalanced(search, poses)
-    plan = assemble(
-        "critical",
-        terrain,
-        robot,
-        friction,
-        weights,
-        poses,
-        problem,
-        critical=[i for i, knot in enumerate(knots) if knot.optimal],
-        certified=certified,
-        seconds=perf_counter() - started,
-    )
+    optimal = [i for i, knot in enumerate(knots) if knot.optimal]
+    plan = made(poses, problem, critical=optimal, certified=certified)
     if problem is not None or plan.certificate is None:
         return plan
     certificate = Certificate.of_poses(

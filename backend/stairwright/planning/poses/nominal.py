@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from time import perf_counter
 
 import numpy as np
@@ -40,38 +41,20 @@ def plan_nominal(terrain: Terrain, robot: Robot, friction: float, weights: Nomin
         The plan. Where the standing pose would touch the terrain or tip, the status is infeasible
         and the problem names the first such place; the poses are listed nevertheless.
     """
-    started = perf_counter()
+    made = partial(assemble, "nominal", terrain, robot, friction, weights, begun=perf_counter())
     try:
         path = wheel_path(terrain, robot.wheel.radius)
         begin, end = find_standing_poses(terrain, robot, path)
         _check_standing(robot, begin.wheels[0])
     except NoStandingPose as error:
         stop = no_standing_pose(terrain, robot, error)
-        return assemble(
-            "nominal",
-            terrain,
-            robot,
-            friction,
-            weights,
-            [],
-            stop,
-            seconds=perf_counter() - started,
-        )
+        return made([], stop)
     wheels = _roll(path, _wheelbase(robot), begin.wheels, end.wheels[0])
     poses = _poses(robot, path, friction, wheels, weights.speed)
     problem = _first_problem(friction, poses)
     if problem is None and wheels[-1, 0] < end.wheels[0] - STEP:
         problem = _out_of_reach(poses[-1])
-    return assemble(
-        "nominal",
-        terrain,
-        robot,
-        friction,
-        weights,
-        poses,
-        problem,
-        seconds=perf_counter() - started,
-    )
+    return made(poses, problem)
 
 
 def _check_standing(robot: Robot, s: float) -> None:
