@@ -52,7 +52,6 @@ class Rows:
         self.cells: Ints = np.moveaxis(numbers, self.axis, -1).reshape(-1, self.n + 1)
         self.places = np.array(list(np.ndindex(*self.shape)), float).reshape(len(self.cells), -1)
         self.known: list[dict[int, bool]] = [{} for _ in self.cells]
-        self._where: dict[int, tuple[int, int]] = {}
 
     def learn(self, row: int, k: int, verdict: bool) -> None:
         """A cell's verdict."""
