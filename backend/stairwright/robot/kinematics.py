@@ -11,12 +11,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Floats
 
 from .description import Robot
 from .legs import LinkForm
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

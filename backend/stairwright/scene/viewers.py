@@ -7,11 +7,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Floats
 
 from . import camera as cameras
-
-Floats = NDArray[np.float64]
 
 
 class Viewers:

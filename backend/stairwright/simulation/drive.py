@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
 from stairwright._core import GRAVITY
+from stairwright.arrays import Floats
 from stairwright.control.controller import LEG_PAIR, Controller
 from stairwright.control.measurement import measure
 from stairwright.control.setpoint import RATES, Setpoint
@@ -28,7 +28,6 @@ from stairwright.terrain.wheel_path import wheel_path
 
 from .physics import CONTROL_STEPS
 
-Floats = NDArray[np.float64]
 Command = Callable[[float], tuple[float, float]]
 
 HALF_SIZE = 20.0  # m, of the flat ground

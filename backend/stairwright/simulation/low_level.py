@@ -15,11 +15,11 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
 from stairwright._core import GRAVITY
 from stairwright.arguments import as_friction
+from stairwright.arrays import Floats
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
@@ -33,8 +33,6 @@ from .outcome import Ending, fallen, judge
 from .physics import OwnPhysics, Physics
 from .result import Outcome
 from .run import Run
-
-Floats = NDArray[np.float64]
 
 MOTORS = 16
 MOTOR_LEGS = ("FR", "FL", "RR", "RL")  # abduction, thigh, calf of each; then their wheels

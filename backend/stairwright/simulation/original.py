@@ -16,9 +16,9 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright._core import GRAVITY
+from stairwright.arrays import Floats, Ints
 from stairwright.errors import InputError
 from stairwright.robot.description import JOINTS, LEGS, Robot
 from stairwright.robot.importing.assemble import Reading
@@ -29,8 +29,6 @@ from stairwright.robot.importing.source import read_spec
 from stairwright.robot.importing.upload import Upload, unpack
 from stairwright.robot.mujoco_model import add_contact_sensors, add_terrain, set_physics
 from stairwright.terrain.profile import Terrain
-
-Floats = NDArray[np.float64]
 
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 _ALIKE = 1e-3  # m between the plan's robot and the file's
@@ -58,13 +56,13 @@ class Original:
 
     model: Any
     maps: tuple[JointMap, ...]
-    positions: NDArray[np.int64]
-    speeds: NDArray[np.int64]
+    positions: Ints
+    speeds: Ints
     base: int
     axes: Floats
     centre: Floats
     held: dict[int, float]
-    wheels: NDArray[np.int64]
+    wheels: Ints
     planes: Floats
     labels: list[str]
 

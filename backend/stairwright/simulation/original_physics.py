@@ -8,8 +8,8 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.control.measurement import rotation
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
@@ -19,7 +19,6 @@ from .original import Original, build_original, read_original
 from .physics import CONTROL_STEPS, Touches, sunk, touches, warned
 from .world import real_terrain
 
-Floats = NDArray[np.float64]
 # Deviations that change our own model of the robot or of the world round it.
 _OUR_MODEL = (
     "mass", "com_x", "com_z", "payload", "friction_front", "friction_rear", "heading",

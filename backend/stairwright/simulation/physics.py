@@ -7,8 +7,8 @@ from typing import Any, Protocol
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.planning.plan import Plan
 from stairwright.robot.description import LEGS
 from stairwright.terrain.profile import Terrain
@@ -16,7 +16,6 @@ from stairwright.terrain.profile import Terrain
 from .disturbance import Disturbance
 from .world import build_world, real_terrain
 
-Floats = NDArray[np.float64]
 Touches = tuple[bool, dict[str, float]]  # own parts touch; forces of the terrain on links [N]
 
 CONTROL_STEPS = 2  # physics steps per control step: 500 Hz

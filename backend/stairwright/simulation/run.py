@@ -8,10 +8,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
 from stairwright._core import GRAVITY
+from stairwright.arrays import Floats
 from stairwright.control.controller import Controller
 from stairwright.control.native import native_controller
 from stairwright.control.setpoint import PROGRESS, RATES, Setpoint
@@ -34,8 +34,6 @@ from .record import Recorder
 from .replanning import tested_friction
 from .result import Rollout
 from .sensors import Sensors
-
-Floats = NDArray[np.float64]
 
 STANDS = 1.0  # s that a robot which gave up must stand
 STOPS = {  # why it gives up, see control/safe_stop.hpp

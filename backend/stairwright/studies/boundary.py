@@ -12,7 +12,8 @@ import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Ints
 
 from .border import border, flips, foretell, low_count, next_cells
 from .document import Study
@@ -26,8 +27,6 @@ from .writer import Writer
 CHECKED = 0.25  # of the rows have a cell off their border asked
 _NEAR, _FRINGE = 0.7, 0.15  # share of these close to the border; how close, of the axis
 _PER_ROW = 2.5  # cells that a row takes, before that is known
-
-Ints = NDArray[np.int64]
 
 
 def passes(record: Record) -> bool:

@@ -9,12 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from stairwright.arrays import Flags, Floats
 
 WHEEL_GAP = 0.002  # m; a wheel this near to the ground touches it
 TOUCH = 1.01e-4  # m; a second face no farther from a wheel is touched truly, not just nearly

@@ -16,8 +16,8 @@ from functools import partial
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.planning.assembly import assemble
 from stairwright.planning.certificate.joining import motion_problem
 from stairwright.planning.infeasibility.diagnosis import diagnose, no_standing_pose, statics_problem
@@ -37,7 +37,6 @@ from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
-Floats = NDArray[np.float64]
 PoseSearcher = Callable[[Robot, WheelPath, float, CriticalWeights], PoseSearch]
 
 TAIL = 0.15  # m between an obstacle and a standing wheel, for legs of 0.4 m

@@ -7,8 +7,8 @@ from functools import partial
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.planning.assembly import assemble
 from stairwright.planning.infeasibility.diagnosis import no_standing_pose, statics_limit
 from stairwright.planning.plan import Limit, Plan, Pose, Problem
@@ -20,8 +20,6 @@ from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
-
-Floats = NDArray[np.float64]
 
 STEP = 0.02  # m of the front wheel's way between poses
 MOST = 2000  # poses; longer courses get longer steps

@@ -14,11 +14,9 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Flags, Floats, Ints
 from stairwright.planning.certificate.equilibrium import STRONGEST, touching
-
-Floats = NDArray[np.float64]
 
 _FACES = 3  # most faces that one wheel touches
 _SMALL = 1e-12
@@ -36,7 +34,7 @@ class Contacts:
 
     rays: Floats
     points: Floats
-    front: NDArray[np.bool_]
+    front: Flags
 
     @classmethod
     def of(
@@ -97,7 +95,7 @@ class Pushes:
         along: Force on the front wheels along x.
     """
 
-    pairs: NDArray[np.int64]
+    pairs: Ints
     factors: Floats
     moment: Floats
     front: Floats
@@ -132,7 +130,7 @@ class Pushes:
         lost: Floats = off[:, :1] * uneven + off[:, 1:] * np.abs(self.along) + com[:, None]
         return lost
 
-    def forces(self, rays: Floats, choice: NDArray[np.int64]) -> Floats:
+    def forces(self, rays: Floats, choice: Ints) -> Floats:
         """Forces (n, m, 2) along every ray of one choice (n,) for each sample, in weights."""
         rows = np.arange(len(rays))
         out = np.zeros((*rays.shape[:2], 2))
