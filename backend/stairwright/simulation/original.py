@@ -27,13 +27,17 @@ from stairwright.robot.importing.read import read_closely
 from stairwright.robot.importing.report import JointMap, Notes
 from stairwright.robot.importing.source import read_spec
 from stairwright.robot.importing.upload import Upload, unpack
-from stairwright.robot.mujoco_model import add_contact_sensors, add_terrain, set_physics
+from stairwright.robot.mujoco_model import (
+    TERRAIN_HALF_WIDTH,
+    add_contact_sensors,
+    add_terrain,
+    set_physics,
+)
 from stairwright.terrain.profile import Terrain
 
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 _ALIKE = 1e-3  # m between the plan's robot and the file's
 _GIVES = 0.05  # rad at which an abduction servo gives its full torque
-_HALF_WIDTH = 1.0  # m of terrain on each side
 _SERVO_TORQUE = 0.5  # of weight times leg length, where the file has no limit
 
 
@@ -119,7 +123,7 @@ def build_original(
     _remove_others(spec, bodies, source.model, base)
     _set_free(bodies[source.model.body_rootid[base]])
     set_physics(spec)
-    add_terrain(spec, terrain, friction, _HALF_WIDTH)
+    add_terrain(spec, terrain, friction, TERRAIN_HALF_WIDTH)
     for mesh in spec.meshes:
         if mesh.name.startswith("terrain_"):
             mesh.scale = [1.0, 1.0, 1.0]

@@ -16,9 +16,8 @@ from itertools import combinations
 import numpy as np
 
 from stairwright.arrays import Flags, Floats, Ints
-from stairwright.planning.certificate.equilibrium import STRONGEST, touching
+from stairwright.planning.certificate.equilibrium import MOST_FACES, STRONGEST, touching
 
-_FACES = 3  # most faces that one wheel touches
 _SMALL = 1e-12
 
 
@@ -44,15 +43,18 @@ class Contacts:
         """Of wheels (n, 2, 2) that touch a profile; see `equilibrium.balanced`."""
         n = len(wheels)
         points, normals, found = touching(vertices, wheels.reshape(-1, 2), reach, further.ravel())
-        points, normals = points.reshape(n, 2 * _FACES, 2), normals.reshape(n, 2 * _FACES, 2)
-        normals = normals * found.reshape(n, 2 * _FACES, 1)
+        points, normals = (
+            points.reshape(n, 2 * MOST_FACES, 2),
+            normals.reshape(n, 2 * MOST_FACES, 2),
+        )
+        normals = normals * found.reshape(n, 2 * MOST_FACES, 1)
         arms = points - np.stack([com, np.zeros(n)], axis=1)[:, None]
         rays = []
         for side in (friction, -friction):
             fx = normals[..., 0] + side * normals[..., 1]
             fz = normals[..., 1] - side * normals[..., 0]
             rays.append(np.stack([fx, fz, arms[..., 0] * fz - arms[..., 1] * fx], axis=2))
-        front = np.tile(np.arange(2 * _FACES) < _FACES, 2)
+        front = np.tile(np.arange(2 * MOST_FACES) < MOST_FACES, 2)
         return cls(np.concatenate(rays, axis=1), np.concatenate([points] * 2, axis=1), front)
 
 
