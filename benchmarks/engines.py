@@ -4,10 +4,10 @@
         [--workers N] [--quick] [--json FILE]
 
 Presets and random profiles of `profiles.py` are planned, and each feasible plan is carried out in
-MuJoCo, as the product does it, in Drake and in Bullet. Controller, sensing (ideal), the plan's
-progress and the verdict are the same code; engine, contact model and its solver are not. Each case
-is told as it is done; the table holds verdicts and the largest pitch errors, and what differs is
-named below it.
+MuJoCo, as the product does it, in Drake and in Bullet. Loop, controller (in numpy where the
+engine is not MuJoCo), sensing (ideal), the plan's progress and the verdict are the product's;
+engine, contact model and its solver are not. Each case is told as it is done; the table holds
+verdicts and the largest pitch errors, and what differs is named below it.
 """
 
 from __future__ import annotations
@@ -31,15 +31,12 @@ from profiles import random_profile
 from report import Row, percentile, publish
 
 import stairwright as sw
-from stairwright import _core
-from stairwright.control.native import native_controller
 from stairwright.control.settings import ControllerSettings
 from stairwright.planning.plan import Plan
 from stairwright.robot.mujoco_model import TIMESTEP
-from stairwright.simulation import score
 from stairwright.simulation.disturbance import Disturbance
-from stairwright.simulation.run import CHUNK, CONTROL_STEPS, Run
-from stairwright.terrain.profile import Terrain
+from stairwright.simulation.physics import CONTROL_STEPS
+from stairwright.simulation.run import Run
 
 Floats = NDArray[np.float64]
 
@@ -47,58 +44,34 @@ ROBOTS = ("a1_wheeled", "go2w")
 SETTINGS = ControllerSettings(sensing="ideal")
 
 
-class EngineRun(Run):
-    """A rollout with another engine's physics; loop, controller and verdict are the product's."""
+class Engine:
+    """Another engine's `stairwright.simulation.physics.Physics`."""
 
-    own_model = False
+    source, timestep = "", TIMESTEP
 
     def __init__(self, plan: Plan, friction: float, world_of: Any) -> None:
-        self.world_of = world_of
-        super().__init__(plan, friction, SETTINGS, Disturbance(), 0, 100.0)
-        self.steered = native_controller(self.robot, self.path, plan.friction, SETTINGS)
-
-    def _world(self, terrain: Terrain) -> tuple[Any, Any]:
-        self.world = world = self.world_of(self.robot, terrain, self.friction)
-        model = SimpleNamespace(opt=SimpleNamespace(timestep=TIMESTEP))
-        never = SimpleNamespace(number=0)
-        seen = SimpleNamespace(
-            time=0.0,
-            qpos=world.qpos,
-            qvel=world.qvel,
-            ctrl=world.ctrl,
-            sensordata=np.zeros(17),
-            warning={int(kind): never for kind in range(20)},
+        self.terrain = plan.terrain
+        self._world = world = world_of(plan.robot_description, plan.terrain, friction)
+        self.state = SimpleNamespace(
+            time=0.0, qpos=world.qpos, qvel=world.qvel, ctrl=world.ctrl, sensordata=np.zeros(16)
         )
-        return model, seen
 
-    def _geom_names(self) -> list[str]:
-        return []
+    def place(self, qpos: Floats) -> None:
+        self._world.qpos[:] = qpos
+        self._world.place()
 
-    def _place(self) -> None:
-        self.world.qpos[:] = self._first_positions()
-        self.world.place()
+    def advance(self) -> None:
+        self._world.advance(CONTROL_STEPS)
+        self.state.time += CONTROL_STEPS * TIMESTEP
 
-    def _plain_steps(self, moving: bool) -> None:
-        world = self.world
-        for k in range(CHUNK):
-            if score.diverged(world.qpos, world.qvel):
-                break
-            self.target[:] = self.follower.advance(self.places, moving, self.dt)
-            self.position = self.follower.position
-            wanted = self.steered.step(world.qpos, world.qvel, self.target)
-            self.places[:] = self.steered.places
-            rates = np.ascontiguousarray(world.qvel[6:])
-            world.ctrl[:] = _core.limit_torques(self.robot.native, rates, wanted)
-            score.keep_score(world.qpos, world.qvel, world.ctrl, self.target, self.dt, self.score)
-            self.recorder.take(self.data, self.target, self.places)
-            loads = world.loads()
-            if loads or self.loads.loads:
-                self.loads.add(self.time + k * self.dt, loads)
-            world.advance(CONTROL_STEPS)
-            self.data.time += self.dt
+    def touches(self) -> tuple[bool, dict[str, float]]:
+        return False, self._world.loads()
 
-    def _wheels(self) -> Floats:
-        return self.world.wheel_centres()
+    def wheels(self) -> Floats:
+        return self._world.wheel_centres()
+
+    def broken(self) -> bool:
+        return False
 
 
 @dataclass(frozen=True)
@@ -135,8 +108,8 @@ def case(friction: float, robot: str, terrain: str | int) -> Case | None:
         return None
     told = {"MuJoCo": _told(sw.rollout(plan, controller=SETTINGS, keep_plan=False))}
     for name, module in engines().items():
-        world = import_module(module).World
-        run = EngineRun(plan, friction, world)
+        engine = Engine(plan, friction, import_module(module).World)
+        run = Run(plan, friction, SETTINGS, Disturbance(), 0, 100.0, engine)
         told[name] = _told(run.result(run.simulate(None), keep_plan=False))
     return Case(robot, ground.name, isinstance(terrain, str), told)
 

@@ -25,7 +25,8 @@ import stairwright as sw
 from stairwright.control.settings import parse_settings
 from stairwright.planning.plan import Plan
 from stairwright.simulation.disturbance import Disturbance
-from stairwright.simulation.run import CONTROL_STEPS, Run
+from stairwright.simulation.physics import CONTROL_STEPS
+from stairwright.simulation.run import Run
 from stairwright.simulation.trials import all_cores, trials
 
 TERRAIN, ROBOT = "single-stair-036", "a1_wheeled"
@@ -53,7 +54,7 @@ def cpu(task: Callable[[], object]) -> float:
 
 def replay(run: Run, torques: NDArray[np.float64]) -> None:
     """Nothing but stepping, with known torques."""
-    model, data, ctrl, step = run.model, run.data, run.data.ctrl, mujoco.mj_step
+    model, data, ctrl, step = run.physics.model, run.data, run.data.ctrl, mujoco.mj_step
     for row in torques:
         ctrl[:] = row
         step(model, data, CONTROL_STEPS)

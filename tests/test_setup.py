@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.metadata
-import importlib.util
 import os
 import re
 import shutil
@@ -12,14 +11,14 @@ import subprocess
 import sys
 import tomllib
 import zipfile
-from importlib.machinery import SourceFileLoader
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 import yaml
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+
+from tools import locks, packages, running, steps
 
 ROOT = Path(__file__).resolve().parents[1]
 LOCKS = [ROOT / f"requirements{name}.lock" for name in ("", "-studies", "-dev")]
@@ -47,23 +46,12 @@ def locked(path: Path) -> dict[str, str]:
     }
 
 
-@pytest.fixture(scope="module")
-def dev() -> ModuleType:
-    """The script ./dev, as a module."""
-    loader = SourceFileLoader("stairwright_dev", str(ROOT / "dev"))
-    spec = importlib.util.spec_from_loader(loader.name, loader)
-    assert spec is not None
-    module = importlib.util.module_from_spec(spec)
-    loader.exec_module(module)
-    return module
-
-
 # ---------------------------------------------------------------- locks
 
 
 @pytest.mark.parametrize("path", ALL_LOCKS, ids=lambda path: path.name)
-def test_every_locked_package_has_hashes_and_no_address(path: Path, dev: ModuleType) -> None:
-    blocks = dev.lock_blocks(path)
+def test_every_locked_package_has_hashes_and_no_address(path: Path) -> None:
+    blocks = locks.lock_blocks(path)
     assert "".join(blocks) == path.read_text()
     for block in blocks:
         assert re.match(r"[\w.-]+==[\w.]+", block), block
@@ -219,14 +207,14 @@ def test_wheel_brings_its_terrains_robots_and_page(tmp_path: Path) -> None:
 
 
 def test_a_step_runs_again_only_when_what_it_read_has_changed(
-    dev: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(dev, "ROOT", tmp_path)
+    monkeypatch.setattr(steps, "ROOT", tmp_path)
     source, stamp = tmp_path / "source", tmp_path / "state" / "stamp"
 
     def needed(content: str, *, done: bool = True) -> bool:
         source.write_text(content)
-        with dev.step("a step", stamp, dev.digest([source], "fact"), done=done) as answer:
+        with steps.step("a step", stamp, steps.digest([source], "fact"), done=done) as answer:
             return bool(answer)
 
     assert needed("one")
@@ -234,30 +222,32 @@ def test_a_step_runs_again_only_when_what_it_read_has_changed(
     assert needed("two")
     assert needed("two", done=False)
     assert not needed("two")
-    with pytest.raises(RuntimeError), dev.step("fails", stamp, dev.digest([source])):
+    with pytest.raises(RuntimeError), steps.step("fails", stamp, steps.digest([source])):
         raise RuntimeError
     assert needed("two"), "a failed step must not count as done"
 
 
 def test_what_studies_need_stays_and_nothing_is_installed_twice(
-    dev: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """`uv pip sync` removes what no lock names: it is given theirs once they were installed."""
     asked: list[list[str]] = []
-    monkeypatch.setattr(dev, "VENV", tmp_path)
-    monkeypatch.setattr(dev, "venv_python", lambda: "3.11")
-    monkeypatch.setattr(dev, "setup_uv", lambda: "uv")
-    monkeypatch.setattr(dev, "run", lambda *command: asked.append([str(each) for each in command]))
-    monkeypatch.setattr(dev, "pip_install", lambda *words: asked.append([*map(str, words)]))
+    monkeypatch.setattr(packages, "VENV", tmp_path)
+    monkeypatch.setattr(packages, "venv_python", lambda: "3.11")
+    monkeypatch.setattr(packages, "setup_uv", lambda: "uv")
+    monkeypatch.setattr(
+        packages, "run", lambda *command: asked.append([str(each) for each in command])
+    )
+    monkeypatch.setattr(packages, "pip_install", lambda *words: asked.append([*map(str, words)]))
 
     def locks_of_set_up() -> list[str]:
         asked.clear()
-        dev.setup_python(dev.LOCKS[:1])
+        packages.setup_python(packages.LOCKS[:1])
         return [Path(each).name for each in asked[0] if each.endswith(".lock")] if asked else []
 
     assert locks_of_set_up() == ["requirements.lock"]
     assert locks_of_set_up() == []
-    dev.setup_studies()
+    packages.setup_studies()
     assert asked[0] == ["-r", str(ROOT / "requirements-studies.lock")]
     assert locks_of_set_up() == []
     (tmp_path / ".locked").write_text("another lock than today's")
@@ -266,14 +256,14 @@ def test_what_studies_need_stays_and_nothing_is_installed_twice(
 
 
 def test_renaming_a_source_changes_the_hash(
-    dev: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(dev, "ROOT", tmp_path)
+    monkeypatch.setattr(steps, "ROOT", tmp_path)
     first, second = tmp_path / "a", tmp_path / "b"
     first.write_text("same")
-    before = dev.digest([first])
+    before = steps.digest([first])
     first.rename(second)
-    assert dev.digest([second]) != before
+    assert steps.digest([second]) != before
 
 
 @pytest.mark.parametrize(
@@ -299,16 +289,16 @@ def test_up_tells_at_once_that_the_port_is_taken() -> None:
 
 
 def test_missing_node_is_replaced_only_when_missing(
-    dev: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for name, text in (("node", "#!/bin/sh\necho v18.19.0\n"), ("npm", "#!/bin/sh\n")):
         (tmp_path / name).write_text(text)
         (tmp_path / name).chmod(0o755)
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert dev.node_version() == (18, 19, 0)
-    assert dev.node_version() < dev.NODE_MINIMUM
+    assert running.node_version() == (18, 19, 0)
+    assert running.node_version() < running.NODE_MINIMUM
     (tmp_path / "npm").unlink()
-    assert dev.node_version() == ()
+    assert running.node_version() == ()
 
 
 @pytest.mark.parametrize("status", [0, 1])

@@ -7,13 +7,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import httpx
 
 from stairwright.errors import StairwrightError
 
-State = Literal["queued", "running", "done", "failed", "cancelled"]
+if TYPE_CHECKING:
+    from stairwright.jobs.job import State
 
 BUSY = (429, 503)
 SHORTEST = 0.05  # s between two requests, whatever a service says

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from . import summary
+from .command_arguments import Arguments, plan_or_file, planned, settings_of, terrain_of
 from .errors import InputError
 from .library import load_robot, load_terrain, robots, terrains
 from .robot_commands import robot_command
 
 if TYPE_CHECKING:
-    from .planning.plan import Method, Plan
-    from .terrain.profile import Terrain
+    from .planning.plan import Plan
 
-Arguments = argparse.Namespace
 Command = Callable[[Arguments], str | None]
 
 
@@ -29,7 +27,7 @@ def plan_command(given: Arguments) -> str | None:
         by_ending(PLAN_FORMATS, given.output, "plan").check_rate(given.rate)
     elif given.rate is not None:
         raise InputError("is for a plan that is written to a file", ("rate",))
-    plan = _plan(given.terrain, given)
+    plan = planned(given.terrain, given)
     if given.output:
         plan.save(given.output, given.rate)
     else:
@@ -49,7 +47,7 @@ def rollout_command(given: Arguments) -> str | None:
         from .export.table import ROLLOUT_FORMATS, by_ending
 
         by_ending(ROLLOUT_FORMATS, given.output, "rollout")
-    plan = _plan_or_file(given)
+    plan = plan_or_file(given)
     if not plan.executable:
         return _obstacle(plan) or "the plan has no poses to carry out"
     from .simulation.rollout import rollout
@@ -59,10 +57,10 @@ def rollout_command(given: Arguments) -> str | None:
     run = rollout(
         plan,
         friction=given.friction,
-        controller=_settings(given.controller, "controller"),
+        controller=settings_of(given.controller, "controller"),
         seed=given.seed,
         model=given.model,
-        disturbance=_settings(given.disturbance, "disturbance"),
+        disturbance=settings_of(given.disturbance, "disturbance"),
     )
     if given.output:
         run.save(given.output)
@@ -77,7 +75,7 @@ def _trials(given: Arguments) -> str | None:
     """`stairwright rollout --trials N`: the same plan in slightly different worlds."""
     if given.output and Path(given.output).suffix.lower() != ".json":
         raise InputError("trials can be written as .json only", ("output",))
-    plan = _plan_or_file(given)
+    plan = plan_or_file(given)
     if not plan.executable:
         return _obstacle(plan) or "the plan has no poses to carry out"
     if given.disturbance:
@@ -91,7 +89,7 @@ def _trials(given: Arguments) -> str | None:
         bundle=given.world,
         workers=given.workers,
         friction=given.friction,
-        controller=_settings(given.controller, "controller"),
+        controller=settings_of(given.controller, "controller"),
     )
     if given.output:
         _write(given.output, made.model_dump_json(indent=1))
@@ -108,12 +106,12 @@ def margins_command(given: Arguments) -> str | None:
     """`stairwright margins`."""
     if given.output and Path(given.output).suffix.lower() != ".json":
         raise InputError("margins can be written as .json only", ("output",))
-    plan = _plan_or_file(given)
+    plan = plan_or_file(given)
     if not plan.executable:
         return _obstacle(plan) or "the plan has no poses to carry out"
     from .simulation.robust_margins import robust_margins
 
-    found = robust_margins(plan, _settings(given.controller, "controller"), given.seed)
+    found = robust_margins(plan, settings_of(given.controller, "controller"), given.seed)
     if given.output:
         _write(given.output, found.model_dump_json(by_alias=True, indent=1))
     else:
@@ -163,7 +161,7 @@ def bench_command(given: Arguments) -> str | None:
 
     if given.repeat < 1:
         raise InputError("must be at least 1", ("repeat",))
-    grounds = [_terrain(name) for name in given.terrains or terrains()]
+    grounds = [terrain_of(name) for name in given.terrains or terrains()]
     machines = [load_robot(name) for name in given.robot or robots()]
     print(summary.bench_head())
     for terrain in grounds:
@@ -213,93 +211,6 @@ COMMANDS: Mapping[str, Command] = {
     "robots": robots_command,
     "robot": robot_command,
 }
-
-
-def _plan(source: str, given: Arguments) -> Plan:
-    from .planning.planner import plan
-
-    method: Method = given.method or "path"
-    return plan(
-        _terrain(source),
-        given.robot or "a1_wheeled",
-        friction=given.friction,
-        method=method,
-        weights=_settings(given.weight, "weights"),
-        solver=given.solver,
-        timing=given.timing or "steady",
-        facing=given.facing or "forward",
-        tolerance=_settings(given.tolerance, "tolerance"),
-    )
-
-
-def _plan_or_file(given: Arguments) -> Plan:
-    """The plan in a file if it is one, else a plan over the terrain."""
-    path = Path(given.source)
-    if path.suffix.lower() in (".json", ".npz") and path.exists():
-        from .export.formats import load
-        from .planning.plan import Plan
-
-        if path.suffix.lower() == ".npz" or _schema(path) != "terrain":
-            document = load(path)
-            if isinstance(document, Plan):
-                for name in (
-                    "robot",
-                    "method",
-                    "solver",
-                    "weight",
-                    "timing",
-                    "facing",
-                    "tolerance",
-                ):
-                    if getattr(given, name):
-                        raise InputError("the plan says it already", (name,))
-                return document
-            if document.plan is not None:
-                return document.plan
-            raise InputError(f"{path} is a rollout without its plan")
-    return _plan(given.source, given)
-
-
-def _schema(path: Path) -> str:
-    from .documents import load_mapping
-
-    data = load_mapping(path)
-    schema = str(data.get("schema", ""))
-    is_terrain = schema == "stairwright/terrain/1" or (not schema and "points" in data)
-    return "terrain" if is_terrain else schema
-
-
-def _terrain(source: str) -> Terrain:
-    """A preset, or a file of any kind that can be imported."""
-    path = Path(source)
-    suffix = path.suffix.lower().removeprefix(".")
-    if source in terrains() or suffix in ("", "yaml", "yml", "json"):
-        return load_terrain(source)
-    from .jobs.uploads import READERS, import_terrain
-    from .terrain.profile import Terrain
-
-    if suffix not in READERS:
-        return load_terrain(source)  # says what there is
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}") from None
-    return Terrain.model_validate(import_terrain(content, path.name, {}))
-
-
-def _settings(pairs: Sequence[str], field: str) -> dict[str, Any]:
-    """``name=value`` pairs; values are numbers, truth values or words."""
-    settings: dict[str, Any] = {}
-    for pair in pairs:
-        name, equals, text = pair.partition("=")
-        if not equals or not name:
-            raise InputError(f"expected NAME=VALUE, got {pair!r}", (field,))
-        words = {"true": True, "false": False}
-        try:
-            settings[name] = words[text] if text in words else float(text)
-        except ValueError:
-            settings[name] = text
-    return settings
 
 
 def _write(path: str, text: str) -> None:

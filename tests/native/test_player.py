@@ -52,7 +52,7 @@ def test_it_drives_to_the_end_and_stands_there(plan):
         if [player.phase] != phases[-1:]:
             phases.append(player.phase)
     assert phases == ["settling", "driving", "arrived"]
-    wheels = robot.run._wheels()[:, 0]
+    wheels = robot.run.physics.wheels()[:, 0]
     end = np.array(plan.poses[-1].wheels)[[0, 0, 1, 1], 0]
     assert np.abs(wheels - end).max() < 0.02
     assert player.done == pytest.approx(1.0)

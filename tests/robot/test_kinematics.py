@@ -37,21 +37,6 @@ def test_inverse_undoes_forward(robot):
     assert again == pytest.approx(q, abs=1e-6)
 
 
-@pytest.mark.parametrize("robot", all_robots(), ids=lambda r: r.name)
-def test_jacobian_matches_finite_differences(robot):
-    x, z, pitch, q = random_poses(robot, 50, 2)
-    jacobian = kin.wheel_jacobians(robot, pitch, q)
-    step = 1e-6
-    for leg in range(2):
-        for joint in range(2):
-            shift = np.zeros(4)
-            shift[2 * leg + joint] = step
-            ahead = kin.forward(robot, x, z, pitch, q + shift).wheels[:, leg]
-            behind = kin.forward(robot, x, z, pitch, q - shift).wheels[:, leg]
-            numeric = (ahead - behind) / (2 * step)
-            assert jacobian[:, leg, :, joint] == pytest.approx(numeric, abs=1e-8)
-
-
 def test_signs_of_the_contract():
     robot = load_robot("a1_wheeled")
     level = kin.forward(robot, 0.0, 1.0, 0.0, np.zeros(4))

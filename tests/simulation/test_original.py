@@ -14,7 +14,7 @@ from stairwright.robot import kinematics
 from stairwright.robot.importing.read import read
 from stairwright.robot.importing.upload import Upload
 from stairwright.simulation.original import build_original, read_original
-from stairwright.simulation.original_run import Mirror
+from stairwright.simulation.original_physics import Mirror
 from tests.robot.importing.files import LEGS, Design, LegQuirks
 from tests.robot.importing.written import mjcf, urdf
 

@@ -17,7 +17,7 @@ import pytest
 import xarray as xr
 
 import stairwright as sw
-from stairwright.studies.progress import WRITE_EVERY
+from stairwright.studies.writer import WRITE_EVERY
 from tests.conftest import Server
 from tests.in_process import served
 

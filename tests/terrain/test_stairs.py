@@ -5,7 +5,7 @@ import pytest
 
 import stairwright as sw
 from stairwright.errors import InputError
-from stairwright.terrain.stairs import codes_allowing, flat, ramp, stair
+from stairwright.terrain.stairs import flat, ramp, stair
 
 
 def test_stair_points():
@@ -58,12 +58,6 @@ def test_bad_measures_name_the_field(arguments, field):
     with pytest.raises(InputError) as error:
         stair(**arguments)
     assert error.value.field[0] == field
-
-
-def test_building_codes():
-    assert any("IBC" in name for name in codes_allowing(7 * 0.0254, 11 * 0.0254))
-    assert not any("IBC" in name for name in codes_allowing(0.20, 0.25))
-    assert codes_allowing(0.5, 0.2) == []
 
 
 def test_presets_have_their_own_names_and_texts():

@@ -9,12 +9,15 @@ from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag
 from stairwright.arguments import MOST_SEED
 from stairwright.documents import Model
 from stairwright.export.table import Kind as Exported
+from stairwright.jobs.job import State
 from stairwright.planning.plan import Facing, Method, Plan, PlanTiming
 from stairwright.planning.tolerance import Tolerance
 from stairwright.robot.description import Robot
 from stairwright.simulation.disturbance import Disturbance
 from stairwright.simulation.ranges import Ranges
 from stairwright.simulation.trials_result import MOST_TRIALS
+from stairwright.studies.axes import Number
+from stairwright.studies.document import SettingName
 from stairwright.terrain.generation import Friction, Name
 from stairwright.terrain.profile import Terrain
 
@@ -53,8 +56,6 @@ TerrainSource = Annotated[
 RobotSource = Annotated[
     Annotated[Name, Tag("~name")] | Annotated[SentRobot, Tag("~document")], _NameOrDocument
 ]
-SettingName = Annotated[str, Field(max_length=64, pattern=r"^[a-z0-9_]+$")]
-Number = Annotated[float, Field(strict=True, ge=-1e9, le=1e9)]
 # Tagged, or each bad value would be reported once for every type that it is not.
 Weight = Annotated[
     Annotated[StrictBool, Tag("~flag")] | Annotated[Number, Tag("~number")],
@@ -221,7 +222,7 @@ class JobDocument(Model):
 
     id: str
     kind: Literal["rollout", "trials", "margins"]
-    state: Literal["queued", "running", "done", "failed", "cancelled"]
+    state: State
     progress: float = Field(ge=0.0, le=1.0)
     created: float = Field(description="seconds since 1970")
     eta: float | None = Field(

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import asyncio
 import hashlib
-from collections.abc import AsyncIterator
-from typing import Annotated
+from collections.abc import AsyncIterator, Callable, Sequence
+from typing import Annotated, TypeVar
 
 from fastapi import Depends, Header, Query, Request
 
 from stairwright.library import load_robot, load_terrain, robots, terrains
 from stairwright.robot.description import Robot
 from stairwright.storage.idempotency import Verdict
+from stairwright.storage.saved import Saved
 from stairwright.terrain.profile import Terrain
 
 from .middleware import owner_of
 from .problems import FieldError, Problem
 from .services import Services
+
+D = TypeVar("D", Terrain, Robot)
 
 
 async def get_services(request: Request) -> Services:
@@ -120,12 +123,7 @@ def resolve_terrain(services: Services, source: str | Terrain) -> Terrain:
     """
     if isinstance(source, Terrain):
         return source
-    if source in terrains():
-        return load_terrain(source)
-    saved = services.store.terrains.get(source)
-    if saved is None:
-        raise _unknown("terrain", source, [*terrains(), *services.store.terrains.names()])
-    return saved
+    return _named("terrain", source, terrains(), load_terrain, services.store.terrains)
 
 
 def resolve_robot(services: Services, source: str | Robot) -> Robot:
@@ -136,18 +134,20 @@ def resolve_robot(services: Services, source: str | Robot) -> Robot:
     """
     if isinstance(source, Robot):
         return source
-    if source in robots():
-        return load_robot(source)
-    saved = services.store.robots.get(source)
-    if saved is None:
-        raise _unknown("robot", source, [*robots(), *services.store.robots.names()])
-    return saved
+    return _named("robot", source, robots(), load_robot, services.store.robots)
 
 
-def _unknown(kind: str, name: str, known: list[str]) -> Problem:
+def _named(
+    kind: str, name: str, presets: Sequence[str], load: Callable[[str], D], saved: Saved[D]
+) -> D:
+    if name in presets:
+        return load(name)
+    if (found := saved.get(name)) is not None:
+        return found
+    known = [*presets, *saved.names()]
     shown = ", ".join(known[:30]) + (", …" if len(known) > 30 else "")
     message = f"no {kind} is called {name!r}; there are: {shown}"
-    return Problem(
+    raise Problem(
         422,
         f"{kind}: {message}",
         kind="bad-input",

@@ -96,6 +96,12 @@ def models_json(
     return _tagged(request, content, 200, headers)
 
 
+def accepted_json(model: BaseModel, place: str) -> Response:
+    """202 for what has only begun: its state now, and where to ask again."""
+    headers = {"location": place, "retry-after": "1"}
+    return Response(model.model_dump_json(), 202, headers=headers, media_type="application/json")
+
+
 def _tagged(
     request: Request, content: bytes, status: int, headers: Mapping[str, str] | None
 ) -> Response:

@@ -7,10 +7,9 @@ from typing import Any, Literal
 from pydantic import Field
 
 from stairwright.documents import Model
+from stairwright.jobs.job import State
 from stairwright.studies.design_result import DesignResult
 from stairwright.studies.design_shelf import DesignSummary
-
-State = Literal["queued", "running", "done", "failed", "cancelled"]
 
 
 class AxisDocument(Model):

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright._core import GRAVITY
+from stairwright.arrays import Floats
 from stairwright.robot.description import Robot
 
 from .measurement import Measurement
 from .rigid_body import wrench
 from .setpoint import COM, Setpoint
 from .settings import ControllerSettings
-
-Floats = NDArray[np.float64]
 
 # Larger accelerations are not asked for: a far-away set point must not throw the robot.
 MAX_ACCELERATION = 3.5  # m/s^2, along x

@@ -15,12 +15,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
+from stairwright.arrays import Floats
 from stairwright.terrain.wheel_path import WheelPath
-
-Floats = NDArray[np.float64]
 
 WINDOW = 0.15  # m; a wheel is looked for this far from where it was
 CORNER_REACH = 0.04  # m; how far from a corner the planned face may count

@@ -15,9 +15,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright._core import GRAVITY
+from stairwright.arrays import Floats
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
@@ -27,8 +27,6 @@ from .inertial_loads import inertial_loads
 from .measurement import Measurement, measure
 from .setpoint import PITCH, Setpoint
 from .settings import ControllerSettings
-
-Floats = NDArray[np.float64]
 
 LEG_PAIR = np.array([0, 0, 1, 1])  # legs FL, FR, RL, RR -> front, rear
 _LIMIT = 1.3  # times the robot's weight: largest normal force of a wheel

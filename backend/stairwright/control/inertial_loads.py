@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 
 from .setpoint import JOINTS, PITCH, TRUNK, WHEELS, Setpoint
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

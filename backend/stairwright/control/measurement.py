@@ -11,13 +11,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.robot.description import Robot
 from stairwright.robot.kinematics import lengths, link_com
 from stairwright.robot.legs import Leg
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -10,12 +10,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Floats
 from stairwright.errors import StairwrightError
-
-Floats = NDArray[np.float64]
 
 
 class SolverError(StairwrightError):

@@ -10,11 +10,9 @@ The wheel's own inertia is neglected (eq 1), so its traction is ``F_t = tau_whee
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright._core import GRAVITY
-
-Floats = NDArray[np.float64]
+from stairwright.arrays import Floats
 
 
 def traction(wheel_torque: Floats, radius: float) -> Floats:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from stairwright.arrays import Floats
 
 SIDES = np.array([-1.0, 1.0, -1.0, 1.0])  # left wheels turn slower for a positive yaw rate
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from stairwright.arrays import Floats
 from stairwright.planning.poses.pose_reference import COM as COM
 from stairwright.planning.poses.pose_reference import JOINTS as JOINTS
 from stairwright.planning.poses.pose_reference import PITCH as PITCH
@@ -14,8 +12,6 @@ from stairwright.planning.poses.pose_reference import TRUNK as TRUNK
 from stairwright.planning.poses.pose_reference import WHEELS as WHEELS
 
 from .contact import BOTH
-
-Floats = NDArray[np.float64]
 
 # Columns of a set point's row: what the plan asks for, its rates of change, its accelerations,
 # static forces. Compiled code and reference tables use the same order.

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
 from stairwright.robot.description import JOINTS, LEGS, PLANAR_JOINTS
 from stairwright.simulation.result import Rollout
-
-Floats = NDArray[np.float64]
 
 FRAMES = (
     "world: x forward, y left, z up (REP-103); pitch about +y, nose-up is negative; "

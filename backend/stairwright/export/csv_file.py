@@ -8,17 +8,11 @@ from __future__ import annotations
 import csv
 import io
 
+from stairwright.arrays import Floats
 from stairwright.planning.plan import Plan
 from stairwright.simulation.result import Rollout
 
-from .columns import (
-    PLAN_COLUMNS,
-    ROLLOUT_COLUMNS,
-    Floats,
-    plan_arrays,
-    rollout_arrays,
-    table,
-)
+from .columns import PLAN_COLUMNS, ROLLOUT_COLUMNS, plan_arrays, rollout_arrays, table
 
 
 def plan_csv(plan: Plan) -> bytes:

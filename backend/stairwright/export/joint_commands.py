@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.planning.plan import Plan
 from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.static_torques import static_torques
@@ -18,8 +18,6 @@ from stairwright.robot import spatial
 from stairwright.robot.description import Robot
 
 from .retiming import Limits, Retimed, retime
-
-Floats = NDArray[np.float64]
 
 SPEED_SHARE = 0.6  # of a motor's no-load speed: the rest leaves torque
 LEG_SPEED = 1.5  # rad/s; what the simulated controller allows along a plan

@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 import yaml
 from mcap.writer import Writer
-from numpy.typing import NDArray
 from rosbags.typesys import Stores, get_typestore
 
+from stairwright.arrays import Floats
 from stairwright.errors import InputError
 
-Floats = NDArray[np.float64]
 MOST_SECONDS = 2**31 - 1  # builtin_interfaces/Time holds 32 bits
 _FOREVER = {"sec": 9223372036, "nsec": 854775807}  # ROS 2's infinite duration
 _KEEP_LAST, _RELIABLE, _TRANSIENT_LOCAL, _VOLATILE, _AUTOMATIC = 1, 1, 1, 2, 1

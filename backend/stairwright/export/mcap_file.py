@@ -12,8 +12,8 @@ from __future__ import annotations
 import json
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.planning.plan import Plan
 from stairwright.robot import spatial
 from stairwright.robot.description import JOINTS, LEGS, Robot
@@ -26,7 +26,6 @@ from .joint_commands import JointCommands, joint_commands
 from .mcap_bag import Bag, stamp
 from .urdf_file import FIXED_FRAMES, TRUNK, robot_urdf
 
-Floats = NDArray[np.float64]
 WORLD = "world"
 STATE_RATE = 50.0  # Hz; a plan's joint states and transforms, at most
 MOST_STATES = 20_000  # of a plan

@@ -10,8 +10,8 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.planning.carrying import holding_torques
 from stairwright.planning.plan import Plan
 from stairwright.robot import spatial
@@ -20,7 +20,6 @@ from stairwright.robot.mujoco_model import build_spec
 
 from .columns import FRAMES, UNITS, plan_arrays
 
-Floats = NDArray[np.float64]
 # Servos that hold a pose between two faces must hold the force inside it too: at the robot's own
 # feedback gains the wheels creep by centimetres, at three times those by millimetres.
 STIFFER = 3.0

@@ -26,11 +26,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Flags, Floats
 from stairwright.errors import InputError
-
-Floats = NDArray[np.float64]
 
 KNOT_SPACING = 0.02  # s
 MOST_POINTS = 250_000
@@ -186,20 +184,20 @@ def _at(clock: Floats, path: Floats, places: Floats) -> Floats:
     return np.stack([np.interp(places, clock, column) for column in path.T], axis=1)
 
 
-def _too_fast(points: Floats, limits: Limits, spacing: float) -> NDArray[np.bool_]:
+def _too_fast(points: Floats, limits: Limits, spacing: float) -> Flags:
     """Which control points (i,) are too far from the next, or bend too much between both."""
     resting = np.concatenate([points[:1], points, points[-1:]])
     rate = np.diff(resting, axis=0) / spacing
     change = np.abs(np.diff(rate, axis=0)) / spacing
     most = np.minimum(limits.acceleration, limits.jerk * spacing / 2)
-    over: NDArray[np.bool_] = np.any(change > most, axis=1)
-    fast: NDArray[np.bool_] = np.any(np.abs(rate) > limits.speed, axis=1)
+    over: Flags = np.any(change > most, axis=1)
+    fast: Flags = np.any(np.abs(rate) > limits.speed, axis=1)
     return over | fast[1:] | fast[:-1]
 
 
 def _strays(
     points: Floats, places: Floats, clock: Floats, path: Floats, tolerance: Floats
-) -> NDArray[np.bool_]:
+) -> Flags:
     """Beside which control points (i,) the spline lies too far from the polyline."""
     c, at = _padded(points), _padded(places[:, None])
     over = np.zeros(len(c) - 3, dtype=bool)
@@ -210,7 +208,7 @@ def _strays(
     return over[2 : last + 2] | over[1 : last + 1]
 
 
-def _ease(cap: Floats, clock: Floats, places: Floats, fast: NDArray[np.bool_]) -> None:
+def _ease(cap: Floats, clock: Floats, places: Floats, fast: Flags) -> None:
     """Lower the caps between the neighbours of control points that are too fast."""
     where = np.flatnonzero(fast)
     last = len(places) - 1

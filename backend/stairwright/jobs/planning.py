@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Generic, TypeVar
 
-from stairwright.storage.documents import Entry
+from stairwright.storage.documents import Entry, Kind
 from stairwright.storage.store import Store
 
 from . import work
@@ -142,11 +142,16 @@ def _heard(task: asyncio.Task[Any]) -> None:
 
 def shelve_plan(store: Store, question: PlanQuestion, product: work.Product) -> Entry:
     """Write down a plan that a worker has left among the artefacts."""
+    return shelve(store, "plan", question.key, planning_engine(), product)
+
+
+def shelve(store: Store, kind: Kind, question: str, engine: str, product: work.Product) -> Entry:
+    """Write down what a worker has left among the artefacts, by the key of what was asked."""
     return store.shelve(
-        "plan",
+        kind,
         product.id,
-        question=question.key,
-        engine=planning_engine(),
+        question=question,
+        engine=engine,
         digest=product.digest,
         size=product.size,
         summary=product.summary,

@@ -22,7 +22,7 @@ from .engine import rollout_engine
 from .failures import GivenUp, Interrupted, WorkerDied, is_lost, problem_of
 from .job import Job
 from .journal import Journal
-from .planning import shelve_plan
+from .planning import shelve, shelve_plan
 from .questions import PlanQuestion, RolloutQuestion
 from .queue import FairQueue
 from .run import Run, forecast
@@ -215,15 +215,7 @@ class Rollouts:
     def _shelve(self, question: RolloutQuestion, product: work.Product) -> Entry:
         if product.plan is not None and isinstance(question.source, PlanQuestion):
             shelve_plan(self._store, question.source, product.plan)
-        return self._store.shelve(
-            question.kind,
-            product.id,
-            question=question.key,
-            engine=rollout_engine(),
-            digest=product.digest,
-            size=product.size,
-            summary=product.summary,
-        )
+        return shelve(self._store, question.kind, question.key, rollout_engine(), product)
 
     async def _finish(
         self, run: Run, entry: Entry | None = None, error: Mapping[str, object] | None = None

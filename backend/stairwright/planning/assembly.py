@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from time import perf_counter
+
 from stairwright.documents import Model
 from stairwright.planning.binding import binding_of
 from stairwright.planning.certificate.certify import certify
@@ -19,7 +21,7 @@ def assemble(
     poses: list[Pose],
     problem: Problem | None,
     *,
-    seconds: float,
+    begun: float,
     critical: list[int] | None = None,
     certified: bool = True,
 ) -> Plan:
@@ -33,7 +35,7 @@ def assemble(
         weights: The method's weights.
         poses: In order of progress.
         problem: What stops the robot, if anything.
-        seconds: Time that planning took [s].
+        begun: When planning began, by `time.perf_counter` [s].
         critical: Indices of key poses.
         certified: Check the poses.
     """
@@ -53,7 +55,7 @@ def assemble(
         poses=poses,
         critical=critical or [],
         timing=Timing(total=poses[-1].time if poses else 0.0, rule="paper"),
-        solve_time=seconds,
+        solve_time=perf_counter() - begun,
         binding=binding_of(robot, friction, poses),
     )
     if not (poses and certified):

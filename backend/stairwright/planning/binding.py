@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.planning.plan import Binding, Pose, Quantity
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

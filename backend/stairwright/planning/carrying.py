@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright._core import GRAVITY
+from stairwright.arrays import Floats
 from stairwright.planning.plan import Plan
 from stairwright.planning.static_torques import static_torques
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
-
-Floats = NDArray[np.float64]
 
 TOUCH = 1e-4  # m; a wheel this near to a concave corner, by arc length, touches both faces
 _BESIDE = 1e-7  # m; either side of a corner

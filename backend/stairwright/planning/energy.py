@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright._core import GRAVITY
+from stairwright.arrays import Floats
 from stairwright.documents import Deferred
 from stairwright.planning.carrying import holding_torques
 from stairwright.planning.plan import Plan
 from stairwright.robot import spatial
-
-Floats = NDArray[np.float64]
 
 
 def joint_work(plan: Plan) -> Floats:

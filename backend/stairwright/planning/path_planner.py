@@ -12,9 +12,9 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Ints
 from stairwright.planning.certificate.certify import judge
 from stairwright.planning.certificate.motion import Motion
 from stairwright.planning.extra_margins import IN_SEARCH, ExtraMargins
@@ -40,8 +40,6 @@ from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
-
-Ints = NDArray[np.int64]
 
 THIN = 0.01  # m; CoM margin of a path that is compared with others
 THIN_IF_FAST = 0.015  # m; of one that is to be driven fast, for inertia takes some of it

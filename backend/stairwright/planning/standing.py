@@ -8,18 +8,16 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
 from stairwright.arguments import MOST_FRICTION
+from stairwright.arrays import Floats, Ints
 from stairwright.planning.plan import Limit
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 End = Literal["start", "goal"]
 
 CORNER = 0.15  # rad; concave corners with a smaller kink need no samples of their own

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright._core import GRAVITY
+from stairwright.arrays import Floats
 from stairwright.robot import spatial
 from stairwright.robot.description import Robot
 from stairwright.robot.kinematics import link_com
-
-Floats = NDArray[np.float64]
 
 
 def static_torques(

@@ -14,10 +14,10 @@ from functools import cached_property
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import AfterValidator, Field, model_validator
 
 from stairwright import _core
+from stairwright.arrays import Floats
 from stairwright.documents import Model, content_hash, save
 from stairwright.errors import InputError
 
@@ -202,7 +202,7 @@ class Robot(Model):
         return tuple(self.joint_names.get(joint, joint) for joint in JOINTS)
 
     @cached_property
-    def ros_frames(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def ros_frames(self) -> tuple[Floats, Floats]:
         """(12,) signs and (12,) offsets [rad]: what its software calls q is sign * (q - offset)."""
         frames = [self.joint_frames.get(joint, JointFrame()) for joint in JOINTS]
         signs, offsets = zip(*((frame.sign, frame.offset) for frame in frames), strict=True)
@@ -241,7 +241,7 @@ class Robot(Model):
         return min(leg.wheel_motor.speed for leg in self.legs)
 
     @cached_property
-    def torque_limits(self) -> NDArray[np.float64]:
+    def torque_limits(self) -> Floats:
         """(2, 3) front and rear: peak torque of thigh, calf and wheel motors [Nm]."""
         return np.array([[motor.torque for motor in leg.motors] for leg in self.legs])
 

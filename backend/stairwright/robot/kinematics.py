@@ -11,12 +11,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Floats
 
 from .description import Robot
 from .legs import LinkForm
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -115,17 +114,6 @@ def link_com(link: LinkForm, upper: Floats, lower: Floats) -> Floats:
     d = lower - upper
     centre: Floats = upper + along * d
     return centre if across == 0.0 else centre + across * _vectors(-d[..., 1], d[..., 0])
-
-
-def wheel_jacobians(robot: Robot, pitch: Floats, q: Floats) -> Floats:
-    """J of eq 13: d(wheel centre)/d(thigh, calf) (..., 2, 2, 2) by leg, x/z, joint; trunk held."""
-    thigh = np.asarray(pitch)[..., None] + np.asarray(q)[..., 0::2]
-    calf = thigh + np.asarray(q)[..., 1::2]
-    # d along(a)/da = (-cos a, sin a)
-    first, second = lengths(robot)
-    upper = np.stack([-np.cos(thigh), np.sin(thigh)], axis=-1) * first[:, None]
-    lower = np.stack([-np.cos(calf), np.sin(calf)], axis=-1) * second[:, None]
-    return np.stack([upper + lower, lower], axis=-1)
 
 
 def collision_points(robot: Robot, x_c: Floats, z_c: Floats, pitch: Floats, q: Floats) -> Floats:

@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Floats
 
 from .parts import (
     Actuator,
@@ -106,7 +107,7 @@ class Body:
     outline: tuple[Outline, ...]
 
     @property
-    def corners(self) -> NDArray[np.float64]:
+    def corners(self) -> Floats:
         """(n, 2) corners of all pieces [m]."""
         return np.array([point for piece in self.outline for point in piece.points])
 

@@ -17,17 +17,15 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright._core import GRAVITY
 from stairwright.arguments import as_friction
+from stairwright.arrays import Floats
 from stairwright.terrain.profile import Terrain
 
 from .description import JOINTS, LEGS, Robot
 from .legs import LinkForm
 from .parts import Actuator, Outline
-
-Floats = NDArray[np.float64]
 
 TIMESTEP = 0.001  # s
 TERRAIN_HALF_WIDTH = 1.0  # m

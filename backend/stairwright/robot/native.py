@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Floats
 
 from .legs import Body, Leg, LinkForm
 from .parts import Actuator
@@ -46,7 +46,7 @@ def _motor(actuator: Actuator) -> _core.Motor:
     return _core.Motor(actuator.torque, actuator.speed, actuator.armature, actuator.damping)
 
 
-def _anticlockwise(points: list[tuple[float, float]]) -> NDArray[np.float64]:
+def _anticlockwise(points: list[tuple[float, float]]) -> Floats:
     p = np.array(points, float)
     q = np.roll(p, -1, axis=0)
     area = float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum())

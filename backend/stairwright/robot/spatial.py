@@ -9,12 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Floats
 
 from .description import Robot
 from .kinematics import lengths
-
-Floats = NDArray[np.float64]
 
 
 def quaternion_y(angle: Floats) -> Floats:

@@ -11,7 +11,8 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Floats
 
 from .description import Robot
 
@@ -37,7 +38,7 @@ DIMENSIONS = (
 )
 
 
-def dimensions(robot: Robot) -> NDArray[np.float64]:
+def dimensions(robot: Robot) -> Floats:
     """The numbers (15,) that `Shape.from_vector` unpacks, in the order of `DIMENSIONS` [m].
 
     The trunk is its box here and links are capsules from joint to joint, as thick as their

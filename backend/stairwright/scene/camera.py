@@ -6,11 +6,10 @@ from collections.abc import Iterable
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.errors import InputError
 
-Floats = NDArray[np.float64]
 Preset = Literal["iso", "side", "front", "follow"]
 FIELD_OF_VIEW = 0.62  # rad, vertical
 

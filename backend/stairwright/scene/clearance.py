@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.terrain.profile import height_at
-
-Floats = NDArray[np.float64]
 
 
 def nearest(vertices: Floats, points: Floats) -> Floats:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.robot.description import Robot
 from stairwright.robot.spatial import Bodies, place
 from stairwright.terrain.profile import Terrain
@@ -19,7 +20,6 @@ from .overlays import Arrows, Bars, Instances, Plate
 from .palette import Palette, Rgb, deep
 from .robot_nodes import RobotNodes, part_colours
 
-Floats = NDArray[np.float64]
 METRES_PER_NEWTON = 0.003
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.documents import parse
 from stairwright.planning.carrying import carrying_normals
 from stairwright.planning.plan import Plan
@@ -17,8 +17,6 @@ from stairwright.robot.description import Robot
 from stairwright.robot.spatial import lift
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Floats
 
 from . import shapes
 from .palette import Rgb
-
-Floats = NDArray[np.float64]
 
 
 class Nodes:

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
+
 from . import shapes
 
-Floats = NDArray[np.float64]
 Colours = NDArray[np.uint8]
 
 

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.errors import InputError
 
 Theme = Literal["dark", "light"]
@@ -43,7 +44,7 @@ class Palette:
     strip: tuple[Rgb, Rgb, Rgb, Rgb]
     ghost_opacity: float
 
-    def clearance_colours(self, clearance: NDArray[np.float64]) -> NDArray[np.uint8]:
+    def clearance_colours(self, clearance: Floats) -> NDArray[np.uint8]:
         """(n, 3) strip colours of clearances (n,) in m."""
         index = np.searchsorted([THIN, FAIR, AMPLE], clearance, side="right")
         return np.array(self.strip[::-1], dtype=np.uint8)[index]

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.robot.description import Robot
 from stairwright.robot.spatial import Bodies
 
 from . import shapes
 from .palette import Palette, deep
 
-Floats = NDArray[np.float64]
 PARTS = ("trunk", "trim", "thighs", "calves", "motors", "knees", "tyres", "rims")
 
 

@@ -26,6 +26,7 @@ from .panel import Panel
 from .player import Player
 from .private_server import PrivateServer
 from .stage import Stage, check_layers
+from .viewers import Viewers
 
 log = logging.getLogger(__name__)
 Replan = Callable[[dict[str, float]], None]
@@ -56,8 +57,6 @@ class SceneSession:
         self._compared: Mapping[str, Any] | None = None
         self._motion: Motion | None = None
         self._terrain_name: str | None = None
-        self._subject = np.array([0.0, 0.0, 0.33])
-        self._follow = True
         self._closed = False
         # viser announces each server on the terminal; a service that opens many must not.
         rich.get_console().quiet = True
@@ -68,9 +67,7 @@ class SceneSession:
         self._player = Player(self._frame)
         self._panel = Panel(self._server, self, replan)
         self._apply_theme("dark")
-        self._aim(cameras.view("follow", self._subject))
-        self._floor = 0.0  # m, the lowest ground
-        self._server.on_client_connect(self._welcome)
+        self._viewers = Viewers(self._server)
 
     @property
     def address(self) -> Path:
@@ -80,7 +77,7 @@ class SceneSession:
     @property
     def clients(self) -> int:
         """Number of connected viewers."""
-        return len(self._server.get_clients())
+        return len(self._viewers)
 
     @property
     def player(self) -> Player:
@@ -208,11 +205,8 @@ class SceneSession:
         preset = cameras.check(name)
         self._touch()
         with self._lock:
-            self._follow = preset == "follow"
-            if preset == "iso" and self._motion is not None:
-                self._aim(cameras.course_view(self._motion.position))
-            else:
-                self._aim(cameras.view(preset, self._subject))
+            motion = self._motion
+        self._viewers.look(preset, None if motion is None else motion.position)
 
     def close(self) -> None:
         """Stop playback and the server; the session cannot be used again."""
@@ -220,6 +214,7 @@ class SceneSession:
             if self._closed:
                 return
             self._closed = True
+        self._viewers.close()
         self._player.close()
         self._private.close()
 
@@ -255,7 +250,7 @@ class SceneSession:
         terrain = parse(Terrain, source["terrain"])
         robot = _robot_of(source)
         self._stage.draw_terrain(terrain, source.get("friction"))
-        self._floor = float(terrain.vertices[:, 1].min())
+        self._viewers.floor = float(terrain.vertices[:, 1].min())
         self._stage.set_robot(robot)
         planned = None if plan is None else from_plan(plan, robot)
         run = None if rollout is None else from_rollout(rollout)
@@ -263,9 +258,8 @@ class SceneSession:
         self._stage.draw_plan(plan, planned)
         if self._motion is not None and terrain.name != self._terrain_name:
             # A new course is looked at afresh; an edited one keeps the user's camera.
-            self._terrain_name, self._follow = terrain.name, True
-            self._subject = self._motion.at(self._player.time).position.copy()
-            self._aim(cameras.view("follow", self._subject))
+            self._terrain_name = terrain.name
+            self._viewers.look_afresh(self._motion.at(self._player.time).position)
 
     def _frame(self, time: float) -> None:
         """Draw one moment; runs on the player's thread."""
@@ -275,11 +269,7 @@ class SceneSession:
             with self._server.atomic():
                 moment = self._draw_moment(time)
             if moment is not None:
-                moved = float(np.abs(moment.position - self._subject).max()) > 1e-6
-                self._subject = moment.position.copy()
-                if self._follow and moved:
-                    viewers = self._server.get_clients().values()
-                    self._move_cameras(cameras.keep_in_view, viewers, self._subject)
+                self._viewers.follow(moment.position)
             self._panel.tick(time)
 
     def _draw_moment(self, time: float) -> Moment | None:
@@ -294,35 +284,6 @@ class SceneSession:
         if self._rollout is None or self._motion is None:
             return False
         return self._rollout["outcome"] != "success" and time >= self._motion.duration - _END
-
-    def _aim(self, view: cameras.View) -> None:
-        start = self._server.initial_camera
-        start.fov = cameras.FIELD_OF_VIEW
-        start.position, start.look_at = view.position, view.look_at
-        for client in self._server.get_clients().values():
-            self._move_cameras(cameras.point, client, view)
-
-    def _welcome(self, client: Any) -> None:
-        """A viewer that comes while the camera follows starts where the robot is by now.
-
-        Its camera never stays below the ground.
-        """
-        with self._lock:
-            if self._follow and not self._closed:
-                self._move_cameras(cameras.point, client, cameras.view("follow", self._subject))
-
-        @client.camera.on_update
-        def _(_camera: Any) -> None:
-            if not self._closed:
-                self._move_cameras(cameras.keep_above, client, self._floor)
-
-    def _move_cameras(self, move: Callable[..., None], *arguments: Any) -> None:
-        """Move cameras on viser's own thread.
-
-        There no viewer's report comes between two writes; between them, it would leave the old
-        position beside the new aim, and the camera would drift as it follows.
-        """
-        self._server.get_event_loop().call_soon_threadsafe(move, *arguments)
 
 
 def _robot_of(document: Mapping[str, Any]) -> Robot:

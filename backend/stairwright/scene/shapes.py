@@ -13,11 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.robot.description import Robot
 from stairwright.robot.legs import LinkForm
 from stairwright.robot.parts import Outline
-
-Floats = NDArray[np.float64]
 
 
 class Mesh(NamedTuple):

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.errors import InputError
 from stairwright.robot.description import Robot
 from stairwright.robot.spatial import Bodies, place
@@ -21,8 +21,6 @@ from .nodes import Nodes
 from .palette import DARK, Palette
 from .rival import Rival
 from .robot_nodes import RobotNodes
-
-Floats = NDArray[np.float64]
 
 LAYERS = {
     "terrain": True,

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Floats
 
 from .motion import Motion
 from .palette import Palette, Rgb
 
-Floats = NDArray[np.float64]
 SAMPLES = 320  # a panel is about as many pixels wide
 DEGREES = 180.0 / np.pi
 

@@ -8,16 +8,14 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Flags, Floats
 from stairwright.robot.description import Robot
 from stairwright.robot.kinematics import forward
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
 
 from .result import Series
-
-Floats = NDArray[np.float64]
 
 LEVEL = 1e-6  # m that a wheel's centre may be off the height of the start or of the landing
 TOUCH = 0.002  # m: tyres and contacts give way
@@ -74,6 +72,6 @@ class _Curve:
         return float(self.x[off[0]]), float(self.x[below[-1]])
 
 
-def _first(true: NDArray[np.bool_]) -> int | None:
+def _first(true: Flags) -> int | None:
     places = np.flatnonzero(true)
     return int(places[0]) if len(places) else None

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
 from stairwright._core import GRAVITY
+from stairwright.arrays import Floats
 from stairwright.control.controller import LEG_PAIR, Controller
 from stairwright.control.measurement import measure
 from stairwright.control.setpoint import RATES, Setpoint
@@ -26,10 +26,10 @@ from stairwright.robot.mujoco_model import TIMESTEP, build_spec
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
 
-Floats = NDArray[np.float64]
+from .physics import CONTROL_STEPS
+
 Command = Callable[[float], tuple[float, float]]
 
-CONTROL_STEPS = 2
 HALF_SIZE = 20.0  # m, of the flat ground
 ACCELERATION = 1.0  # m/s^2 of the commanded speed
 TURN_ACCELERATION = 2.0  # rad/s^2 of the commanded yaw rate

@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.planning.plan import Plan
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
 
 from .disturbance import Disturbance
 from .world import course_frame
-
-Floats = NDArray[np.float64]
 
 DRIFT = 0.01  # of the way: what wheels that roll without slip may be off by
 

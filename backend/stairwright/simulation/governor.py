@@ -14,10 +14,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
 from stairwright._core import GRAVITY
+from stairwright.arrays import Floats
 from stairwright.control.setpoint import (
     ACCELERATIONS,
     COM,
@@ -41,8 +41,6 @@ from stairwright.planning.timing.moving_robot import REACH
 from stairwright.planning.timing.path_position import even_grid, path_positions, slopes
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
-
-Floats = NDArray[np.float64]
 
 LONGEST_WAY = 500.0  # m; the longest level terrain is 200 m
 RATE_REACH = 0.005  # m; rates are differences over this far, both ways

@@ -15,25 +15,24 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
 from stairwright._core import GRAVITY
 from stairwright.arguments import as_friction
+from stairwright.arrays import Floats
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
-from stairwright.robot.description import JOINTS, LEGS
+from stairwright.robot.description import JOINTS, LEGS, Robot
 from stairwright.robot.turning import opposite
 
 from .disturbance import Disturbance
 from .end_error import end_error
-from .original_run import OriginalRun
+from .original_physics import OriginalPhysics
 from .outcome import Ending, fallen, judge
+from .physics import OwnPhysics, Physics
 from .result import Outcome
 from .run import Run
-
-Floats = NDArray[np.float64]
 
 MOTORS = 16
 MOTOR_LEGS = ("FR", "FL", "RR", "RL")  # abduction, thigh, calf of each; then their wheels
@@ -119,8 +118,9 @@ class LowLevelRobot:
         noise: float = 1.0,
     ) -> None:
         truth = plan.friction if friction is None else as_friction(friction)
-        given = (plan, truth, ControllerSettings(), Disturbance(), seed, 100.0)
-        self.run = Run(*given) if model is None else OriginalRun(*given, model)
+        given = (plan, truth, Disturbance(), seed)
+        physics = OwnPhysics(*given) if model is None else OriginalPhysics(model, *given)
+        self.run = Run(plan, truth, ControllerSettings(), Disturbance(), seed, 100.0, physics)
         self.dt = self.run.dt
         self._sensors = _core.RobotSensors(_core.SensorErrors(noise), seed)
         self._torques = np.zeros(12)
@@ -129,7 +129,7 @@ class LowLevelRobot:
         if plan.facing == "backward":  # its motors and its IMU are as they were built
             self._motor_of = MOTOR_OF[[JOINTS.index(opposite(joint)) for joint in JOINTS]]
             self._facing = np.array([-1.0, -1.0, 1.0] * 2)
-        self._abduction = _Abduction(self.run)
+        self._abduction = _Abduction(plan.robot_description, physics)
         self.peak = np.zeros(2)
 
     def sense(self) -> tuple[Floats, Floats]:
@@ -156,22 +156,23 @@ class LowLevelRobot:
         self._abduction.act(command[ABDUCTION_OF])
         size = np.abs(self._torques).reshape(4, 3)
         self.peak = np.maximum(self.peak, [size[:, :2].max(), size[:, 2].max()])
-        self.run._touch(self.run.time)  # noqa: SLF001
-        self.run._advance()  # noqa: SLF001
+        self.run.touch(self.run.time)
+        self.run.physics.advance()
         self.run.time += self.dt
 
 
 class _Abduction:
     """The abduction motors of a robot's own model; ours has none, and they stand where they are."""
 
-    def __init__(self, run: Run) -> None:
-        self.run, self.joints = run, np.zeros((0, 3), int)
-        lean = run.robot.abduction
+    def __init__(self, robot: Robot, physics: Physics) -> None:
+        self.joints = np.zeros((0, 3), int)
+        lean = robot.abduction
         self._fixed = np.array([[lean if leg[1] == "L" else -lean, 0.0, 0.0] for leg in LEGS])
         self._torques = np.zeros(4)
-        if not isinstance(run, OriginalRun):
+        if not isinstance(physics, OriginalPhysics):
             return
-        reading, model = run.reading, run.original.model
+        self._data = physics.state.data
+        reading, model = physics.reading, physics.original.model
         held = list(reading.held)
         joints, most = [], []
         for leg in LEGS:
@@ -181,7 +182,7 @@ class _Abduction:
             actuator = 12 + held.index(j)
             joint = int(model.actuator_trnid[actuator, 0])
             joints.append((actuator, model.jnt_qposadr[joint], model.jnt_dofadr[joint]))
-            most.append(run.robot.motors[3 * LEGS.index(leg)].torque)
+            most.append(robot.motors[3 * LEGS.index(leg)].torque)
             # The player holds it, not a servo of ours.
             model.actuator_biasprm[actuator] = 0.0
             model.actuator_gainprm[actuator, 0] = 1.0
@@ -191,8 +192,8 @@ class _Abduction:
         """(4, 3) q, dq and tau, FL, FR, RL, RR."""
         if not len(self.joints):
             return self._fixed
-        data, (_, q, dq) = self.run.data.data, self.joints.T
-        return np.stack([data.qpos[q], data.qvel[dq], self._torques], axis=1)
+        _, q, dq = self.joints.T
+        return np.stack([self._data.qpos[q], self._data.qvel[dq], self._torques], axis=1)
 
     def act(self, command: Floats) -> None:
         if not len(self.joints):
@@ -201,7 +202,7 @@ class _Abduction:
         goal, rate, torque, kp, kd = command.T
         wanted = torque + kp * (goal - q) + kd * (rate - dq)
         self._torques = np.clip(wanted, -self._most, self._most)
-        self.run.data.data.ctrl[self.joints[:, 0]] = self._torques
+        self._data.ctrl[self.joints[:, 0]] = self._torques
 
 
 def play(
@@ -280,8 +281,8 @@ def _attitude(run: Run) -> tuple[float, float]:
 
 def _judged(robot: LowLevelRobot, cause: tuple[str, str], pitch_max: float, states: int) -> Played:
     run = robot.run
-    wheels = run._wheels()  # noqa: SLF001
-    real, drawn = run.terrain, run.plan.terrain
+    wheels = run.physics.wheels()
+    real, drawn = run.physics.terrain, run.plan.terrain
     error = end_error(run.plan, drawn, real, run.disturbance, wheels, own_sensors=True)
     first, last = run.plan.poses[0].x_c, run.plan.poses[-1].x_c
     way = (float(run.data.qpos[0]) - first, last - first)

@@ -5,15 +5,13 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Flags, Floats
 from stairwright.control.setpoint import JOINTS, PITCH, WHEELS
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath
 
 from .governor import Track
-
-Floats = NDArray[np.float64]
 
 _STEEP = 1.0  # slope beyond which a stretch is a face, else a tread
 _ROOM = 0.4  # of a tread beside a face that the face may move by
@@ -60,14 +58,14 @@ def corrected(terrain: Terrain, path: WheelPath, s: float, *, face: bool, off: F
     )
 
 
-def _begin(steep: NDArray[np.bool_], k: int) -> int:
+def _begin(steep: Flags, k: int) -> int:
     """First point of the tread that ends at point `k`."""
     while k > 0 and not steep[k - 1]:
         k -= 1
     return k
 
 
-def _end(steep: NDArray[np.bool_], k: int) -> int:
+def _end(steep: Flags, k: int) -> int:
     """Last point of the tread that begins at point `k`."""
     while k < len(steep) and not steep[k]:
         k += 1

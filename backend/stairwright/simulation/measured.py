@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright._core import GRAVITY
+from stairwright.arrays import Floats
 
 from . import score
 from .outcome import Ending, LinkLoads
 from .result import Metrics
-
-Floats = NDArray[np.float64]
 
 SETTLE = 0.4  # s at rest before the plan starts and after it ends
 _HUGE = 1e6  # stands for what is not finite, or overflowed on the way there

@@ -16,9 +16,9 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright._core import GRAVITY
+from stairwright.arrays import Floats, Ints
 from stairwright.errors import InputError
 from stairwright.robot.description import JOINTS, LEGS, Robot
 from stairwright.robot.importing.assemble import Reading
@@ -27,15 +27,17 @@ from stairwright.robot.importing.read import read_closely
 from stairwright.robot.importing.report import JointMap, Notes
 from stairwright.robot.importing.source import read_spec
 from stairwright.robot.importing.upload import Upload, unpack
-from stairwright.robot.mujoco_model import add_contact_sensors, add_terrain, set_physics
+from stairwright.robot.mujoco_model import (
+    TERRAIN_HALF_WIDTH,
+    add_contact_sensors,
+    add_terrain,
+    set_physics,
+)
 from stairwright.terrain.profile import Terrain
-
-Floats = NDArray[np.float64]
 
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 _ALIKE = 1e-3  # m between the plan's robot and the file's
 _GIVES = 0.05  # rad at which an abduction servo gives its full torque
-_HALF_WIDTH = 1.0  # m of terrain on each side
 _SERVO_TORQUE = 0.5  # of weight times leg length, where the file has no limit
 
 
@@ -58,13 +60,13 @@ class Original:
 
     model: Any
     maps: tuple[JointMap, ...]
-    positions: NDArray[np.int64]
-    speeds: NDArray[np.int64]
+    positions: Ints
+    speeds: Ints
     base: int
     axes: Floats
     centre: Floats
     held: dict[int, float]
-    wheels: NDArray[np.int64]
+    wheels: Ints
     planes: Floats
     labels: list[str]
 
@@ -121,7 +123,7 @@ def build_original(
     _remove_others(spec, bodies, source.model, base)
     _set_free(bodies[source.model.body_rootid[base]])
     set_physics(spec)
-    add_terrain(spec, terrain, friction, _HALF_WIDTH)
+    add_terrain(spec, terrain, friction, TERRAIN_HALF_WIDTH)
     for mesh in spec.meshes:
         if mesh.name.startswith("terrain_"):
             mesh.scale = [1.0, 1.0, 1.0]

@@ -17,12 +17,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
 from .result import Outcome
-
-Floats = NDArray[np.float64]
 
 ARRIVED = 0.02  # m, every wheel
 TURNED_OVER = 1.0  # rad, roll or deviation from the plan's pitch

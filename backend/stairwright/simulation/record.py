@@ -5,17 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Floats, Ints
 from stairwright.control.setpoint import JOINTS, PITCH, PROGRESS
 from stairwright.robot.description import LEGS
 
 from .governor import Track
 from .result import Series
-
-Floats = NDArray[np.float64]
-
 
 # Columns of a sample.
 _TIME = 0
@@ -113,7 +110,7 @@ class Recorder:
 
 def keep_sample(
     every: int,
-    cursor: NDArray[np.int64],
+    cursor: Ints,
     samples: Floats,
     time: float,
     qpos: Floats,

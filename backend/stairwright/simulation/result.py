@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BeforeValidator, ConfigDict, Field, PlainSerializer, WithJsonSchema
 from pydantic import model_validator as check
 
+from stairwright.arrays import Floats
 from stairwright.control.settings import StoredSettings
 from stairwright.documents import Model, save
 from stairwright.errors import InputError
@@ -17,7 +17,6 @@ from stairwright.robot.description import Robot
 from stairwright.robot.parts import optional
 from stairwright.terrain.profile import Terrain
 
-Floats = NDArray[np.float64]
 Outcome = Literal["success", "fell", "stuck", "collided", "diverged", "timeout", "stopped"]
 
 

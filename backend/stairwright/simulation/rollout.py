@@ -13,9 +13,10 @@ from stairwright.planning.plan import Plan
 from stairwright.robot.mujoco_model import TIMESTEP
 
 from .disturbance import Disturbance, parse_disturbance
+from .physics import CONTROL_STEPS, Physics
 from .record import Recorder
 from .result import Rollout
-from .run import CONTROL_STEPS, Run
+from .run import Run
 
 
 def rollout(
@@ -60,13 +61,13 @@ def rollout(
     record_hz = as_number(record_hz, "record_hz")
     if not 1.0 <= record_hz <= control_hz:
         raise InputError(f"must be from 1 to {control_hz:g}", ("record_hz",))
-    if model is None:
-        run = Run(plan, truth, settings, deviations, seed, record_hz)
-    else:
-        from .original_run import OriginalRun
+    physics: Physics | None = None
+    if model is not None:
+        from .original_physics import OriginalPhysics
 
         if isinstance(controller, Mapping) and controller.get("sensing") == "robot":
             raise InputError("is for our own model of the robot", ("controller", "sensing"))
         settings = settings.model_copy(update={"sensing": "ideal"})
-        run = OriginalRun(plan, truth, settings, deviations, seed, record_hz, model)
+        physics = OriginalPhysics(model, plan, truth, deviations, seed)
+    run = Run(plan, truth, settings, deviations, seed, record_hz, physics)
     return run.result(run.simulate(progress, observe), keep_plan)

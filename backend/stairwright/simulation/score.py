@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Floats
 from stairwright.control.setpoint import JOINTS, PITCH
-
-Floats = NDArray[np.float64]
 
 _Q, _PITCH = JOINTS.start, PITCH
 

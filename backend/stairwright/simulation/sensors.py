@@ -8,11 +8,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Floats, Ints
 
 from .disturbance import Disturbance
-
-Floats = NDArray[np.float64]
 
 # Standard deviations of the sensors at noise 1: a good joint encoder, IMU and state estimator.
 JOINT_NOISE = 0.001  # rad
@@ -70,7 +69,7 @@ def perceive(
     draws: Floats,
     k: int,
     history: Floats,
-    seen: NDArray[np.int64],
+    seen: Ints,
     out_qpos: Floats,
     out_qvel: Floats,
 ) -> None:

@@ -9,15 +9,13 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.robot.description import LEGS, Robot
 from stairwright.robot.mujoco_model import TERRAIN_HALF_WIDTH, build_spec
 from stairwright.terrain.profile import Terrain
 
 from .disturbance import Disturbance
-
-Floats = NDArray[np.float64]
 
 _LEAST_FRICTION = 0.01
 _FACE_SLOPE = 1.0  # a stretch that is steeper (45 degrees) is a face, else a tread

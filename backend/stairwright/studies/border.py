@@ -11,10 +11,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Floats
 
 Known = Mapping[int, bool]
-Floats = NDArray[np.float64]
 _NEIGHBOURS = 8  # finished rows from which the next one's border is foretold
 
 

@@ -12,21 +12,21 @@ import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Ints
 
 from .border import border, flips, foretell, low_count, next_cells
 from .document import Study
 from .grid import levels
-from .progress import Meter, Report, Writer
+from .progress import Meter, Report
 from .serial import Engine, Finished, Stopped
 from .store import ResultStore
 from .variables import DONE, PENDING, Record
+from .writer import Writer
 
 CHECKED = 0.25  # of the rows have a cell off their border asked
 _NEAR, _FRINGE = 0.7, 0.15  # share of these close to the border; how close, of the axis
 _PER_ROW = 2.5  # cells that a row takes, before that is known
-
-Ints = NDArray[np.int64]
 
 
 def passes(record: Record) -> bool:
@@ -51,7 +51,6 @@ class Rows:
         self.cells: Ints = np.moveaxis(numbers, self.axis, -1).reshape(-1, self.n + 1)
         self.places = np.array(list(np.ndindex(*self.shape)), float).reshape(len(self.cells), -1)
         self.known: list[dict[int, bool]] = [{} for _ in self.cells]
-        self._where: dict[int, tuple[int, int]] = {}
 
     def learn(self, row: int, k: int, verdict: bool) -> None:
         """A cell's verdict."""

@@ -17,6 +17,7 @@ from .design_document import Design, design_id
 from .design_resolve import resolved_design
 from .design_result import DesignResult
 from .packages import check_packages
+from .progress import Progress
 from .serial import Stopped
 from .study import BUDGET, choose_engine
 from .version import engine_of
@@ -47,7 +48,7 @@ def design(
         InputError: If the document or an argument is bad, or packages are missing.
     """
     check_packages()
-    from .design_search import Tried, search
+    from .design_search import search
     from .keeping import studies_folder
 
     chosen = prepared_design(document, budget)
@@ -57,11 +58,11 @@ def design(
 
     done = 0
 
-    def report(tried: Tried) -> None:
+    def report(now: Progress) -> None:
         nonlocal done
-        if progress is not None and tried.designs > done:
-            done = tried.designs
-            progress(done, chosen.designs)
+        if progress is not None and now.done > done:
+            done = now.done
+            progress(done, now.total)
 
     try:
         return search(chosen, engine, folder, report, stopped)

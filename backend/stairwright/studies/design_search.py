@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,7 +21,7 @@ from .design_shelf import keep_result
 from .document import Study, study_id
 from .fill import fill, is_complete
 from .keeping import kept_store
-from .progress import Progress
+from .progress import Pace, Progress, Report
 from .question import varied_robot
 from .serial import Engine, Stopped
 from .store import ResultStore
@@ -33,26 +32,11 @@ _START = 16  # designs that are spread over the bounds before any is foretold
 _TOLD = 2.0  # s between results that are kept for whoever looks on
 
 
-@dataclass(frozen=True)
-class Tried:
-    """How far a search is.
-
-    Attributes:
-        designs: That were tried, a whole generation at a time.
-        share: Of all the work, 0..1; counts the generation at work, too.
-        left: Remaining time [s], None while it cannot be told.
-    """
-
-    designs: int
-    share: float
-    left: float | None
-
-
 def search(
     design: Design,
     engine: Engine,
     folder: Path,
-    report: Callable[[Tried], None],
+    report: Report,
     stopped: Stopped = lambda: False,
 ) -> DesignResult:
     """Carry a search out, or go on with the one in `folder`, where its result is kept, too.
@@ -69,12 +53,12 @@ def search(
         candidates = with_best(design.aims, trying.tried)
         return DesignResult(id=name, design=design, complete=complete, candidates=candidates)
 
-    def tell(tried: Tried) -> None:
+    def tell(progress: Progress) -> None:
         nonlocal told, kept
-        if tried.designs > kept and time.monotonic() - told >= _TOLD:
+        if progress.done > kept and time.monotonic() - told >= _TOLD:
             keep_result(result(False), folder)
-            told, kept = time.monotonic(), tried.designs
-        report(tried)
+            told, kept = time.monotonic(), progress.done
+        report(progress)
 
     found = result(trying.run(tell))
     keep_result(found, folder)
@@ -89,33 +73,12 @@ class _Proposal:
     reason: str = ""
 
 
-class _Pace:
-    """How far it is, and how long the rest takes at its own pace; what is replayed takes none."""
-
-    def __init__(self, designs: int) -> None:
-        self._designs = designs
-        self._begun: tuple[float, int] | None = None
-
-    def begin(self, tried: int) -> None:
-        """From here on there is work."""
-        if self._begun is None:
-            self._begun = time.monotonic(), tried
-
-    def tell(self, tried: int, more: float = 0.0) -> Tried:
-        """After so many designs, and so much of the generation at work."""
-        done, left = tried + more, None
-        if self._begun is not None:
-            spent, own = time.monotonic() - self._begun[0], done - self._begun[1]
-            left = spent * (self._designs - done) / own if own > 0.0 else None
-        return Tried(tried, done / self._designs, left)
-
-
 class _Search:
     def __init__(
         self, design: Design, engine: Engine, folder: Path, version: str, stopped: Stopped
     ) -> None:
         self.tried: list[Candidate] = []
-        self._pace = _Pace(design.designs)
+        self._pace: Pace | None = None  # since there is work: what is replayed takes none
         self._design, self._engine, self._folder = design, engine, folder
         self._version, self._stopped = version, stopped
         optuna.logging.set_verbosity(optuna.logging.ERROR)
@@ -126,7 +89,7 @@ class _Search:
             sampler=sampler, directions=[aim.direction for aim in design.aims]
         )
 
-    def run(self, report: Callable[[Tried], None]) -> bool:
+    def run(self, report: Report) -> bool:
         """Try generations until there are enough; False if it was stopped before."""
         design, number = self._design, 0
         while len(self.tried) < design.designs:
@@ -139,7 +102,7 @@ class _Search:
             for proposal, candidate in zip(proposed, candidates, strict=True):
                 self._tell(proposal, candidate)
             number += 1
-            report(self._pace.tell(len(self.tried)))
+            report(self._progress())
         return True
 
     def _propose(self) -> _Proposal:
@@ -157,20 +120,19 @@ class _Search:
         return _Proposal(trial, values, made)
 
     def _tried(
-        self, proposed: list[_Proposal], path: Path, report: Callable[[Tried], None]
+        self, proposed: list[_Proposal], path: Path, report: Report
     ) -> list[Candidate] | None:
         """What came of a generation; None if it was stopped."""
-        before = len(self.tried)
 
         def working(progress: Progress) -> None:
-            report(self._pace.tell(before, len(proposed) * progress.done / max(1, progress.total)))
+            report(self._progress(len(proposed) * progress.done / max(1, progress.total)))
 
         robots = {f"d{k}": each.robot for k, each in enumerate(proposed) if each.robot is not None}
         dataset: Any = None
         if robots:
             store = self._store(self._design.asking(robots), path)
             if not is_complete(store):
-                self._pace.begin(before)
+                self._pace = self._pace or Pace(len(self.tried))
                 with store.writing():
                     fill(store, self._engine, working, self._stopped)
                 if not is_complete(store):
@@ -180,6 +142,12 @@ class _Search:
             self._candidate(each, None if each.robot is None else dataset.sel(robot=f"d{k}"))
             for k, each in enumerate(proposed)
         ]
+
+    def _progress(self, partly: float = 0.0) -> Progress:
+        """With so much of the generation at work."""
+        done, total = len(self.tried), self._design.designs
+        left = None if self._pace is None else self._pace.left(done + partly, total)
+        return Progress(done, total, left, partly)
 
     def _store(self, study: Study, path: Path) -> ResultStore:
         return kept_store(study, study_id(study, self._version), self._version, path)

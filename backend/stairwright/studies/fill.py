@@ -6,10 +6,11 @@ import numpy as np
 
 from .boundary import fill_boundary, searched_rows
 from .grid import coarse_first
-from .progress import Meter, Report, Writer
+from .progress import Meter, Report
 from .serial import Engine, Stopped
 from .store import ResultStore
 from .variables import PENDING
+from .writer import Writer
 
 
 def fill_grid(store: ResultStore, engine: Engine, report: Report | None, stopped: Stopped) -> None:

@@ -11,6 +11,8 @@ import orjson
 from stairwright.jobs.job import Job
 from stairwright.storage.studies import StudyRecord
 
+from .progress import Progress
+
 
 class Following:
     """One study or search in memory: its job, and the cells that came since it is followed."""
@@ -18,9 +20,7 @@ class Following:
     def __init__(self, record: StudyRecord) -> None:
         self.record = record
         self.job = Job(record.id, "design" if record.is_search else "study", owner=record.owner)
-        self.done, self.total = record.done, record.total
-        self.share = record.done / record.total if record.total else 0.0  # of all the work
-        self.left: float | None = None
+        self.progress = Progress(record.done, record.total)
         self.stage = ""  # what is done before its work begins
         self.blocks: list[bytes] = []  # JSON, in the order in which they came
         self.deaths = 0
@@ -30,23 +30,19 @@ class Following:
 
     def hear(self, report: Mapping[str, Any]) -> None:
         """Take in what the runner tells while it is at it."""
-        self.done = int(report["done"])
-        self.total = int(report["total"]) or self.total
-        self.left = report["left"]
-        self.share = report.get("share", self.done / self.total if self.total else 0.0)
+        total = report["total"] or self.progress.total
+        self.progress = Progress(report["done"], total, report["left"], report["partly"])
         if report["cells"] is not None:
             self.blocks.append(orjson.dumps(report["cells"]))
-        self.job.advance(self.share)
+        self.job.advance(self.progress.share)
 
     @property
     def eta(self) -> float | None:
         """Seconds until it is done, as far as its own pace can tell."""
-        running = self.job.state == "running"
-        return round(self.left, 1) if running and self.left is not None else None
+        left = self.progress.left if self.job.state == "running" else None
+        return None if left is None else round(left, 1)
 
     def as_record(self) -> StudyRecord:
         """What is written down of it now."""
-        job = self.job
-        return replace(
-            self.record, state=job.state, error=job.error, done=self.done, total=self.total
-        )
+        job, done, total = self.job, self.progress.done, self.progress.total
+        return replace(self.record, state=job.state, error=job.error, done=done, total=total)

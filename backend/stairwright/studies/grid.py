@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Ints
 
 from .axes import Axis, Value
 from .document import Study
-
-Ints = NDArray[np.int64]
 
 
 def place(shape: Sequence[int], cell: int) -> tuple[int, ...]:

@@ -1,80 +1,66 @@
-"""Finished cells on their way: told as they come, written down every so often."""
+"""How far a study or a search for designs is, and how long the rest takes."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-from .serial import Finished
-from .store import ResultStore
-from .variables import Record
-
-WRITE_EVERY = 2.0  # s
+if TYPE_CHECKING:
+    from .serial import Finished
 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a study is.
+    """How far a study is, counted in cells, or a search, counted in designs.
 
     Attributes:
-        done: Cells whose state is known.
-        total: Cells that are to be known in the end; of boundaries, as far as can be told.
-        spent: Time since this process began with it [s].
+        done: Cells whose state is known; designs that were tried, a whole generation at a time.
+        total: That are to be known in the end; of boundaries, as far as can be told.
         left: Remaining time [s], None while it cannot be told.
-        new: What is new since the last report.
+        partly: Of those that are at work, how many their work so far makes.
+        new: Cells since the last report.
     """
 
     done: int
     total: int
-    spent: float
-    left: float | None
-    new: Finished
+    left: float | None = None
+    partly: float = 0.0
+    new: Finished = field(default_factory=dict)
+
+    @property
+    def share(self) -> float:
+        """Of all the work, 0..1."""
+        return (self.done + self.partly) / self.total if self.total else 0.0
 
 
 Report = Callable[[Progress], None]
 
 
+class Pace:
+    """How long the rest takes at a run's own pace; what was known before it took none."""
+
+    def __init__(self, done: int) -> None:
+        self._begun, self._before = time.monotonic(), done
+
+    def left(self, done: float, total: int) -> float | None:
+        """Remaining time [s], None while it cannot be told."""
+        own = done - self._before
+        return (time.monotonic() - self._begun) * (total - done) / own if own > 0.0 else None
+
+
 class Meter:
-    """Makes reports of finished cells; the remaining time follows from this run's own pace."""
+    """Makes reports of finished cells."""
 
     def __init__(self, done: int, total: int, report: Report | None) -> None:
         self.done, self.total = done, total
-        self._report = report
-        self._begun, self._before = time.monotonic(), done
+        self._report, self._pace = report, Pace(done)
 
     def tell(self, new: Finished) -> None:
         """Report finished cells."""
         self.done += len(new)
         self.total = max(self.total, self.done)
         if self._report is not None:
-            spent = time.monotonic() - self._begun
-            pace = (self.done - self._before) / spent if spent > 0.0 else 0.0
-            left = (self.total - self.done) / pace if pace > 0.0 else None
-            self._report(Progress(self.done, self.total, spent, left, new))
-
-
-class Writer:
-    """Writes cells down every so often: a write costs about 20 ms however few they are."""
-
-    def __init__(self, store: ResultStore) -> None:
-        self._store = store
-        self._held: dict[int, Record] = {}
-        self._written = time.monotonic()
-
-    def __enter__(self) -> Writer:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.flush()
-
-    def add(self, finished: Finished) -> None:
-        """Take in finished cells."""
-        self._held.update(finished)
-        if time.monotonic() - self._written >= WRITE_EVERY:
-            self.flush()
-
-    def flush(self) -> None:
-        """Write what is held."""
-        self._store.write(self._held)
-        self._held, self._written = {}, time.monotonic()
+            left = self._pace.left(self.done, self.total)
+            self._report(Progress(self.done, self.total, left, new=new))

@@ -2,8 +2,8 @@
 
 Orders come as JSON lines: ``{"run": id, "study": {...}, "path": "...", "retry": false}``, with
 "design" instead of "study" for a search, and ``{"cancel": id}``. Reports go out the same way, one a
-line: ``{"id", "done", "total", "left", "cells": block or null}`` while it is at a study (a total of
-0: not known yet), with "share" (0..1) of a search, and ``{"id", "state", "error"}`` at the end.
+line: ``{"id", "done", "total", "left", "partly", "cells": block or null}`` as `Progress` has them
+(a total of 0: not known yet), and ``{"id", "state", "error"}`` at the end.
 When the orders end, whoever gave them has gone: this process ends too, and what is written stays.
 """
 
@@ -24,9 +24,9 @@ from stairwright.documents import parse
 from stairwright.errors import StairwrightError
 from stairwright.jobs.failures import Failure, WorkerDied, problem_of
 
-from .blocks import block_of, blocks_of
+from .blocks import Block, block_of, blocks_of
 from .design_document import Design
-from .design_search import Tried, search
+from .design_search import search
 from .document import Study, study_id
 from .fill import fill
 from .keeping import kept_store, relatives
@@ -80,12 +80,7 @@ class Runner:
 
     def _search(self, name: str, order: dict[str, Any]) -> None:
         design = parse(Design, order["design"])
-
-        def report(tried: Tried) -> None:
-            self._tell({"id": name, "done": tried.designs, "total": design.designs,
-                        "left": tried.left, "cells": None, "share": tried.share})  # fmt: skip
-
-        stopped = partial(self._cancelled.__contains__, name)
+        report, stopped = partial(self._report, name), partial(self._cancelled.__contains__, name)
         search(design, self._engine, Path(order["path"]), report, stopped)
 
     def _fill(self, name: str, order: dict[str, Any]) -> None:
@@ -97,15 +92,15 @@ class Runner:
         told = 0
         for block in blocks_of(store):  # what was known before
             told += len(block["cell"])
-            self._tell({"id": name, "done": told, "total": 0, "left": None, "cells": block})
-
-        def report(progress: Progress) -> None:
-            cells = block_of(progress.new) if progress.new else None
-            self._tell({"id": name, "done": progress.done, "total": progress.total,
-                        "left": progress.left, "cells": cells})  # fmt: skip
-
+            self._report(name, Progress(told, 0), block)
+        report, stopped = partial(self._report, name), partial(self._cancelled.__contains__, name)
         with store.writing():
-            fill(store, self._engine, report, lambda: name in self._cancelled)
+            fill(store, self._engine, report, stopped)
+
+    def _report(self, name: str, progress: Progress, block: Block | None = None) -> None:
+        cells = block_of(progress.new) if progress.new else block
+        self._tell({"id": name, "done": progress.done, "total": progress.total,
+                    "left": progress.left, "partly": progress.partly, "cells": cells})  # fmt: skip
 
     def _tell(self, report: dict[str, Any]) -> None:
         self._reports.write(orjson.dumps(report) + b"\n")

@@ -105,7 +105,9 @@ class Studies:
         waiting = sum(not each.job.finished for each in self._known.values())
         if waiting > self._limit:
             raise QueueFull(f"{waiting - 1} studies are waiting already", retry_after=10.0)
-        following = Following(record if known is None else replace(record, done=known.done))
+        following = Following(
+            record if known is None else replace(record, done=known.progress.done)
+        )
         following.retry = retry
         await asyncio.to_thread(self._store.studies.put, record)
         self._known[record.id] = following
@@ -237,7 +239,8 @@ class Studies:
                 following.hear(report)
                 continue
             if report["state"] == "done":
-                following.total = following.done
+                progress = following.progress
+                following.progress = replace(progress, total=progress.done)
             following.job.finish(report["state"], error=report["error"])
             return True
         return False

@@ -22,6 +22,7 @@ import zarr
 from numpy.typing import NDArray
 from zarr.errors import GroupNotFoundError, NodeTypeValidationError, ZarrUserWarning
 
+from stairwright.arrays import Ints32
 from stairwright.documents import parse
 from stairwright.errors import InputError
 
@@ -99,9 +100,9 @@ class ResultStore:
             yield
 
     @property
-    def states(self) -> NDArray[np.int32]:
+    def states(self) -> Ints32:
         """State of every cell, in the axes' shape."""
-        states: NDArray[np.int32] = self._arrays["state"][...]
+        states: Ints32 = self._arrays["state"][...]
         return states
 
     def write(self, records: Mapping[int, Record]) -> None:

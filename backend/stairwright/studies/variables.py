@@ -12,7 +12,6 @@ Kind = Literal["number", "flag", "count", "word"]
 Record = dict[str, Any]  # of one cell: variable to value
 
 PENDING, DONE, REFUSED, FAILED = 0, 1, 2, 3
-STATES = ("pending", "done", "refused", "failed")
 
 
 @dataclass(frozen=True)

@@ -10,17 +10,15 @@ from typing import Any, Literal
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats, Ints
 from stairwright.documents import parse
 from stairwright.errors import InputError
 
 from .profile import Terrain, simplify
 
-Floats = NDArray[np.float64]
-
 Up = Literal["z", "y"]
-Mesh = tuple[Floats, NDArray[np.int64]]
+Mesh = tuple[Floats, Ints]
 """Vertices (n, 3) [m] and faces (m, 3)."""
 
 FILE_TYPES = ("stl", "obj", "ply", "off")

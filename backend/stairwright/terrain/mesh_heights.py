@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field
 
+from stairwright.arrays import Floats
 from stairwright.documents import Model
 
-from .mesh import Floats, Mesh, Up, cut, load_mesh
+from .mesh import Mesh, Up, cut, load_mesh
 
 CELLS = 128  # along the longer side
 

@@ -8,14 +8,13 @@ from functools import cached_property
 from typing import Annotated, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from stairwright.arguments import MOST_FRICTION
+from stairwright.arrays import Floats
 from stairwright.documents import Model, content_hash
 from stairwright.errors import InputError
 
-Floats = NDArray[np.float64]
 MOST_COORDINATE = 100.0  # m
 Coordinate = Annotated[float, Field(ge=-MOST_COORDINATE, le=MOST_COORDINATE)]
 Point = tuple[Coordinate, Coordinate]

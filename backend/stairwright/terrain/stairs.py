@@ -1,9 +1,8 @@
-"""Generators of common terrain, and the building codes that say which stairs exist."""
+"""Generators of common terrain."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Literal, get_args
 
 from stairwright.arguments import as_friction
@@ -14,49 +13,6 @@ from .profile import Terrain
 Direction = Literal["up", "down", "up-down"]
 
 MAX_STEPS = 200
-
-
-@dataclass(frozen=True)
-class StairCode:
-    """Limits of a building code for straight flights, in m.
-
-    Attributes:
-        name: Document and section.
-        rise: Least and largest height of a step.
-        run: Least and largest depth of a tread (going); infinite where the code has no bound.
-    """
-
-    name: str
-    rise: tuple[float, float]
-    run: tuple[float, float]
-
-    def allows(self, rise: float, run: float) -> bool:
-        """Whether steps of this `rise` and `run` [m] keep the code, to a millimetre."""
-        slack = 1e-3
-        return (
-            self.rise[0] - slack <= rise <= self.rise[1] + slack
-            and self.run[0] - slack <= run <= self.run[1] + slack
-        )
-
-
-STAIR_CODES = (
-    StairCode("US IBC 1011.5.2, public buildings", (0.102, 0.178), (0.279, math.inf)),
-    StairCode("US IRC R311.7.5, dwellings", (0.0, 0.196), (0.254, math.inf)),
-    StairCode("US OSHA 1910.25(c), workplaces", (0.0, 0.241), (0.241, math.inf)),
-    StairCode("UK Approved Document K, private", (0.150, 0.220), (0.220, 0.300)),
-    StairCode("UK Approved Document K, general access", (0.150, 0.170), (0.250, 0.400)),
-    StairCode("DIN 18065, buildings in general", (0.140, 0.190), (0.260, 0.370)),
-)
-RAMP_CODES = {
-    "US ADA 405.2, new ramps": 1 / 12,
-    "US ADA 405.2, existing sites, rise up to 76 mm": 1 / 8,
-}
-"""Steepest slope (rise over run) of accessible ramps."""
-
-
-def codes_allowing(rise: float, run: float) -> list[str]:
-    """Names of the building codes that allow steps of `rise` and `run` [m]."""
-    return [code.name for code in STAIR_CODES if code.allows(rise, run)]
 
 
 def flat(length: float = 4.0, name: str = "flat", friction: float = 0.6) -> Terrain:

@@ -14,14 +14,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Floats
 from stairwright.errors import InputError
 
 from .profile import Terrain
-
-Floats = NDArray[np.float64]
 
 LINE, ARC = 0.0, 1.0
 

@@ -23,7 +23,7 @@ from stairwright.api.deps import (
     resolve_terrain,
 )
 from stairwright.api.problems import FieldError, Problem, describe, not_found
-from stairwright.api.responses import fresh_json, models_json, not_modified
+from stairwright.api.responses import accepted_json, fresh_json, models_json, not_modified
 from stairwright.api.services import Services
 from stairwright.api.study_bodies import DesignAnswer, DesignDocument
 from stairwright.documents import parse
@@ -66,8 +66,7 @@ async def post_design(services: Service, owner: Owner, body: Design, once: Idemp
     following = await services.studies.submit_design(design, owner)
     once.result = following.record.id
     shown = await asyncio.to_thread(_document, services, following)
-    headers = {"location": shown.links["self"], "retry-after": "1"}
-    return Response(shown.model_dump_json(), 202, headers=headers, media_type="application/json")
+    return accepted_json(shown, shown.links["self"])
 
 
 def _resolved(services: Services, body: Design) -> Design:
@@ -139,7 +138,7 @@ async def design_events(
 async def _events(services: Services, following: Following) -> event_streams.Events:
     told = (0, -1)
     while True:
-        now, finished = (following.job.revision, following.done), following.job.finished
+        now, finished = (following.job.revision, following.progress.done), following.job.finished
         if now != told:
             told = now
             shown = await asyncio.to_thread(_document, services, following)
@@ -219,7 +218,9 @@ def _state(summary: DesignSummary, following: Following | None) -> dict[str, Any
     job = following.job
     return {
         "state": job.state,
-        "progress": round(min(1.0, max(share, following.share)), 4),  # counts what is replayed, too
+        "progress": round(
+            min(1.0, max(share, following.progress.share)), 4
+        ),  # counts what is replayed, too
         "eta": following.eta,
         "stage": following.stage,
         "outdated": following.record.engine != engine_of(_asked(following).ask),

@@ -3,32 +3,23 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Annotated
 
-from fastapi import APIRouter, Path, Request, Response
+from fastapi import APIRouter, Response
 
-from stairwright.api.bodies import EntryChanges, JobDocument, Simulation, StoredEntry
-from stairwright.api.deps import JSON_BODY, Idempotent, Owner, Service
-from stairwright.api.problems import describe
+from stairwright.api.bodies import Simulation
+from stairwright.api.deps import Idempotent, Owner, Service
 from stairwright.api.services import Services
 from stairwright.errors import InputError
 from stairwright.jobs.questions import MarginsQuestion
 from stairwright.simulation.margins_result import RobustMargins
 
 from . import stored
-from .simulations import accepted, settings_of, source_of
+from .simulations import STARTS_A_JOB, accepted, settings_of, source_of
 
 router = APIRouter(prefix="/margins", tags=["margins"])
-MarginsId = Annotated[str, Path(max_length=64, examples=["m-0123456789abcdef"])]
 
 
-@router.post(
-    "",
-    status_code=202,
-    response_model=JobDocument,
-    dependencies=[JSON_BODY],
-    responses=describe(404, 409, 415, 429, 503),
-)
+@router.post("", **STARTS_A_JOB)
 async def post_margins(
     services: Service, owner: Owner, body: Simulation, once: Idempotent
 ) -> Response:
@@ -42,32 +33,12 @@ def _question(services: Services, body: Simulation) -> MarginsQuestion:
     return MarginsQuestion(source_of(services, body), None, settings_of(body), body.seed)
 
 
-@router.get("", response_model=list[StoredEntry])
-async def list_margins(request: Request, services: Service, listed: stored.Listing) -> Response:
-    """Stored margins, newest first."""
-    return await stored.listing(request, services, "margins", listed)
-
-
-@router.get("/{margins_id}", response_model=RobustMargins, responses=describe(404))
-async def get_margins(request: Request, services: Service, margins_id: MarginsId) -> Response:
-    """The delay and the loss of friction up to which every rollout succeeds."""
-    return await stored.document(request, services, "margins", margins_id)
-
-
-@router.patch(
-    "/{margins_id}",
-    response_model=StoredEntry,
-    dependencies=[JSON_BODY],
-    responses=describe(404, 415),
+stored.serve(
+    router,
+    "margins",
+    RobustMargins,
+    some="margins",
+    get="The delay and the loss of friction up to which every rollout succeeds.",
+    save="Name a plan's margins, note something about them, or pin them.",
+    delete="Remove a plan's margins. The plan stays.",
 )
-async def save_margins_notes(
-    services: Service, margins_id: MarginsId, changes: EntryChanges
-) -> StoredEntry:
-    """Name a plan's margins, note something about them, or pin them."""
-    return await stored.annotate(services, "margins", margins_id, changes)
-
-
-@router.delete("/{margins_id}", status_code=204, responses=describe(404))
-async def delete_margins(services: Service, margins_id: MarginsId) -> None:
-    """Remove a plan's margins. The plan stays."""
-    await stored.delete(services, "margins", margins_id)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
-from stairwright.api.bodies import EntryChanges, PlanRequest, StoredEntry
+from stairwright.api.bodies import PlanRequest
 from stairwright.api.deps import (
     JSON_BODY,
     Idempotent,
@@ -97,33 +97,16 @@ def _look_up(services: Services, body: PlanRequest) -> tuple[PlanQuestion, Answe
     return question, services.planning.stored(question)
 
 
-@router.get("", response_model=list[StoredEntry])
-async def list_plans(request: Request, services: Service, listed: stored.Listing) -> Response:
-    """Stored plans, newest first."""
-    return await stored.listing(request, services, "plan", listed)
-
-
-@router.get("/{plan_id}", response_model=Plan, responses=describe(404))
-async def get_plan(request: Request, services: Service, plan_id: PlanId) -> Response:
-    """One plan."""
-    return await stored.document(request, services, "plan", plan_id)
-
-
-@router.patch(
-    "/{plan_id}",
-    response_model=StoredEntry,
-    dependencies=[JSON_BODY],
-    responses=describe(404, 415),
+stored.serve(
+    router,
+    "plan",
+    Plan,
+    some="plans",
+    get="One plan.",
+    save="Name a plan, note something about it, or pin it.",
+    delete="Remove a plan. Its rollouts stay, those that wait go on; asked again, it is planned "
+    "anew.",
 )
-async def save_plan_notes(services: Service, plan_id: PlanId, changes: EntryChanges) -> StoredEntry:
-    """Name a plan, note something about it, or pin it."""
-    return await stored.annotate(services, "plan", plan_id, changes)
-
-
-@router.delete("/{plan_id}", status_code=204, responses=describe(404))
-async def delete_plan(services: Service, plan_id: PlanId) -> None:
-    """Remove a plan. Its rollouts stay, those that wait go on; asked again, it is planned anew."""
-    await stored.delete(services, "plan", plan_id)
 
 
 @router.get(

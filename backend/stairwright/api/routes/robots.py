@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from pathlib import PurePath
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from fastapi import APIRouter, File, Form, Path, Query, Request, Response, UploadFile
@@ -11,11 +10,9 @@ from fastapi import APIRouter, File, Form, Path, Query, Request, Response, Uploa
 from stairwright.api.bodies import RobotDocument, SentRobot
 from stairwright.api.deps import JSON_BODY, Limit, Offset, Service
 from stairwright.api.problems import describe
-from stairwright.api.services import UPLOAD_DEADLINE
-from stairwright.errors import InputError
+from stairwright.api.uploads import read_upload
 from stairwright.export.table import ROBOT_FORMATS
 from stairwright.jobs import robot_uploads
-from stairwright.jobs.failures import DeadlineExceeded, WorkerDied
 from stairwright.library import load_robot, robots
 from stairwright.robot.description import Robot
 from stairwright.robot.importing.report import Imported
@@ -59,16 +56,8 @@ async def import_robot(
 ) -> Imported:
     """The robot in a file, what was assumed and what to know about it. It is not saved."""
     options: dict[str, Any] = {"abduction": abduction, "wheel_radius": wheel_radius}
-    name = PurePath(file.filename or "").name
     known = [load_robot(each).model_dump(mode="json") for each in robots()]
-    data = await file.read()
-    try:
-        async with services.uploading:
-            document = await services.upload_pool.run(
-                robot_uploads.import_robot, data, name, options, known, deadline=UPLOAD_DEADLINE
-            )
-    except (DeadlineExceeded, WorkerDied, MemoryError):
-        raise InputError("takes too much time or memory to read", ("file",)) from None
+    document = await read_upload(services, robot_uploads.import_robot, file, options, known)
     return Imported.model_validate(document)
 
 

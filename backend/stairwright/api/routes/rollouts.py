@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
-from stairwright.api.bodies import EntryChanges, JobDocument, RolloutRequest, StoredEntry
-from stairwright.api.deps import JSON_BODY, Idempotent, Owner, Service
+from stairwright.api.bodies import RolloutRequest
+from stairwright.api.deps import Idempotent, Owner, Service
 from stairwright.api.problems import describe
 from stairwright.api.services import Services
 from stairwright.export.table import ROLLOUT_FORMATS
@@ -16,7 +16,7 @@ from stairwright.jobs.questions import RolloutQuestion
 from stairwright.simulation.result import Rollout
 
 from . import stored
-from .simulations import accepted, settings_of, source_of
+from .simulations import STARTS_A_JOB, accepted, settings_of, source_of
 
 router = APIRouter(prefix="/rollouts", tags=["rollouts"])
 if TYPE_CHECKING:
@@ -26,13 +26,7 @@ else:
 RolloutId = Annotated[str, Path(max_length=64, examples=["r-0123456789abcdef"])]
 
 
-@router.post(
-    "",
-    status_code=202,
-    response_model=JobDocument,
-    dependencies=[JSON_BODY],
-    responses=describe(404, 409, 415, 429, 503),
-)
+@router.post("", **STARTS_A_JOB)
 async def post_rollout(
     services: Service, owner: Owner, body: RolloutRequest, once: Idempotent
 ) -> Response:
@@ -46,35 +40,15 @@ def _question(services: Services, body: RolloutRequest) -> RolloutQuestion:
     return RolloutQuestion(source, body.friction, settings, body.seed, deviations)
 
 
-@router.get("", response_model=list[StoredEntry])
-async def list_rollouts(request: Request, services: Service, listed: stored.Listing) -> Response:
-    """Stored rollouts, newest first."""
-    return await stored.listing(request, services, "rollout", listed)
-
-
-@router.get("/{rollout_id}", response_model=Rollout, responses=describe(404))
-async def get_rollout(request: Request, services: Service, rollout_id: RolloutId) -> Response:
-    """One rollout with all its series; may be several MB."""
-    return await stored.document(request, services, "rollout", rollout_id)
-
-
-@router.patch(
-    "/{rollout_id}",
-    response_model=StoredEntry,
-    dependencies=[JSON_BODY],
-    responses=describe(404, 415),
+stored.serve(
+    router,
+    "rollout",
+    Rollout,
+    some="rollouts",
+    get="One rollout with all its series; may be several MB.",
+    save="Name a rollout, note something about it, or pin it.",
+    delete="Remove a rollout. Its plan stays; asked again, it is simulated anew.",
 )
-async def save_rollout_notes(
-    services: Service, rollout_id: RolloutId, changes: EntryChanges
-) -> StoredEntry:
-    """Name a rollout, note something about it, or pin it."""
-    return await stored.annotate(services, "rollout", rollout_id, changes)
-
-
-@router.delete("/{rollout_id}", status_code=204, responses=describe(404))
-async def delete_rollout(services: Service, rollout_id: RolloutId) -> None:
-    """Remove a rollout. Its plan stays; asked again, it is simulated anew."""
-    await stored.delete(services, "rollout", rollout_id)
 
 
 @router.get(

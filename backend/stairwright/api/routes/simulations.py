@@ -9,9 +9,10 @@ from typing import Any
 import orjson
 from fastapi import Response
 
-from stairwright.api.bodies import PlanRequest, Simulation
-from stairwright.api.deps import Idempotency
-from stairwright.api.problems import not_found
+from stairwright.api.bodies import JobDocument, PlanRequest, Simulation
+from stairwright.api.deps import JSON_BODY, Idempotency
+from stairwright.api.problems import describe, not_found
+from stairwright.api.responses import accepted_json
 from stairwright.api.services import Services
 from stairwright.control.settings import ControllerSettings
 from stairwright.documents import content_hash, parse
@@ -21,6 +22,13 @@ from stairwright.planning.plan import Plan
 
 from .jobs import job_document
 from .plans import plan_question
+
+STARTS_A_JOB: dict[str, Any] = {  # such a route in the API's description
+    "status_code": 202,
+    "response_model": JobDocument,
+    "dependencies": [JSON_BODY],
+    "responses": describe(404, 409, 415, 429, 503),
+}
 
 
 async def accepted(
@@ -33,8 +41,7 @@ async def accepted(
         job = await services.rollouts.submit(asked, owner)
         once.result = job.id
     shown = job_document(job)
-    headers = {"location": shown.links["self"], "retry-after": "1"}
-    return Response(shown.model_dump_json(), 202, headers=headers, media_type="application/json")
+    return accepted_json(shown, shown.links["self"])
 
 
 def settings_of(body: Simulation) -> dict[str, Any]:

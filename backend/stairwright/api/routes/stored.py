@@ -9,11 +9,11 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 from urllib.parse import quote
 
-from fastapi import Depends, Query, Request, Response
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
 
 from stairwright.api.bodies import EntryChanges, StoredEntry
-from stairwright.api.deps import Limit, Offset
-from stairwright.api.problems import not_found
+from stairwright.api.deps import JSON_BODY, Limit, Offset, Service
+from stairwright.api.problems import describe, not_found
 from stairwright.api.responses import models_json, not_modified, stored_json
 from stairwright.api.services import EXPORT_DEADLINE, Services
 from stairwright.documents import Model
@@ -50,34 +50,83 @@ class Listed:
 Listing = Annotated[Listed, Depends(Listed)]
 
 
-async def listing(request: Request, services: Services, kind: Kind, listed: Listed) -> Response:
-    """Newest first."""
-    limit, offset = listed.limit, listed.offset
-    entries, total = await asyncio.to_thread(
-        services.store.documents.page, kind, limit, offset, listed.search, listed.pinned
+def serve(
+    router: APIRouter,
+    kind: Kind,
+    model: type[Model],
+    *,
+    get: str,
+    save: str,
+    delete: str,
+    some: str,
+) -> None:
+    """Routes that list stored results of a kind, answer one, note something about it, remove it.
+
+    Args:
+        router: Its prefix says what many of them are called.
+        kind: What one is called.
+        model: The document of one.
+        get: What the API says of the route that answers one.
+        save: Of the one that notes something.
+        delete: Of the one that removes one.
+        some: What many are called in words.
+    """
+    many, place = router.prefix.removeprefix("/"), f"/{{{kind}_id}}"
+    key = Path(alias=f"{kind}_id", max_length=64, examples=[f"{kind[0]}-0123456789abcdef"])
+
+    @router.get(
+        "",
+        name=f"list_{many}",
+        description=f"Stored {some}, newest first.",
+        response_model=list[StoredEntry],
     )
-    return models_json(
-        request, [_shown(each) for each in entries], total=total, limit=limit, offset=offset
+    async def _list(request: Request, services: Service, listed: Listing) -> Response:
+        limit, offset = listed.limit, listed.offset
+        entries, total = await asyncio.to_thread(
+            services.store.documents.page, kind, limit, offset, listed.search, listed.pinned
+        )
+        return models_json(
+            request, [_shown(each) for each in entries], total=total, limit=limit, offset=offset
+        )
+
+    @router.get(
+        place, name=f"get_{kind}", description=get, response_model=model, responses=describe(404)
     )
+    async def _get(request: Request, services: Service, document_id: str = key) -> Response:
+        entry, packed = await load(services, kind, document_id)
+        return await stored_json(request, packed, entry.digest)
+
+    @router.patch(
+        place,
+        name=f"save_{kind}_notes",
+        description=save,
+        dependencies=[JSON_BODY],
+        responses=describe(404, 415),
+    )
+    async def _save(
+        services: Service, changes: EntryChanges, document_id: str = key
+    ) -> StoredEntry:
+        noted = changes.model_dump(exclude_none=True)
+        documents = services.store.documents
+        entry = await asyncio.to_thread(documents.annotate, kind, document_id, **noted)
+        if entry is None:
+            raise not_found(kind, document_id)
+        return _shown(entry)
+
+    @router.delete(
+        place,
+        name=f"delete_{kind}",
+        description=delete,
+        status_code=204,
+        responses=describe(404),
+    )
+    async def _delete(services: Service, document_id: str = key) -> None:
+        if not await asyncio.to_thread(services.store.delete, kind, document_id):
+            raise not_found(kind, document_id)
 
 
 def _shown(entry: Entry) -> StoredEntry:
     return StoredEntry(**{name: getattr(entry, name) for name in StoredEntry.model_fields})
-
-
-async def annotate(
-    services: Services, kind: Kind, document_id: str, changes: EntryChanges
-) -> StoredEntry:
-    """Note a name, a note, or that it is pinned.
-
-    Raises:
-        Problem: 404 if there is no such document (any more).
-    """
-    said = changes.model_dump(exclude_none=True)
-    entry = await asyncio.to_thread(services.store.documents.annotate, kind, document_id, **said)
-    if entry is None:
-        raise not_found(kind, document_id)
-    return _shown(entry)
 
 
 async def load(services: Services, kind: Kind, document_id: str) -> tuple[Entry, bytes]:
@@ -93,22 +142,6 @@ async def load(services: Services, kind: Kind, document_id: str) -> tuple[Entry,
         return entry, await asyncio.to_thread(services.store.artefacts.packed, entry.digest)
     except FileNotFoundError:
         raise not_found(kind, document_id) from None
-
-
-async def delete(services: Services, kind: Kind, document_id: str) -> None:
-    """Remove a stored document.
-
-    Raises:
-        Problem: 404 if there is none (any more).
-    """
-    if not await asyncio.to_thread(services.store.delete, kind, document_id):
-        raise not_found(kind, document_id)
-
-
-async def document(request: Request, services: Services, kind: Kind, document_id: str) -> Response:
-    """The document itself."""
-    entry, packed = await load(services, kind, document_id)
-    return await stored_json(request, packed, entry.digest)
 
 
 async def export(

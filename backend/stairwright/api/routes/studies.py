@@ -20,7 +20,7 @@ from stairwright.api.deps import (
     resolve_terrain,
 )
 from stairwright.api.problems import Problem, describe, not_found
-from stairwright.api.responses import models_json
+from stairwright.api.responses import accepted_json, models_json
 from stairwright.api.services import Services
 from stairwright.api.study_bodies import AxisDocument, StudyDocument
 from stairwright.documents import parse
@@ -53,9 +53,9 @@ def study_document(following: Following) -> StudyDocument:
         id=record.id,
         name=study.name,
         state=job.state,
-        done=following.done,
-        total=following.total,
-        progress=1.0 if job.state == "done" else round(min(1.0, following.share), 4),
+        done=following.progress.done,
+        total=following.progress.total,
+        progress=1.0 if job.state == "done" else round(min(1.0, following.progress.share), 4),
         eta=following.eta,
         stage=following.stage,
         created=record.created,
@@ -95,8 +95,7 @@ async def post_study(
     following = await services.studies.submit(study, owner, retry=retry)
     once.result = following.record.id
     shown = study_document(following)
-    headers = {"location": shown.links["self"], "retry-after": "1"}
-    return Response(shown.model_dump_json(), 202, headers=headers, media_type="application/json")
+    return accepted_json(shown, shown.links["self"])
 
 
 def be_sure_of_packages(services: Services) -> None:

@@ -153,7 +153,7 @@ async def _events(services: Services, following: Following) -> event_streams.Eve
         return
     sent, told = 0, (0, -1)
     while True:
-        now = (following.job.revision, following.done)
+        now = (following.job.revision, following.progress.done)
         finished = following.job.finished  # before the cells are looked at, not after
         if len(following.blocks) < sent:
             sent = 0  # they come again

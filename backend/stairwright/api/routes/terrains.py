@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import PurePath
 from typing import Annotated, Any
 
@@ -12,11 +11,9 @@ from pydantic import ValidationError
 from stairwright.api.bodies import SentTerrain, TerrainDocument
 from stairwright.api.deps import JSON_BODY, Limit, Offset, Service
 from stairwright.api.problems import describe, from_validation
-from stairwright.api.services import UPLOAD_DEADLINE, Services
+from stairwright.api.uploads import read_upload
 from stairwright.arguments import MOST_FRICTION
-from stairwright.errors import InputError
 from stairwright.jobs import uploads
-from stairwright.jobs.failures import DeadlineExceeded, WorkerDied
 from stairwright.library import load_terrain, terrains
 from stairwright.terrain.generation import Generation, Name
 from stairwright.terrain.generation import generate as make_terrain
@@ -78,12 +75,13 @@ async def import_terrain(
     options: dict[str, Any] = {"heading": heading, "scale": scale, "up": up, "origin": (x, y)}
     if friction is not None:
         options["friction"] = friction
-    file_name = PurePath(file.filename or "").name
+    file_name = PurePath(file.filename or "")
     if name is not None:
         options["name"] = name
-    elif PurePath(file_name).suffix.lower() not in (".json", ".yaml", ".yml"):
-        options["name"] = _usable(PurePath(file_name).stem)
-    return Terrain.model_validate(await _read(services, uploads.import_terrain, file, options))
+    elif file_name.suffix.lower() not in (".json", ".yaml", ".yml"):
+        options["name"] = _usable(file_name.stem)
+    document = await read_upload(services, uploads.import_terrain, file, options)
+    return Terrain.model_validate(document)
 
 
 @router.post("/import/heights", responses=describe(503))
@@ -92,23 +90,8 @@ async def get_mesh_heights(
 ) -> MeshHeights:
     """A mesh seen from above, to choose the cut by. Nothing is saved."""
     options = {"scale": scale, "up": up}
-    return MeshHeights.model_validate(await _read(services, uploads.look_at_mesh, file, options))
-
-
-async def _read(
-    services: Services, reader: Callable[..., dict[str, Any]], file: UploadFile, options: Any
-) -> dict[str, Any]:
-    """What the sealed worker reads in a file."""
-    suffix = PurePath(file.filename or "").suffix.lower()
-    data = await file.read()
-    try:
-        async with services.uploading:
-            document: dict[str, Any] = await services.upload_pool.run(
-                reader, data, f"upload{suffix}", options, deadline=UPLOAD_DEADLINE
-            )
-            return document
-    except (DeadlineExceeded, WorkerDied, MemoryError):
-        raise InputError("takes too much time or memory to read", ("file",)) from None
+    document = await read_upload(services, uploads.look_at_mesh, file, options)
+    return MeshHeights.model_validate(document)
 
 
 def _usable(stem: str) -> str:

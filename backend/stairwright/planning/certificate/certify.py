@@ -13,10 +13,10 @@ from functools import reduce
 from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
 from stairwright.arguments import as_model
+from stairwright.arrays import Floats
 from stairwright.errors import InputError
 from stairwright.planning.certificate.dynamics import dynamics_of
 from stairwright.planning.certificate.equilibrium import TOUCH, WHEEL_GAP, balanced, near_faces
@@ -25,8 +25,6 @@ from stairwright.planning.certificate.tolerance.checks import tolerance_checks
 from stairwright.planning.plan import Certificate, Check, Plan
 from stairwright.planning.tolerance import Tolerance
 from stairwright.robot import kinematics as kin
-
-Floats = NDArray[np.float64]
 
 WHEEL_SINK = 0.001  # m
 LEGS_GAP = 0.005  # m between front and rear leg

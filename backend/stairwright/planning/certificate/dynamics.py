@@ -12,15 +12,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright._core import GRAVITY
+from stairwright.arrays import Flags, Floats
 from stairwright.planning.certificate.equilibrium import TOUCH, WHEEL_GAP, touching
 from stairwright.planning.plan import Check, Plan
 from stairwright.robot import kinematics as kin
 from stairwright.robot.description import Robot
-
-Floats = NDArray[np.float64]
 
 WINDOW = 0.1  # s
 _PER_PAIR = 3  # contacts of one wheel at most
@@ -48,12 +46,12 @@ class Dynamics:
     missed: Floats
 
     @property
-    def out_of_balance(self) -> NDArray[np.bool_]:
+    def out_of_balance(self) -> Flags:
         """(n,) flags."""
         return self.missed > _EXACT
 
     @property
-    def overloaded(self) -> NDArray[np.bool_]:
+    def overloaded(self) -> Flags:
         """(n,) flags."""
         return self.share > 1.0
 
@@ -217,7 +215,7 @@ def _forces(plan: Plan, motion: _Motion) -> tuple[Floats, Floats]:
 
 def _blocks(
     robot: Robot, friction: float, motion: _Motion, points: Floats, normals: Floats,
-    found: NDArray[np.bool_],
+    found: Flags,
 ) -> Iterator[tuple[Floats, Floats, Floats, Floats]]:  # fmt: skip
     """The linear program of each pose in forces by weight: equalities, then inequalities."""
     weight = robot.mass * GRAVITY

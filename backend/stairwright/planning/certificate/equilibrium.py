@@ -9,17 +9,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from stairwright.arrays import Flags, Floats
 
 WHEEL_GAP = 0.002  # m; a wheel this near to the ground touches it
 TOUCH = 1.01e-4  # m; a second face no farther from a wheel is touched truly, not just nearly
 STRONGEST = _core.CERTIFICATE_STRONGEST  # robot weights; larger forces are no equilibrium
-_FACES = 3  # most faces that one wheel touches
+MOST_FACES = 3  # most faces that one wheel touches
 
 
 @dataclass(frozen=True)
@@ -41,7 +38,7 @@ class NearFaces:
 
         The nearest face counts within `reach` of the centre, any other within `further` (n,) [m].
         """
-        most = np.repeat(further[:, None], _FACES, axis=1)
+        most = np.repeat(further[:, None], MOST_FACES, axis=1)
         most[:, 0] = reach
         return self.distances <= most
 

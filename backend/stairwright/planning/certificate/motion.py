@@ -9,16 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Flags, Floats, Ints
 from stairwright.planning.certificate.shape import shape_of
 from stairwright.planning.plan import Plan
 from stairwright.robot.description import Robot
 from stairwright.robot.kinematics import Frames
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _STRIDE = 0.006  # m
 _CLOSER = 8  # times more samples where those do not settle it
@@ -86,7 +83,7 @@ class Samples:
         self.com = self.postures.com()
 
 
-def sampled(motion: Motion, closer: NDArray[np.bool_] | None = None) -> Samples:
+def sampled(motion: Motion, closer: Flags | None = None) -> Samples:
     """Samples of a motion of two poses or more; more of them where `closer` (poses - 1,)."""
     stride = np.diff(motion.postures.way())
     parts = np.maximum(1, np.ceil(stride / _STRIDE)).astype(int)

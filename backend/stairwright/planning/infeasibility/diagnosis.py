@@ -6,9 +6,9 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Flags, Floats
 from stairwright.planning.plan import Limit, Pose, Problem
 from stairwright.planning.poses.pose_search import (
     CLEARANCE,
@@ -21,8 +21,6 @@ from stairwright.planning.standing import NoStandingPose
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
-
-Floats = NDArray[np.float64]
 
 _ENDLESS = 100.0  # margins beyond it, friction or m, stand for what no value mends
 
@@ -122,10 +120,10 @@ def _no_rear_place(search: PoseSearch, place: ContactPair, at: tuple[float, floa
     gap = np.hypot(*(path.centres(s) - centre).T)
     near = gap <= search.span[1]
 
-    def holds(mu: float) -> NDArray[np.bool_]:
+    def holds(mu: float) -> Flags:
         wheels = np.stack([np.full(len(s), place.face), s], axis=1)
         spans = _core.com_intervals(path.native, wheels, mu)
-        held: NDArray[np.bool_] = spans[:, 0] <= spans[:, 1]
+        held: Flags = spans[:, 0] <= spans[:, 1]
         return held
 
     slope = _slope(search, place.face)

@@ -142,10 +142,6 @@ class Candidate:
             self.changed[ratio] = changed
         return how(changed)
 
-    def solves(self, planner: PathPlanner, ratio: float) -> bool:
-        """Whether that leads to a certified plan."""
-        return isinstance(self.attempt(planner, ratio), Solved)
-
 
 def _weak(end: Solved | Blocked | None) -> bool:
     return isinstance(end, Blocked) and end.weak is not None

@@ -6,13 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from stairwright import _core
+from stairwright.arrays import Floats
 from stairwright.robot.description import Robot
-
-Floats = NDArray[np.float64]
 
 _WORD = 64  # columns of a row's bitset
 _PITCHES = 1.9  # rad; largest pitch searched: the trunk may lean back past vertical

@@ -8,12 +8,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
+from stairwright.arrays import Floats, Ints32
 
 FORWARD = _core.FORWARD_MOVES  # of all moves of the wheels, the first ones
 ALL_MOVES = _core.WHEEL_MOVES
@@ -31,18 +28,18 @@ class Cells(NamedTuple):
         origin: (n, moves) cell that a move into a cell comes from, -1 where there is none.
     """
 
-    front: Ints
-    rear: Ints
-    number: Ints
+    front: Ints32
+    rear: Ints32
+    number: Ints32
     spans: Floats
-    t0: Ints
-    z0: Ints
-    x0: Ints
+    t0: Ints32
+    z0: Ints32
+    x0: Ints32
     slope: Floats
-    origin: Ints
+    origin: Ints32
 
 
-def alike(vertices: Floats, centres: Floats, reach: float) -> tuple[Ints, Ints]:
+def alike(vertices: Floats, centres: Floats, reach: float) -> tuple[Ints32, Ints32]:
     """Samples whose terrain within `reach` looks the same from the wheel's centre.
 
     Returns:

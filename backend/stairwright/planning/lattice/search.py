@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Flags, Ints, Ints32
 from stairwright.planning.lattice.body_lattice import Bounds, Lattice, LatticePath
 from stairwright.planning.lattice.cells import ALL_MOVES, FORWARD, Cells, alike
 from stairwright.planning.lattice.ends import anywhere, arrival, near, pose_in, widest_pose
@@ -13,11 +13,7 @@ from stairwright.planning.path_problem import LAG, PathProblem
 from stairwright.planning.standing import StandingPose, sample_wheel_places, scale, standing_height
 from stairwright.planning.threads import still_wanted
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-Longs = NDArray[np.int64]
 Place = tuple[float, float]  # arc lengths of front and rear wheel [m]
-Flags = NDArray[np.bool_]
 
 _APART = 0.01  # m; smoothing brings wheels together, and no smoothing parts them again
 _SWEEPS = 12  # most sweeps when wheels may roll back
@@ -63,7 +59,7 @@ class Search:
         kept, like = alike(self.path.vertices, self.centres, widest)
         pitches = _core.pitch_ranges(self.centres, self.pairs, lattice.windows)
 
-        def grid(pair: int, samples: Ints) -> _core.HipGrid:
+        def grid(pair: int, samples: Ints32) -> _core.HipGrid:
             wanted = np.unique(like[samples])
             return _core.hip_grid(
                 ground, model, pair, self.centres[kept], wanted, lattice.step, lattice.half,
@@ -198,7 +194,7 @@ class Search:
             widest.limit_torques(self.path.native, friction, LAG, torque)
         return widest
 
-    def _goals(self, cells: Cells, open_end: bool) -> tuple[Longs, Ints | None]:
+    def _goals(self, cells: Cells, open_end: bool) -> tuple[Ints, Ints32 | None]:
         """Cells in which paths end, and their pose unless any will do."""
         if open_end:
             return np.flatnonzero(cells.front == len(self.s) - 1), None
@@ -215,8 +211,14 @@ class Search:
         return Cells(**columns)
 
     def _smoothest(
-        self, costs: _core.CheapestPaths, source: int, seed: Ints, goal: int, pose: Ints, moves: int
-    ) -> Ints | None:
+        self,
+        costs: _core.CheapestPaths,
+        source: int,
+        seed: Ints32,
+        goal: int,
+        pose: Ints32,
+        moves: int,
+    ) -> Ints32 | None:
         """Cheapest path from the pose `seed` of cell `source` to one near `pose` of cell `goal`.
 
         Returns:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Floats
 from stairwright.terrain.wheel_path import WheelPath
-
-Floats = NDArray[np.float64]
 
 ROOM = 0.03  # m of CoM margin wanted on the way
 EASE = 0.06  # m of progress over which the CoM moves aside before and after it must

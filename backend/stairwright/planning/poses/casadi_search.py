@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Floats
 from stairwright.planning.poses.extra_terms import NONE, ExtraTerms
 from stairwright.planning.poses.ipopt import Bounds, pose_solver
 from stairwright.planning.poses.nlp import Layout
@@ -28,8 +28,6 @@ from stairwright.robot.description import Robot
 from stairwright.robot.symbolic import dimensions
 from stairwright.terrain.profile import height_at
 from stairwright.terrain.wheel_path import WheelPath
-
-Floats = NDArray[np.float64]
 
 _SHIFTS = 3  # times that the reference is moved until the CoM has room
 _FACE = 2e-3  # m past a corner, where the face ahead alone carries the wheel

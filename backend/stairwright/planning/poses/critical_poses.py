@@ -12,11 +12,12 @@ import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.planning.assembly import assemble
 from stairwright.planning.certificate.joining import motion_problem
 from stairwright.planning.infeasibility.diagnosis import diagnose, no_standing_pose, statics_problem
@@ -36,7 +37,6 @@ from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
-Floats = NDArray[np.float64]
 PoseSearcher = Callable[[Robot, WheelPath, float, CriticalWeights], PoseSearch]
 
 TAIL = 0.15  # m between an obstacle and a standing wheel, for legs of 0.4 m
@@ -65,22 +65,13 @@ def plan_critical(
         The plan; infeasible with a problem where a pose has no solution or no equilibrium. The
         poses found before it are kept.
     """
-    started = perf_counter()
+    made = partial(assemble, "critical", terrain, robot, friction, weights, begun=perf_counter())
     try:
         path = wheel_path(terrain, robot.wheel.radius)
         begin, end = find_standing_poses(terrain, robot, path)
     except NoStandingPose as error:
         stop = no_standing_pose(terrain, robot, error)
-        return assemble(
-            "critical",
-            terrain,
-            robot,
-            friction,
-            weights,
-            [],
-            stop,
-            seconds=perf_counter() - started,
-        )
+        return made([], stop)
     search = solver(robot, path, friction, weights)
     obstacles = find_obstacles(path, begin.wheels[1], end.wheels[0])
     found, problem = _solve(search, obstacles, begin, end)
@@ -95,18 +86,8 @@ def plan_critical(
     poses = _poses(search, knots, weights.speed)
     if problem is None:
         problem = _unbalanced(search, poses)
-    plan = assemble(
-        "critical",
-        terrain,
-        robot,
-        friction,
-        weights,
-        poses,
-        problem,
-        critical=[i for i, knot in enumerate(knots) if knot.optimal],
-        certified=certified,
-        seconds=perf_counter() - started,
-    )
+    optimal = [i for i, knot in enumerate(knots) if knot.optimal]
+    plan = made(poses, problem, critical=optimal, certified=certified)
     if problem is not None or plan.certificate is None:
         return plan
     certificate = Certificate.of_poses(

@@ -14,9 +14,9 @@ import itertools
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Flags, Floats
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
 from stairwright.planning.poses.balanced_poses import ROOM, com_ways, eased_shift
@@ -27,7 +27,6 @@ from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
-Floats = NDArray[np.float64]
 Mode = Literal["joint", "curve"]
 
 _COARSE = 8  # samples between those where corrections are solved for
@@ -142,7 +141,7 @@ def _moved(
     s: Floats,
     q: Floats,
     com: Floats,
-    sound: NDArray[np.bool_],
+    sound: Flags,
     shift: Floats,
 ) -> Floats:
     """Trunk (n, 3) moved to clear poses whose CoM, now at `com` (n,), is moved by `shift` (n,).
@@ -153,7 +152,7 @@ def _moved(
     even = np.concatenate([trunk, q], axis=1)
     edges = com_ways(search.path, search.friction, s, 0.0)
 
-    def moved_at(samples: NDArray[np.bool_], trunks: Floats, sound: NDArray[np.bool_]) -> Floats:
+    def moved_at(samples: Flags, trunks: Floats, sound: Flags) -> Floats:
         return problem.move_poses(rules, s, even, com, shift, edges, samples, trunks, sound)
 
     asked = ~sound | (shift != 0.0)

@@ -9,13 +9,11 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.planning.poses.extra_terms import NONE, ExtraTerms
 from stairwright.planning.poses.nlp import EXTRA, GROUND, HIP, SELF, WHEEL, Layout, Problem, build
 from stairwright.planning.poses.solution import Solution
-
-Floats = NDArray[np.float64]
 
 _SQP = {
     "max_iter": 30,

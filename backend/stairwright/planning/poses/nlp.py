@@ -12,8 +12,6 @@ from functools import lru_cache
 from typing import Any
 
 import casadi as ca
-import numpy as np
-from numpy.typing import NDArray
 
 from stairwright.planning.poses.extra_terms import NONE, ExtraTerms, SymbolicPose
 from stairwright.planning.poses.separation import (
@@ -25,8 +23,6 @@ from stairwright.planning.poses.separation import (
 )
 from stairwright.planning.poses.terrain_window import CORNERS, EDGES, PIECES
 from stairwright.robot.symbolic import DIMENSIONS, Point, Shape, Skeleton, between, forward
-
-Floats = NDArray[np.float64]
 
 VARIABLES = ("x_c", "z_c", "pitch", "q1", "q2", "q3", "q4", "s_front", "s_rear")
 WHEEL, HIP, GROUND, SELF, EXTRA = "wheel", "hip", "ground", "self", "extra"

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.planning.assembly import assemble
 from stairwright.planning.infeasibility.diagnosis import no_standing_pose, statics_limit
 from stairwright.planning.plan import Limit, Plan, Pose, Problem
@@ -19,8 +20,6 @@ from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
-
-Floats = NDArray[np.float64]
 
 STEP = 0.02  # m of the front wheel's way between poses
 MOST = 2000  # poses; longer courses get longer steps
@@ -40,38 +39,20 @@ def plan_nominal(terrain: Terrain, robot: Robot, friction: float, weights: Nomin
         The plan. Where the standing pose would touch the terrain or tip, the status is infeasible
         and the problem names the first such place; the poses are listed nevertheless.
     """
-    started = perf_counter()
+    made = partial(assemble, "nominal", terrain, robot, friction, weights, begun=perf_counter())
     try:
         path = wheel_path(terrain, robot.wheel.radius)
         begin, end = find_standing_poses(terrain, robot, path)
         _check_standing(robot, begin.wheels[0])
     except NoStandingPose as error:
         stop = no_standing_pose(terrain, robot, error)
-        return assemble(
-            "nominal",
-            terrain,
-            robot,
-            friction,
-            weights,
-            [],
-            stop,
-            seconds=perf_counter() - started,
-        )
+        return made([], stop)
     wheels = _roll(path, _wheelbase(robot), begin.wheels, end.wheels[0])
     poses = _poses(robot, path, friction, wheels, weights.speed)
     problem = _first_problem(friction, poses)
     if problem is None and wheels[-1, 0] < end.wheels[0] - STEP:
         problem = _out_of_reach(poses[-1])
-    return assemble(
-        "nominal",
-        terrain,
-        robot,
-        friction,
-        weights,
-        poses,
-        problem,
-        seconds=perf_counter() - started,
-    )
+    return made(poses, problem)
 
 
 def _check_standing(robot: Robot, s: float) -> None:

@@ -3,25 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-
-
-def time_to_face(distance: float, radius: float, speed: float) -> float:
-    """Eq 25: time until the front wheel touches a face `distance` ahead of its centre [s].
-
-    Args:
-        distance: From wheel centre to face, along x [m].
-        radius: Of the wheel [m].
-        speed: Mean wheel speed R * qdot [m/s].
-    """
-    return (distance - radius) / speed
-
-
-def time_over_face(face: float, radius: float, speed: float) -> float:
-    """Eq 26: time from there until the wheel has passed a face of length h / sin(gamma) [s]."""
-    return (face + radius) / speed
+from stairwright.arrays import Floats
 
 
 def pose_times(wheel_progress: Floats, speed: float) -> Floats:

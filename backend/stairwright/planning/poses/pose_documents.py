@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.planning.plan import Margins, Pose
 from stairwright.planning.poses.pose_search import pose_problem
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
-
-Floats = NDArray[np.float64]
 
 WORST = -1e3  # written where a margin has no finite value: nothing holds the robot there
 # Names of the native core's record (native/include/stairwright/poses/pose_record.hpp).

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from stairwright.arrays import Floats
 
 # Columns of `Reference.planned`, and of everything that is made from it.
 WHEELS = slice(0, 2)

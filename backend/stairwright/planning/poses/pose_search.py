@@ -8,16 +8,14 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Flags, Floats
 from stairwright.planning.poses.solution import Solution
 from stairwright.planning.weights import CriticalWeights
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
-
-Floats = NDArray[np.float64]
 
 CLEARANCE = 0.012  # m between trunk or links and the terrain at a critical pose
 BETWEEN = _core.CLEARANCE_BETWEEN  # m; the same between critical poses, where room is scarce
@@ -242,7 +240,7 @@ class PoseSearch:
 
     def sound(
         self, poses: Floats, coms: Floats, clearance: float = CLEARANCE
-    ) -> tuple[NDArray[np.bool_], Floats]:
+    ) -> tuple[Flags, Floats]:
         """Whether poses keep limits, clearances and balance (n,), and their joints (n, 4).
 
         Args:

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from stairwright import _core
-
-Floats = NDArray[np.float64]
+from stairwright.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,9 @@ import itertools
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.terrain.wheel_path import ARC, WheelPath
-
-Floats = NDArray[np.float64]
 
 PIECES = 12  # of the curve, for each wheel
 SIZES = (2, 3, 4, 6)  # numbers of cells that problems are built for

@@ -12,12 +12,10 @@ from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright._core import LEGS_GAP
+from stairwright.arrays import Floats, Ints
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Motor = Literal["leg", "wheel"]
 
 LEAST_CLEARANCE = 0.0005  # m; the best controller strays that far

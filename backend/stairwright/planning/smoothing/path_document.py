@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.documents import Deferred
 from stairwright.planning import binding
 from stairwright.planning.plan import (
@@ -31,8 +31,6 @@ from stairwright.robot import kinematics as kin
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Floats
 from stairwright.planning.plan import Plan
 from stairwright.planning.standing import rolled
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import wheel_path
-
-Floats = NDArray[np.float64]
 
 JOINT_RATE = 1.5  # rad/s; faster legs swing more than a controller can follow
 _PITCH_RATE = 0.8  # rad/s

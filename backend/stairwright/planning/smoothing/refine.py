@@ -9,15 +9,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Floats
 from stairwright.planning.path_problem import PathProblem
 from stairwright.planning.smoothing.node_margins import NodeMargins, joined
 from stairwright.planning.standing import StandingPose
 from stairwright.planning.threads import still_wanted
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

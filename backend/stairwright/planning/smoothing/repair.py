@@ -10,17 +10,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats, Ints
 from stairwright.planning.lattice.body_lattice import LOOSE, make_lattice
 from stairwright.planning.lattice.search import Search
 from stairwright.planning.path_problem import PathProblem
 from stairwright.planning.smoothing.refine import NodeSpacing, Refined, concatenated, refine
 from stairwright.planning.standing import rolled, scale
 from stairwright.planning.threads import still_wanted
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Stage(NamedTuple):

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Floats
 from stairwright.planning.certificate.dynamics import WINDOW, Dynamics, dynamics_of
 from stairwright.planning.plan import Plan, Timing, plan_id
 from stairwright.planning.poses.interpolation import reference
@@ -18,8 +18,6 @@ from stairwright.terrain.wheel_path import wheel_path
 from .limits import LimitName, Limits, Pace, limits_of
 from .moving_robot import MovingRobot, moving_robot
 from .path_position import path_positions
-
-Floats = NDArray[np.float64]
 
 SLOWEST = 0.01  # m/s along the path, where a plan starts and ends
 _ROUNDS = 8  # of slowing down where a plan would not be certified

@@ -11,16 +11,15 @@ from dataclasses import astuple, dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright import _core
+from stairwright.arrays import Floats
 from stairwright.planning.poses.pose_reference import COM, JOINTS, PITCH, WHEELS
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 
 from .moving_robot import MovingRobot
 
-Floats = NDArray[np.float64]
 LimitName = Literal[
     "balance", "torque", "acceleration", "joint_speed", "pitch_speed", "wheel_speed"
 ]

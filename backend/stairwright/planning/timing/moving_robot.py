@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.planning.poses.pose_reference import Reference
 
 from .path_position import even_grid, path_positions, slopes
-
-Floats = NDArray[np.float64]
 
 REACH = 0.0125  # m; derivatives are differences over this far, both ways
 

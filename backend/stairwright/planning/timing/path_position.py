@@ -5,11 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.planning.poses.pose_reference import Reference
-
-Floats = NDArray[np.float64]
 
 STEP = 0.0025  # m of path between samples
 SWING = 0.3  # of the trunk's motion counts as rolling, where that is more than the progress

@@ -6,11 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Floats
 
 from .outline import hull
-
-Floats = NDArray[np.float64]
 
 _POINT = 5e-4  # m; half the length of a capsule that is a disc (the simulator wants some)
 _WIDER = np.array([1.0, 1.03, 1.06, 1.1, 1.15, 1.2, 1.3, 1.45, 1.7, 2.0, 2.5])

@@ -10,13 +10,11 @@ import math
 import xml.etree.ElementTree as ET
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.errors import InputError
 
 from .xml import parse
-
-Floats = NDArray[np.float64]
 
 _MOST_BYTES = 32 * 2**20
 _DEEPEST = 30  # nodes in nodes

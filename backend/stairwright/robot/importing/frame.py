@@ -10,15 +10,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.errors import InputError
 
 from .report import Notes
 from .source import Source
 from .tree import Chain, Tree
-
-Floats = NDArray[np.float64]
 
 _STRAIGHT = math.cos(math.radians(10.0))  # how well an axis must fit one of the trunk's
 _MOST_TILT = 0.15  # rad from upright

@@ -6,16 +6,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.errors import InputError
 
 from .frame import Frame
 from .report import JointMap, Notes
 from .source import Source
 from .tree import Chain
-
-Floats = NDArray[np.float64]
 
 _MOST_LEAN = 0.16  # rad of the thigh's axis against the trunk's y
 _LIMIT = 4 * math.pi - 1e-6  # rad, of a robot's document

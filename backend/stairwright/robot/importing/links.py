@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.errors import InputError
 
 from .capsules import Disc2, around, within_disc
@@ -21,7 +21,6 @@ from .shapes import Solid, solids
 from .source import Source
 from .tree import Tree
 
-Floats = NDArray[np.float64]
 Moments = tuple[float, float, float]
 
 _ROUND = (int(mujoco.mjtGeom.mjGEOM_CYLINDER), int(mujoco.mjtGeom.mjGEOM_SPHERE))

@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Floats
 
 from .frame import Frame
 from .source import Source
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

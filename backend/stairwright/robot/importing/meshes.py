@@ -8,14 +8,12 @@ from pathlib import PurePosixPath
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats, Ints
 from stairwright.errors import InputError
 
 from .collada import corners
 from .upload import Upload
-
-Floats = NDArray[np.float64]
 
 _NATIVE = (".stl", ".obj", ".msh")  # read by MuJoCo
 _CONVERTED = (".ply", ".off")
@@ -72,7 +70,7 @@ def _convert(mesh: Any, content: bytes, suffix: str) -> bool:
     return True
 
 
-def _read_collada(content: bytes) -> tuple[Floats, NDArray[np.int64]] | None:
+def _read_collada(content: bytes) -> tuple[Floats, Ints] | None:
     """Corners of the hull, without triangles; None if it cannot be read."""
     try:
         points = corners(content, "the mesh")
@@ -81,7 +79,7 @@ def _read_collada(content: bytes) -> tuple[Floats, NDArray[np.int64]] | None:
     return None if points is None else (points, np.zeros((0, 3), np.int64))
 
 
-def read_mesh(content: bytes, kind: str) -> tuple[Floats, NDArray[np.int64]] | None:
+def read_mesh(content: bytes, kind: str) -> tuple[Floats, Ints] | None:
     """Vertices (n, 3) and triangles (m, 3) of a mesh; None if it cannot be read."""
     import trimesh
 

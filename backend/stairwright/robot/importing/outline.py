@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from stairwright.arrays import Floats
 
 MOST_CORNERS = 16
 _NEAR = 1e-9  # m

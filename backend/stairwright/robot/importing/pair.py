@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.errors import InputError
 from stairwright.robot.parts import BENT
 
@@ -16,8 +16,6 @@ from .capsules import Disc2, limited, merged
 from .links import LinkPart, Measured, Moments, WheelPart, possible
 from .motors import Drive
 from .report import Notes
-
-Floats = NDArray[np.float64]
 
 _EQUAL_LENGTH = 1e-7  # m
 _MOST_UNLIKE = 5e-3  # m between left and right; more is another kind of leg

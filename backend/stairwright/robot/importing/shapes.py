@@ -9,12 +9,11 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
+
+from stairwright.arrays import Floats
 
 from .frame import Frame
 from .source import Source
-
-Floats = NDArray[np.float64]
 
 _GEOM = mujoco.mjtGeom
 _ROUND = 48  # corners of the polygon round a circle

@@ -8,7 +8,6 @@ from typing import Any, Literal
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright.errors import InputError
 
@@ -17,8 +16,6 @@ from .meshes import provide
 from .report import Notes, listed
 from .upload import Upload
 from .xml import parse
-
-Floats = NDArray[np.float64]
 
 _MOST_BODIES, _MOST_GEOMS = 500, 5000
 _LARGEST = 100.0  # m

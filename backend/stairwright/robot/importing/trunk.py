@@ -6,8 +6,8 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.errors import InputError
 
 from .frame import Frame
@@ -18,8 +18,6 @@ from .pair import tidy
 from .report import Notes, listed
 from .shapes import solids
 from .source import Source
-
-Floats = NDArray[np.float64]
 
 _MOST_PIECES = 32
 _THINNEST = 0.01  # m; of a box that is guessed

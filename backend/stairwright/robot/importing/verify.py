@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.errors import InputError
 from stairwright.robot import kinematics
 
 from .assemble import Reading
 from .report import Notes
-
-Floats = NDArray[np.float64]
 
 _POSTURES = 100
 _MOST = 0.02  # of the leg's length; more is another robot

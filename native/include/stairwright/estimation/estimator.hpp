@@ -94,7 +94,6 @@ class Estimator {
     Vec2 correct_map(WheelPath path, const MapError& found);
 
     const Estimate& estimate() const { return estimate_; }
-    const Covariance& covariance() const { return covariance_; }
     // Error of attitude (world frame), velocity and place, as far as the filter estimates them, and the
     // normalised square of roll, pitch, x and z velocity, and place (NEES, 6 degrees of freedom).
     struct Judgement {

@@ -14,13 +14,10 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from stairwright.planning.certificate.equilibrium import STRONGEST, touching
+from stairwright.arrays import Flags, Floats, Ints
+from stairwright.planning.certificate.equilibrium import MOST_FACES, STRONGEST, touching
 
-Floats = NDArray[np.float64]
-
-_FACES = 3  # most faces that one wheel touches
 _SMALL = 1e-12
 
 
@@ -36,7 +33,7 @@ class Contacts:
 
     rays: Floats
     points: Floats
-    front: NDArray[np.bool_]
+    front: Flags
 
     @classmethod
     def of(
@@ -46,15 +43,18 @@ class Contacts:
         """Of wheels (n, 2, 2) that touch a profile; see `equilibrium.balanced`."""
         n = len(wheels)
         points, normals, found = touching(vertices, wheels.reshape(-1, 2), reach, further.ravel())
-        points, normals = points.reshape(n, 2 * _FACES, 2), normals.reshape(n, 2 * _FACES, 2)
-        normals = normals * found.reshape(n, 2 * _FACES, 1)
+        points, normals = (
+            points.reshape(n, 2 * MOST_FACES, 2),
+            normals.reshape(n, 2 * MOST_FACES, 2),
+        )
+        normals = normals * found.reshape(n, 2 * MOST_FACES, 1)
         arms = points - np.stack([com, np.zeros(n)], axis=1)[:, None]
         rays = []
         for side in (friction, -friction):
             fx = normals[..., 0] + side * normals[..., 1]
             fz = normals[..., 1] - side * normals[..., 0]
             rays.append(np.stack([fx, fz, arms[..., 0] * fz - arms[..., 1] * fx], axis=2))
-        front = np.tile(np.arange(2 * _FACES) < _FACES, 2)
+        front = np.tile(np.arange(2 * MOST_FACES) < MOST_FACES, 2)
         return cls(np.concatenate(rays, axis=1), np.concatenate([points] * 2, axis=1), front)
 
 
@@ -97,7 +97,7 @@ class Pushes:
         along: Force on the front wheels along x.
     """
 
-    pairs: NDArray[np.int64]
+    pairs: Ints
     factors: Floats
     moment: Floats
     front: Floats
@@ -132,7 +132,7 @@ class Pushes:
         lost: Floats = off[:, :1] * uneven + off[:, 1:] * np.abs(self.along) + com[:, None]
         return lost
 
-    def forces(self, rays: Floats, choice: NDArray[np.int64]) -> Floats:
+    def forces(self, rays: Floats, choice: Ints) -> Floats:
         """Forces (n, m, 2) along every ray of one choice (n,) for each sample, in weights."""
         rows = np.arange(len(rays))
         out = np.zeros((*rays.shape[:2], 2))

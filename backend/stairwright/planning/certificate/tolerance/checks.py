@@ -15,6 +15,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from stairwright.arrays import Floats, Ints
 from stairwright.planning.certificate.motion import Motion, Samples, sampled
 from stairwright.planning.certificate.tolerance.ground import Geometry
 from stairwright.planning.certificate.tolerance.holding import Holding
@@ -23,9 +24,6 @@ from stairwright.planning.certificate.tolerance.stands import Part, SecondFaces,
 from stairwright.planning.plan import Check
 from stairwright.planning.tolerance import Tolerance
 from stairwright.robot import kinematics as kin
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 LEGS_GAP = 0.005  # m between front and rear leg
 NAMES = {  # of the checks, by what a tolerance may lack

@@ -5,15 +5,13 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stairwright._core import GRAVITY
+from stairwright.arrays import Floats
 from stairwright.planning.certificate.tolerance.balance import Contacts, Pushes
 from stairwright.planning.certificate.tolerance.ground import BOX
 from stairwright.planning.certificate.tolerance.stands import Stands
 from stairwright.robot import kinematics as kin
-
-Floats = NDArray[np.float64]
 
 _CURVED = 1.1  # of the largest shift at the corners of a box: inside it may be a little larger
 

@@ -11,15 +11,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats, Ints
 from stairwright.planning.certificate.motion import Samples
 from stairwright.planning.certificate.tolerance.ground import BOX
 from stairwright.robot import kinematics as kin
 from stairwright.robot.legs import Capsule, Leg, LinkForm
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _PIECES = 3  # of a capsule
 

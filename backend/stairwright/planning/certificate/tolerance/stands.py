@@ -10,8 +10,8 @@ from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Flags, Floats, Ints
 from stairwright.planning.certificate.equilibrium import WHEEL_GAP
 from stairwright.planning.certificate.motion import Samples
 from stairwright.planning.certificate.tolerance.balance import Contacts, load_shares
@@ -25,9 +25,6 @@ from stairwright.planning.certificate.tolerance.ground import (
 from stairwright.planning.certificate.tolerance.legs import VariedLeg
 from stairwright.planning.tolerance import Tolerance
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 SecondFaces = Callable[[Samples], Floats]
 # Of what is off in x and z, from -1 to 1, and of the range of the load's shares, from 0 to 1.
 Part = tuple[tuple[float, float], tuple[float, float], tuple[float, float]]

@@ -1,4 +1,4 @@
-"""A rollout of a robot's own MuJoCo file under our controller."""
+"""A robot's own MuJoCo file in the place of our model of it."""
 
 from __future__ import annotations
 
@@ -8,19 +8,17 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from stairwright.arrays import Floats
 from stairwright.control.measurement import rotation
-from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
-from stairwright.terrain.profile import Terrain
 
 from .disturbance import Disturbance
 from .original import Original, build_original, read_original
-from .run import CONTROL_STEPS, Run
+from .physics import CONTROL_STEPS, Touches, sunk, touches, warned
+from .world import real_terrain
 
-Floats = NDArray[np.float64]
 # Deviations that change our own model of the robot or of the world round it.
 _OUR_MODEL = (
     "mass", "com_x", "com_z", "payload", "friction_front", "friction_rear", "heading",
@@ -92,62 +90,65 @@ class Mirror:
         return int(self.original.model.body_rootid[self.original.base])
 
 
-class OriginalRun(Run):
-    """One rollout of the file `model`; `self.model` and `self.data` mirror it in our layout."""
+class OriginalPhysics:
+    """MuJoCo with the file `model`, whose state is a `Mirror`.
 
-    own_model = False
+    Raises:
+        InputError: If the file is not the plan's robot, or cannot carry out what is asked.
+    """
 
     def __init__(
         self,
+        model: str | os.PathLike[str],
         plan: Plan,
         friction: float,
-        settings: ControllerSettings,
         disturbance: Disturbance,
         seed: int,
-        record_hz: float,
-        model: str | os.PathLike[str],
     ) -> None:
         for name in _OUR_MODEL:
             if getattr(disturbance, name):
                 raise InputError("is for our own model of the robot", ("disturbance", name))
         if plan.facing == "backward":
             raise InputError("a backward plan is carried out by our own model", ("model",))
-        self.upload, self.reading = read_original(model, plan.robot_description)
+        robot = plan.robot_description
+        upload, self.reading = read_original(model, robot)
         maps = (f"{ours} <- {own.name}" for ours, own in self.reading.joints.items())
-        self.simulated = f"{self.reading.robot.source}: {', '.join(maps)}"
-        super().__init__(plan, friction, settings, disturbance, seed, record_hz)
+        self.source = f"{self.reading.robot.source}: {', '.join(maps)}"
+        self.terrain = terrain = real_terrain(plan.terrain, disturbance, seed)
+        friction = max(0.01, friction + disturbance.friction)
+        self.original = build_original(upload, self.reading, robot, terrain, friction)
+        self.state = Mirror(self.original)
+        self.timestep = float(self.original.model.opt.timestep)
 
-    def _world(self, terrain: Terrain) -> tuple[Any, Any]:
-        friction = max(0.01, self.friction + self.disturbance.friction)
-        self.original = build_original(self.upload, self.reading, self.robot, terrain, friction)
-        return self.original.model, Mirror(self.original)
-
-    def _geom_names(self) -> list[str]:
-        return self.original.labels
-
-    def _place(self) -> None:
-        """Put the robot into the plan's first pose, standing on the terrain."""
-        mirror = self.data
-        mirror.qpos[:] = self._first_positions()
+    def place(self, qpos: Floats) -> None:
+        """See `Physics`."""
+        mirror = self.state
+        mirror.qpos[:] = qpos
         mirror.place()
-        lift = max((-float(d) for d in mirror.data.contact.dist), default=0.0)
-        if lift > 1e-3:
-            mirror.qpos[2] += lift
+        if depth := sunk(mirror.data):
+            mirror.qpos[2] += depth
             mirror.place()
 
-    def _advance(self) -> None:
-        mirror = self.data
+    def advance(self) -> None:
+        """See `Physics`."""
+        mirror = self.state
         mirror.write()
-        mujoco.mj_step(self.model, mirror.data, CONTROL_STEPS)
+        mujoco.mj_step(self.original.model, mirror.data, CONTROL_STEPS)
         mirror.read()
 
-    def _contact_force(self, contact: int, force: Floats) -> None:
-        mujoco.mj_contactForce(self.model, self.data.data, contact, force)
+    def touches(self) -> Touches:
+        """See `Physics`."""
+        return touches(self.original.model, self.state.data, self.original.labels)
 
-    def _wheels(self) -> Floats:
-        own, data = self.original, self.data.data
+    def wheels(self) -> Floats:
+        """See `Physics`."""
+        own, data = self.original, self.state.data
         places = [
             data.xpos[body] + data.xmat[body].reshape(3, 3) @ plane
             for body, plane in zip(own.wheels, own.planes, strict=True)
         ]
         return np.array(places)
+
+    def broken(self) -> bool:
+        """See `Physics`."""
+        return warned(self.state.data)

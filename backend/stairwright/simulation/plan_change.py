@@ -1,0 +1,87 @@
+"""What a robot does that waits for another plan, because it found other than its plan believes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stairwright import _core
+from stairwright.control.settings import ControllerSettings
+from stairwright.planning.plan import Plan
+from stairwright.terrain.wheel_path import WheelPath, wheel_path
+
+from .governor import Track, follower, lead_of, plan_track
+from .map_correction import corrected, nearest_row
+from .replanning import after_slip, needed_friction, plan_anew
+
+SAME_GROUND = 1e-3  # m between wheels that are on one face or tread
+
+
+class PlanChange:
+    """Decides how the native loop goes on where it waits.
+
+    Attributes:
+        followed: The plan that is followed now.
+        track: Its lines.
+    """
+
+    def __init__(
+        self,
+        loop: _core.Rollout,
+        plan: Plan,
+        path: WheelPath,
+        track: Track,
+        settings: ControllerSettings,
+    ) -> None:
+        self.followed, self.track = plan, track
+        self._loop, self._plan, self._settings = loop, plan, settings
+        self._known, self._path = plan.terrain, path  # as the robot has found it
+
+    def decide(self) -> str:
+        """Go on, with another plan or the old one; why the robot must stop, or nothing."""
+        loop = self._loop
+        if not loop.waits:
+            return ""
+        if loop.map_error is not None:
+            self._mend_map(*loop.map_error)
+        elif loop.slipped is not None:
+            return self._after_slip(*loop.slipped)
+        return ""
+
+    def _after_slip(self, found: float, front: bool) -> str:
+        need = needed_friction(self.track, self._plan)
+        decision = after_slip(self._plan, need, found, front=front)
+        if decision.plan is None:
+            self._loop.go_on()
+        else:
+            self._follow(decision.plan)
+        return decision.why
+
+    def _mend_map(self, face: bool, s: float, along: float, up: float) -> None:
+        """Go on with a plan on the map as it was found, or with the old one if there is none."""
+        loop = self._loop
+        off = np.array([along, 0.0] if face else [0.0, up])
+        front, rear = np.reshape(loop.places, (2, 2)).mean(axis=1)
+        centres = self._path.centres(np.array([front, rear]))
+        across = 0 if face else 1
+        both = abs(np.diff(centres[:, across])[0]) < SAME_GROUND
+        centres -= [off, off if both else np.zeros(2)]
+        known = corrected(self._known, self._path, s, face=face, off=off)
+        plan = plan_anew(self.followed, known, self.followed.friction)
+        if plan is None:
+            loop.go_on()
+            return
+        path = wheel_path(known, plan.robot_description.wheel.radius)
+        places = np.array([path.project(centre) for centre in centres])
+        row = nearest_row(plan_track(plan, path, self._settings), places, np.asarray(loop.target))
+        if row is None:
+            loop.go_on()
+            return
+        self._known, self._path = known, path
+        loop.correct_map(path.native)
+        self._follow(plan, row)
+
+    def _follow(self, plan: Plan, row: int = 0) -> None:
+        """Follow another plan from now on, from one of its rows."""
+        self.followed, self.track = plan, plan_track(plan, self._path, self._settings)
+        line = follower(self.track, lead_of(plan, self._settings), row)
+        self._loop.adopt(line, plan.friction)

@@ -1,0 +1,1 @@
+"""What `./dev` does. Needs nothing but Python 3.11: it is what sets everything else up."""

@@ -1,0 +1,68 @@
+"""Check, test and measure."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+
+from .building import setup
+from .packages import setup_peers
+from .page import npm
+from .places import PYTHON
+from .running import say, succeeds
+from .system import setup_browser
+
+MOST_TEST_PROCESSES = 4  # each has a server and a browser of its own
+
+
+def check() -> list[str]:
+    """Lint and type-check all code; the names of the checks that failed."""
+    say("Lint and types ...")
+    checks: dict[str, Callable[[], bool]] = {
+        "ruff": lambda: succeeds(PYTHON, "-m", "ruff", "check", "--quiet"),
+        "ruff format": lambda: succeeds(PYTHON, "-m", "ruff", "format", "--check", "--quiet"),
+        "mypy": lambda: succeeds(PYTHON, "-m", "mypy"),
+        "Biome and tsc": lambda: npm("run", "--silent", "check"),
+    }
+    return [name for name, passes in checks.items() if not passes()]
+
+
+def check_alone() -> int:
+    """The same after the set-up; 0 if all passed."""
+    setup()
+    return 1 if check() else 0
+
+
+def test(arguments: Sequence[str]) -> int:
+    """Run the tests; 0 if all of them and the lint passed."""
+    quick = list(arguments) in (["--quick"], ["-q"])
+    whole = not arguments
+    setup()
+    variables = {} if quick else {"STAIRWRIGHT_BROWSER": setup_browser()}
+    if whole or quick:
+        # One more than processors: tests wait for servers and browsers now and then.
+        processes = min((os.cpu_count() or 1) + 1, MOST_TEST_PROCESSES)
+        shared = ["-n", str(processes)]
+        arguments = shared + (["-m", "not slow and not browser"] if quick else [])
+    failed = check() if whole or quick else []
+    if failed:
+        say(f"FAILED: {', '.join(failed)} (the tests run nevertheless)")
+    say("Tests ...")
+    passed = succeeds(PYTHON, "-m", "pytest", *arguments, env=variables)
+    if failed:
+        say(f"FAILED: {', '.join(failed)}; see above the tests")
+    return 0 if passed and not failed else 1
+
+
+def bench(arguments: Sequence[str]) -> int:
+    """Run the benchmarks; the browser is needed for the one that drags."""
+    setup()
+    setup_peers()
+    variables = {"STAIRWRIGHT_BROWSER": setup_browser()}
+    return 0 if succeeds(PYTHON, "benchmarks/run.py", *arguments, env=variables) else 1
+
+
+def atlas(arguments: Sequence[str]) -> int:
+    """Compute and draw how far each preset robot goes."""
+    setup()
+    return 0 if succeeds(PYTHON, "benchmarks/atlas.py", *arguments) else 1
