@@ -1,6 +1,6 @@
 /** Disturbances of the single rollout, and trials that draw theirs at random. */
 
-import { fixed, took } from "../geometry/format";
+import { about, fixed } from "../geometry/format";
 import { plan } from "../state/planning";
 import { disturbance, disturbanceSchema, setDisturbance, settings } from "../state/setup";
 import {
@@ -82,7 +82,7 @@ function Start() {
       <div class="trials-run">
         <progress aria-label="Trials" max={1} value={trialsProgress.value} />
         <span>
-          {done} %{eta === null ? "" : `, ${took(eta)} left`}
+          {done} %{eta === null ? "" : `, ${about(eta)} left`}
         </span>
         <button type="button" class="btn" onClick={cancelTrials}>
           Cancel
