@@ -20,6 +20,7 @@ def test_a_first_visit(product: Product) -> None:
     page.get_by_role("button", name=TERRAIN).click()
     page.get_by_role("button", name="New", exact=True).click()
     page.get_by_text("click corner by corner or drag a line").wait_for()
+    assert page.locator("[data-dimension]").count() == 0  # of ground that nobody drew
     page.keyboard.press("p")
     box = page.locator(".ed").bounding_box()
     assert box is not None
@@ -28,6 +29,7 @@ def test_a_first_visit(product: Product) -> None:
     page.keyboard.press("v")
     product.planned()
     assert product.status == "feasible", page.locator(".pill").inner_text()
+    assert page.locator(".hint").count() == 0  # it is known by now
 
     # Run.
     assert product.run() == "success"

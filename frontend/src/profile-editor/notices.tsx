@@ -1,7 +1,7 @@
 /** What floats over the canvas: the legend, the lost service, a long solve, the first hint. */
 
 import { connected, retryIn, retryNow } from "../state/connection";
-import { drawing, isEmpty, selection } from "../state/drawing";
+import { canUndo, drawing, isEmpty, selection } from "../state/drawing";
 import { ghost } from "../state/effect";
 import { plan, planB, planKept, preview, refusal } from "../state/planning";
 import { activity, run } from "../state/rollouts";
@@ -111,9 +111,9 @@ export function Refusal() {
   );
 }
 
-/** Once, on the first visit, in the sky, where nothing is to be reached; not under a verdict. */
+/** Until the first edit, in the sky, where nothing is to be reached; not under a verdict. */
 export function FirstHint() {
-  if (hintSeen.value || selection.value.length > 0) return null;
+  if (hintSeen.value || canUndo.value || selection.value.length > 0) return null;
   if (plan.value?.status !== "feasible" || drawing.value.points.length < 4) return null;
   if (activity.value !== "idle" || run.value || !planKept.value) return null;
   return (
