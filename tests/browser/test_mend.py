@@ -222,6 +222,33 @@ def test_a_fast_plan_tells_what_limits_its_speed(product: Product) -> None:
     page.locator(".speed-band").wait_for(state="detached")
 
 
+# Distances between neighbouring marks of key poses on the timeline [px].
+MARKS = """() => {
+  const at = [...document.querySelectorAll(".scrub i")].map(i => i.getBoundingClientRect().x);
+  return at.slice(1).map((x, k) => x - at[k]);
+}"""
+
+
+def test_marks_on_the_timeline_do_not_lie_over_each_other(product: Product) -> None:
+    page = product.page
+    page.get_by_role("button", name=TERRAIN).click()
+    page.get_by_role("button", name="Generate", exact=True).click()
+    page.get_by_label("Steps").fill("20")
+    page.get_by_role("dialog").get_by_role("button", name="Generate", exact=True).click()
+    product.planned()
+    gaps = page.evaluate(MARKS)
+    assert len(gaps) > 20
+    assert min(gaps) > 11.5
+    # All of them can be stepped to nevertheless.
+    clock = page.get_by_role("slider", name="Time")
+    clock.press("Home")
+    seen = set()
+    for _ in range(20):
+        page.get_by_role("button", name="Next key pose").click()
+        seen.add(clock.get_attribute("aria-valuenow"))
+    assert len(seen) == 20
+
+
 def test_margins_run_along_time_or_place(product: Product) -> None:
     page = product.page
     ticks = page.locator(".ticks")
