@@ -20,6 +20,10 @@ const angle = (radians: number) => `${fixed(degrees(radians), 1)}°`;
 const inDegrees = (sentence: string) =>
   sentence.replace(/(\d+(?:\.\d+)?) rad\b/g, (_, radians: string) => angle(Number(radians)));
 
+/** No line ends between a number, what it is equal to, and its unit. */
+const unbroken = (sentence: string) =>
+  sentence.replace(/ = | (?=(?:m|Nm)\b)/g, (space) => space.replaceAll(" ", "\u00a0"));
+
 /** Whether the sentence says itself what is needed and what there is. */
 const told = (sentence: string) => /\d.*\bhas\b.*\d/.test(sentence);
 
@@ -139,7 +143,7 @@ export function Obstruction() {
       >
         <h4>
           <Icon name="warning" />
-          {inDegrees(stop.message.charAt(0).toUpperCase() + stop.message.slice(1))}
+          {unbroken(inDegrees(stop.message.charAt(0).toUpperCase() + stop.message.slice(1)))}
         </h4>
         {!(tight.value && told(stop.message)) && <Numbers stop={stop} />}
         {sentence && <p>{sentence}</p>}
