@@ -96,6 +96,19 @@ def test_the_table_says_what_the_service_computed(room: Product, service: Server
     assert page.locator(".map-table td.no").count() == 12 - sum(cells["feasible"]) > 0
 
 
+def test_a_card_tells_what_its_cell_is_coloured_by(room: Product) -> None:
+    page = room.page
+    colour = page.get_by_label("Colour by")
+    colour.select_option("duration")
+    _canvas(page).focus()
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("ArrowDown")
+    card = page.locator(".map-card")
+    assert re.search(r"Time\s+\d+\.\d s", card.inner_text())
+    colour.select_option("margin_com")
+    assert "Time" not in card.inner_text()
+
+
 def test_arrows_read_cells_and_space_keeps_one(room: Product) -> None:
     page = room.page
     canvas = _canvas(page)
@@ -108,6 +121,10 @@ def test_arrows_read_cells_and_space_keeps_one(room: Product) -> None:
     page.keyboard.press("Space")
     kept = page.locator(".kept")
     kept.get_by_text("Torque margin", exact=True).wait_for()
+    kept.get_by_text("Energy, planned").wait_for(timeout=PATIENCE)
+    assert re.search(
+        r"Energy, planned\s+\d+ J\s+Cost of transport, planned\s+0\.\d\d", kept.inner_text()
+    )
     page.keyboard.press("ArrowUp")
     page.keyboard.press("ArrowUp")
     expect(said).to_have_text(re.compile("^rise 1.05 m, tread 0.26 m: not possible"))
