@@ -17,7 +17,7 @@ from tests.conftest import TAB, Server, serve
 from .conftest import PATIENCE, Product
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Locator, Page
+    from playwright.sync_api import Browser, Locator, Page, Route
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -149,6 +149,31 @@ def test_a_cell_opens_as_a_plan(room: Product) -> None:
     assert room.corners() == 8  # three steps
     title = page.get_by_role("button", name=re.compile(r"^Terrain\s")).inner_text()
     assert re.search(r"tread 0\.(28|30) m rise 0\.15 m", title)
+    page.keyboard.press("3")
+    _canvas(page).wait_for()
+
+
+def test_a_cell_opens_with_all_that_it_was_asked_with(room: Product, service: Server) -> None:
+    """Timing, facing and tolerance are the map's, whatever the page was set to meanwhile."""
+    page = room.page
+    study = _newest(service)["id"]
+    settings = {"timing": "fast", "facing": "backward", "tolerance": {"height": 0.002}}
+
+    def asked(route: Route) -> None:
+        cell = route.fetch().json()
+        cell["plan"] |= settings
+        route.fulfill(json=cell)
+
+    page.route(f"**/api/v1/studies/{study}/cells/*", asked)
+    box = _canvas(page).bounding_box()
+    assert box is not None
+    with page.expect_request(lambda sent: sent.url.endswith("/plans")) as plan:
+        page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] - 130)
+    assert {name: plan.value.post_data_json.get(name) for name in settings} == settings
+    page.unroute(f"**/api/v1/studies/{study}/cells/*")
+    page.locator(".app[data-workspace=plan]").wait_for()
+    page.keyboard.press("Control+z")
+    room.planned()
     page.keyboard.press("3")
     _canvas(page).wait_for()
 

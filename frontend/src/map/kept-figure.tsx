@@ -2,7 +2,7 @@
 
 import { useEffect, useState } from "preact/hooks";
 import { postPlan } from "../api/client";
-import type { Plan, PlanRequest, RobotDocument, TerrainDocument, Vec2 } from "../api/types";
+import type { Plan, PlanRequest, TerrainDocument, Vec2 } from "../api/types";
 import { type RobotShape, robotShape, skeleton } from "../geometry/robot";
 import { Figure } from "../profile-editor/figure";
 import type { Projection } from "../profile-editor/viewport";
@@ -36,7 +36,7 @@ export function useCell(cell: number): Shown | null {
       const terrain = question.terrain as TerrainDocument;
       setShown({
         plan,
-        robot: robotShape(question.robot as RobotDocument),
+        robot: robotShape(plan.robot_description),
         points: terrain.points,
       });
     };
