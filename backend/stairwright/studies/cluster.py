@@ -112,9 +112,7 @@ class ClusterEngine:
             else:
                 knock(self._address)
                 where, how = self._address, configured_security()
-            self._client = Client(
-                where, security=how, timeout=CONNECT_LIMIT, set_as_default=False
-            )
+            self._client = Client(where, security=how, timeout=CONNECT_LIMIT, set_as_default=False)
             self._client.register_plugin(dask_plugin())
         except (OSError, RuntimeError, TypeError, ValueError) as error:
             why = str(error).split("\n")[0] or "no answer"
