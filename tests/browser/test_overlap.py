@@ -140,6 +140,17 @@ def test_a_refusal_has_no_overlaps(product: Product) -> None:
     assert _everywhere(product) == []
 
 
+def test_a_plan_of_minutes_has_no_overlaps(product: Product) -> None:
+    page = product.page
+    page.get_by_role("button", name=TERRAIN).click()
+    page.get_by_role("button", name="Generate", exact=True).click()
+    page.get_by_label("Steps").fill("25")
+    page.get_by_role("dialog").get_by_role("button", name="Generate", exact=True).click()
+    product.planned()
+    page.get_by_role("slider", name="Time").press("End")
+    assert _everywhere(product) == []
+
+
 def test_a_fast_plan_has_no_overlaps(product: Product) -> None:
     timing = product.page.get_by_role("radiogroup", name="Timing")
     timing.get_by_role("radio", name="Fast").click()

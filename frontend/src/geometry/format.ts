@@ -21,6 +21,8 @@ export function took(seconds: number): string {
   return `${fixed(ms, ms < 10 ? 1 : 0)} ms`;
 }
 
+export const capital = (words: string) => words.charAt(0).toUpperCase() + words.slice(1);
+
 /** Remaining time, no finer than it is known: about 5 s, about 2 min. */
 export function about(seconds: number): string {
   if (seconds < 60) return `about ${Math.max(1, Math.ceil(seconds / 5) * 5)} s`;

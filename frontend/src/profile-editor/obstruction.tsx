@@ -2,7 +2,7 @@
 
 import { computed } from "@preact/signals";
 import type { Problem } from "../api/types";
-import { degrees, fixed } from "../geometry/format";
+import { capital, degrees, fixed } from "../geometry/format";
 import { canUndo, undo } from "../state/drawing";
 import { outdated, plan, preview } from "../state/planning";
 import { Icon } from "../ui/icon";
@@ -143,7 +143,7 @@ export function Obstruction() {
       >
         <h4>
           <Icon name="warning" />
-          {unbroken(inDegrees(stop.message.charAt(0).toUpperCase() + stop.message.slice(1)))}
+          {unbroken(inDegrees(capital(stop.message)))}
         </h4>
         {!(tight.value && told(stop.message)) && <Numbers stop={stop} />}
         {sentence && <p>{sentence}</p>}
