@@ -152,13 +152,9 @@ function Planning() {
 }
 
 function Weights() {
-  // Some weights belong to one kind of timing alone.
-  const shown = Object.entries(weightSchema.value).filter(
-    ([, schema]) => !schema.timing || schema.timing === timing.value,
-  );
   return (
     <>
-      {shown.map(([name, schema]) => (
+      {Object.entries(weightSchema.value).map(([name, schema]) => (
         <SettingRow
           key={`${method.value}-${name}`}
           name={name}
