@@ -235,7 +235,7 @@ def test_marks_on_the_timeline_do_not_lie_over_each_other(product: Product) -> N
     page.get_by_role("button", name="Generate", exact=True).click()
     page.get_by_label("Steps").fill("20")
     page.get_by_role("dialog").get_by_role("button", name="Generate", exact=True).click()
-    product.planned()
+    product.has_corners(42).planned()
     gaps = page.evaluate(MARKS)
     assert len(gaps) > 20
     assert min(gaps) > 11.5

@@ -24,7 +24,7 @@ def climb(product: Product) -> Product:
     page.get_by_role("button", name="Generate", exact=True).click()
     page.get_by_label("Steps").fill("20")
     page.get_by_role("dialog").get_by_role("button", name="Generate", exact=True).click()
-    product.planned()
+    product.has_corners(42).planned()
     product.linked('"stair-')
     return product
 
