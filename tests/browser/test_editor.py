@@ -367,13 +367,17 @@ UNREADABLE = """() => {
 
 def test_a_tall_flight_leaves_the_numbers_of_its_poses_readable(product: Product) -> None:
     page = product.page
-    page.get_by_role("button", name=TERRAIN).click()
-    page.get_by_role("button", name="Generate", exact=True).click()
-    page.get_by_label("Steps").fill("20")
-    page.get_by_role("dialog").get_by_role("button", name="Generate", exact=True).click()
-    product.has_corners(42).planned()
-    assert page.locator(".kb g").count() > 10
-    assert page.evaluate(UNREADABLE) == []
+    page.set_viewport_size({"width": 1280, "height": 720})
+    try:
+        page.get_by_role("button", name=TERRAIN).click()
+        page.get_by_role("button", name="Generate", exact=True).click()
+        page.get_by_label("Steps").fill("20")
+        page.get_by_role("dialog").get_by_role("button", name="Generate", exact=True).click()
+        product.has_corners(42).planned()
+        assert page.locator(".kb g").count() > 10
+        assert page.evaluate(UNREADABLE) == []
+    finally:
+        page.set_viewport_size(DESK)
 
 
 def test_a_typed_rise_that_leaves_the_view_is_shown_but_where_the_user_chose(

@@ -78,10 +78,11 @@ export function zoomAt(x: number, y: number, factor: number): void {
 const SIDE = 16;
 const BELOW = 48;
 
-/** Above the robot: the numbers of its poses; over them the legend, but on narrower canvases [px]. */
-const NUMBERS = 20;
-const LEGEND = 20;
+/** A narrower canvas has no legend [px]. */
 export const LEGEND_FROM = 440;
+const LEGEND = 20;
+/** Of the canvas that is free of rulers and legend [px]. */
+export const skyTop = () => canvasBox.value.top + (size.value.width < LEGEND_FROM ? 0 : LEGEND);
 
 /** What a robot needs before the first and after the last corner, and above the ground [m]. */
 function roomOf(): { before: number; after: number; above: number } {
@@ -101,8 +102,7 @@ function roomOf(): { before: number; after: number; above: number } {
 function framing(points: Points): View | null {
   const box = canvasBox.peek();
   const width = box.right - box.left - 2 * SIDE;
-  const legend = size.peek().width < LEGEND_FROM ? 0 : LEGEND;
-  const height = box.bottom - box.top - BELOW - NUMBERS - legend;
+  const height = box.bottom - skyTop() - BELOW;
   if (width <= 0) return null;
   const needs = roomOf();
   const inner = points.length > 2 ? points.slice(1, -1) : points;
