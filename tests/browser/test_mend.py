@@ -126,7 +126,11 @@ def test_skip_links_and_one_stop_for_a_toolbar(product: Product) -> None:
     assert page.evaluate("document.activeElement.dataset.vertex") is None
     bar = page.get_by_role("toolbar", name="Profile tools")
     assert bar.locator("button:visible").evaluate_all(stops) == 1
-    page.get_by_role("button", name=re.compile("^Select")).focus()
+    select = page.get_by_role("button", name=re.compile("^Select"))
+    select.focus()
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.dataset.dimension") is not None
+    select.focus()
     page.keyboard.press("ArrowRight")
     assert page.evaluate("document.activeElement.title").startswith("Stair")
 
