@@ -9,10 +9,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+import stairwright as sw
+
 from .conftest import TERRAIN, Product
 
 if TYPE_CHECKING:
     from playwright.sync_api import FloatRect
+
+    from tests.conftest import Server
 
 pytestmark = [pytest.mark.browser]
 
@@ -96,6 +100,26 @@ def test_saving_over_a_terrain_can_be_undone_and_descriptions_can_be_edited(
     assert product.corner(6) == first
     page.get_by_role("button", name=TERRAIN).click()
     page.get_by_role("button", name="Delete three-stairs-up-mine").click()
+    page.keyboard.press("Escape")
+
+
+def test_what_another_window_saved_is_offered_and_not_replaced_in_silence(
+    product: Product, server: Server
+) -> None:
+    page = product.page
+    product.drag(6, 0, -20).planned()
+    name = "three-stairs-up-mine"
+    points = [(-1.5, 0.0), (0.0, 0.0), (0.0, 0.05), (2.0, 0.05)]
+    with sw.Client(server.url) as service:
+        service.save_terrain(sw.Terrain(name=name, points=points))
+        page.keyboard.press("Control+s")
+        page.locator(".toast").get_by_text(f"{name} is replaced").wait_for()
+        service.save_terrain(sw.Terrain(name="of-another-window", points=points))
+    product.choose_terrain("of-another-window")
+    assert product.corners() == 4
+    page.get_by_role("button", name=TERRAIN).click()
+    for saved in (name, "of-another-window"):
+        page.get_by_role("button", name=f"Delete {saved}").click()
     page.keyboard.press("Escape")
 
 
