@@ -173,6 +173,22 @@ def test_a_run_opens_in_plan_with_its_settings(runs: Product) -> None:
     assert runs.corners() == len(CURB["points"])
 
 
+def test_the_list_follows_what_is_run_here_and_elsewhere(runs: Product, server: Server) -> None:
+    page = runs.page
+    page.keyboard.press("4")
+    _row(runs, "0.80").wait_for()
+    field = page.get_by_label("Friction coefficient")
+    field.fill("0.7")
+    field.press("Enter")
+    runs.planned().run()
+    _row(runs, "0.70").wait_for()
+    with sw.Client(server.url) as service:
+        service.rollout(CURB, friction=0.9)
+    page.evaluate("window.dispatchEvent(new Event('focus'))")  # back from another window
+    _row(runs, "0.90").wait_for()
+    page.keyboard.press("1")
+
+
 def test_trials_are_run_and_the_worst_replayed(runs: Product) -> None:
     page = runs.page
     page.get_by_role("radio", name="Trials").click()
