@@ -111,11 +111,15 @@ export function Refusal() {
   );
 }
 
+/** A lower canvas has no sky to put a hint in [px]. */
+const SKY = 240;
+
 /** Until the first edit, in the sky, where nothing is to be reached; not under a verdict. */
 export function FirstHint() {
   if (hintSeen.value || canUndo.value || selection.value.length > 0) return null;
   if (plan.value?.status !== "feasible" || drawing.value.points.length < 4) return null;
   if (activity.value !== "idle" || run.value || !planKept.value) return null;
+  if (size.value.height < SKY) return null;
   return (
     <div class="hint">
       <b>Drag a corner: the poses follow.</b>
