@@ -14,9 +14,10 @@ import { startEffect } from "./state/effect";
 import { startPlanning } from "./state/planner";
 import { plan, settled } from "./state/planning";
 import { duration, seek, startClock } from "./state/playback";
-import { restoreRollout } from "./state/rollouts";
+import { restoreRollout, resumeRollout } from "./state/rollouts";
 import { robotName, robots, settings, terrains } from "./state/setup";
 import { type Restored, restoreFromAddress, startSharing } from "./state/share";
+import { resumeTrials } from "./state/trials";
 import { fetchWhileIdle } from "./ui/part";
 import "uplot/dist/uPlot.min.css";
 import "./styles/index.css";
@@ -70,6 +71,8 @@ async function begin(): Promise<void> {
     void restoreResults(pasted);
   });
   await restoreResults(restored);
+  void resumeRollout();
+  void resumeTrials();
   await settled();
   fetchWhileIdle(LATER);
 }

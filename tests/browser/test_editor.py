@@ -353,6 +353,62 @@ def test_fit_leaves_room_for_dimensions_and_end_corners(product: Product) -> Non
     assert last["x"] + last["width"] < canvas["x"] + canvas["width"]
 
 
+# Numbers of poses that are cut off, or that the legend lies over.
+UNREADABLE = """() => {
+  const canvas = document.querySelector(".canvas").getBoundingClientRect();
+  const words = [...document.querySelectorAll(".lg span")].map(s => s.getBoundingClientRect());
+  return [...document.querySelectorAll(".kb g")].filter(number => {
+    const b = number.lastElementChild.getBoundingClientRect();
+    return b.top < canvas.top + 20 || words.some(w =>
+      w.left < b.right && b.left < w.right && w.top < b.bottom && b.top < w.bottom);
+  }).map(number => number.textContent);
+}"""
+
+
+def test_a_tall_flight_leaves_the_numbers_of_its_poses_readable(product: Product) -> None:
+    page = product.page
+    page.set_viewport_size({"width": 1280, "height": 720})
+    try:
+        page.get_by_role("button", name=TERRAIN).click()
+        page.get_by_role("button", name="Generate", exact=True).click()
+        page.get_by_label("Steps").fill("20")
+        page.get_by_role("dialog").get_by_role("button", name="Generate", exact=True).click()
+        product.has_corners(42).planned()
+        assert page.locator(".kb g").count() > 10
+        assert page.evaluate(UNREADABLE) == []
+    finally:
+        page.set_viewport_size(DESK)
+
+
+def test_a_typed_rise_that_leaves_the_view_is_shown_but_where_the_user_chose(
+    product: Product,
+) -> None:
+    page = product.page
+    page.set_viewport_size({"width": 1280, "height": 720})
+    canvas = page.locator(".canvas").bounding_box()
+    assert canvas is not None
+
+    def higher(than: str, rise: str) -> float:
+        """Height of the last corner in the window after the rise was typed [px]."""
+        page.get_by_role("button", name=f"Rise {than} m").first.dblclick()
+        page.get_by_label("Rise in metres").fill(rise)
+        page.keyboard.press("Enter")
+        product.planned()
+        corner = product.vertex(product.corners() - 1).locator("rect").bounding_box()
+        assert corner is not None
+        return corner["y"]
+
+    try:
+        assert higher("0.125", "1.400") > canvas["y"] + 20
+        page.keyboard.press("Control+z")
+        product.planned()
+        page.locator(".ed").hover(position={"x": 250, "y": 150})
+        page.mouse.wheel(0, 100)
+        assert higher("0.125", "2.500") < canvas["y"] + 20
+    finally:
+        page.set_viewport_size(DESK)
+
+
 def test_two_fingers_zoom_and_change_nothing(product: Product) -> None:
     before = [product.corner(i) for i in range(product.corners())]
     box = product.vertex(3).bounding_box()

@@ -17,7 +17,7 @@ from tests.conftest import TAB, Server, serve
 from .conftest import PATIENCE, Product
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Locator, Page
+    from playwright.sync_api import Browser, Locator, Page, Route
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -96,6 +96,19 @@ def test_the_table_says_what_the_service_computed(room: Product, service: Server
     assert page.locator(".map-table td.no").count() == 12 - sum(cells["feasible"]) > 0
 
 
+def test_a_card_tells_what_its_cell_is_coloured_by(room: Product) -> None:
+    page = room.page
+    colour = page.get_by_label("Colour by")
+    colour.select_option("duration")
+    _canvas(page).focus()
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("ArrowDown")
+    card = page.locator(".map-card")
+    assert re.search(r"Time\s+\d+\.\d s", card.inner_text())
+    colour.select_option("margin_com")
+    assert "Time" not in card.inner_text()
+
+
 def test_arrows_read_cells_and_space_keeps_one(room: Product) -> None:
     page = room.page
     canvas = _canvas(page)
@@ -108,6 +121,10 @@ def test_arrows_read_cells_and_space_keeps_one(room: Product) -> None:
     page.keyboard.press("Space")
     kept = page.locator(".kept")
     kept.get_by_text("Torque margin", exact=True).wait_for()
+    kept.get_by_text("Energy, planned").wait_for(timeout=PATIENCE)
+    assert re.search(
+        r"Energy, planned\s+\d+ J\s+Cost of transport, planned\s+0\.\d\d", kept.inner_text()
+    )
     page.keyboard.press("ArrowUp")
     page.keyboard.press("ArrowUp")
     expect(said).to_have_text(re.compile("^rise 1.05 m, tread 0.26 m: not possible"))
@@ -132,6 +149,31 @@ def test_a_cell_opens_as_a_plan(room: Product) -> None:
     assert room.corners() == 8  # three steps
     title = page.get_by_role("button", name=re.compile(r"^Terrain\s")).inner_text()
     assert re.search(r"tread 0\.(28|30) m rise 0\.15 m", title)
+    page.keyboard.press("3")
+    _canvas(page).wait_for()
+
+
+def test_a_cell_opens_with_all_that_it_was_asked_with(room: Product, service: Server) -> None:
+    """Timing, facing and tolerance are the map's, whatever the page was set to meanwhile."""
+    page = room.page
+    study = _newest(service)["id"]
+    settings = {"timing": "fast", "facing": "backward", "tolerance": {"height": 0.002}}
+
+    def asked(route: Route) -> None:
+        cell = route.fetch().json()
+        cell["plan"] |= settings
+        route.fulfill(json=cell)
+
+    page.route(f"**/api/v1/studies/{study}/cells/*", asked)
+    box = _canvas(page).bounding_box()
+    assert box is not None
+    with page.expect_request(lambda sent: sent.url.endswith("/plans")) as plan:
+        page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] - 130)
+    assert {name: plan.value.post_data_json.get(name) for name in settings} == settings
+    page.unroute(f"**/api/v1/studies/{study}/cells/*")
+    page.locator(".app[data-workspace=plan]").wait_for()
+    page.keyboard.press("Control+z")
+    room.planned()
     page.keyboard.press("3")
     _canvas(page).wait_for()
 

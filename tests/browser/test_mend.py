@@ -9,10 +9,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+import stairwright as sw
+
 from .conftest import TERRAIN, Product
 
 if TYPE_CHECKING:
     from playwright.sync_api import FloatRect
+
+    from tests.conftest import Server
 
 pytestmark = [pytest.mark.browser]
 
@@ -99,6 +103,26 @@ def test_saving_over_a_terrain_can_be_undone_and_descriptions_can_be_edited(
     page.keyboard.press("Escape")
 
 
+def test_what_another_window_saved_is_offered_and_not_replaced_in_silence(
+    product: Product, server: Server
+) -> None:
+    page = product.page
+    product.drag(6, 0, -20).planned()
+    name = "three-stairs-up-mine"
+    points = [(-1.5, 0.0), (0.0, 0.0), (0.0, 0.05), (2.0, 0.05)]
+    with sw.Client(server.url) as service:
+        service.save_terrain(sw.Terrain(name=name, points=points))
+        page.keyboard.press("Control+s")
+        page.locator(".toast").get_by_text(f"{name} is replaced").wait_for()
+        service.save_terrain(sw.Terrain(name="of-another-window", points=points))
+    product.choose_terrain("of-another-window")
+    assert product.corners() == 4
+    page.get_by_role("button", name=TERRAIN).click()
+    for saved in (name, "of-another-window"):
+        page.get_by_role("button", name=f"Delete {saved}").click()
+    page.keyboard.press("Escape")
+
+
 def test_question_mark_lists_the_keys(product: Product) -> None:
     product.page.keyboard.press("?")
     sheet = product.page.get_by_role("dialog", name="Keys")
@@ -126,7 +150,11 @@ def test_skip_links_and_one_stop_for_a_toolbar(product: Product) -> None:
     assert page.evaluate("document.activeElement.dataset.vertex") is None
     bar = page.get_by_role("toolbar", name="Profile tools")
     assert bar.locator("button:visible").evaluate_all(stops) == 1
-    page.get_by_role("button", name=re.compile("^Select")).focus()
+    select = page.get_by_role("button", name=re.compile("^Select"))
+    select.focus()
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.dataset.dimension") is not None
+    select.focus()
     page.keyboard.press("ArrowRight")
     assert page.evaluate("document.activeElement.title").startswith("Stair")
 
@@ -220,6 +248,33 @@ def test_a_fast_plan_tells_what_limits_its_speed(product: Product) -> None:
     page.get_by_role("radio", name="Steady").click()
     product.planned()
     page.locator(".speed-band").wait_for(state="detached")
+
+
+# Distances between neighbouring marks of key poses on the timeline [px].
+MARKS = """() => {
+  const at = [...document.querySelectorAll(".scrub i")].map(i => i.getBoundingClientRect().x);
+  return at.slice(1).map((x, k) => x - at[k]);
+}"""
+
+
+def test_marks_on_the_timeline_do_not_lie_over_each_other(product: Product) -> None:
+    page = product.page
+    page.get_by_role("button", name=TERRAIN).click()
+    page.get_by_role("button", name="Generate", exact=True).click()
+    page.get_by_label("Steps").fill("20")
+    page.get_by_role("dialog").get_by_role("button", name="Generate", exact=True).click()
+    product.has_corners(42).planned()
+    gaps = page.evaluate(MARKS)
+    assert len(gaps) > 20
+    assert min(gaps) > 11.5
+    # All of them can be stepped to nevertheless.
+    clock = page.get_by_role("slider", name="Time")
+    clock.press("Home")
+    seen = set()
+    for _ in range(20):
+        page.get_by_role("button", name="Next key pose").click()
+        seen.add(clock.get_attribute("aria-valuenow"))
+    assert len(seen) == 20
 
 
 def test_margins_run_along_time_or_place(product: Product) -> None:

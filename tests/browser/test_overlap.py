@@ -74,6 +74,25 @@ def test_a_planned_page_has_no_overlaps(product: Product) -> None:
     assert _everywhere(product) == []
 
 
+@pytest.mark.parametrize("size", [(844, 390), (375, 667)], ids=["lying", "small"])
+def test_a_low_phone_scrolls_what_has_no_room(product: Product, size: tuple[int, int]) -> None:
+    page = product.page
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    try:
+        for tab in TABS:
+            areas = page.get_by_role("navigation", name="Areas")
+            areas.get_by_role("button", name=tab).click()
+            assert _faults(product) == [], tab
+        canvas = page.locator(".canvas").bounding_box()
+        assert canvas is not None
+        assert canvas["height"] > 180
+        clock = page.get_by_role("slider", name="Time")
+        clock.scroll_into_view_if_needed()
+        clock.click()
+    finally:
+        page.set_viewport_size(DESK)
+
+
 # What can be pressed on this screen and is smaller than a fingertip.
 SMALL = """() => [...document.querySelectorAll(
   "button, input, select, a[href], [role=slider], [role=switch]")].filter(item => {
@@ -137,6 +156,17 @@ def test_a_refusal_has_no_overlaps(product: Product) -> None:
     field.press("Enter")
     product.planned()
     assert product.status == "infeasible"
+    assert _everywhere(product) == []
+
+
+def test_a_plan_of_minutes_has_no_overlaps(product: Product) -> None:
+    page = product.page
+    page.get_by_role("button", name=TERRAIN).click()
+    page.get_by_role("button", name="Generate", exact=True).click()
+    page.get_by_label("Steps").fill("25")
+    page.get_by_role("dialog").get_by_role("button", name="Generate", exact=True).click()
+    product.has_corners(52).planned()
+    page.get_by_role("slider", name="Time").press("End")
     assert _everywhere(product) == []
 
 

@@ -83,6 +83,26 @@ def test_a_changed_weight_says_what_it_brings(product: Product) -> None:
     effect.wait_for(state="detached")
 
 
+def test_a_weight_that_has_no_say_brings_nothing(product: Product) -> None:
+    """The speed of steady plans: fast ones are asked and told without it, and it comes back."""
+    page = product.page
+    page.get_by_role("slider", name="Speed").press("PageUp")
+    effect = page.get_by_role("region", name="Effect of the weights")
+    effect.wait_for()
+    with page.expect_request(
+        lambda sent: sent.url.endswith("/plans") and "fast" in (sent.post_data or "")
+    ) as asked:
+        page.get_by_role("radio", name="Fast").click()
+    assert "weights" not in asked.value.post_data_json
+    product.planned()
+    assert effect.count() == 0
+    page.get_by_role("radio", name="Steady").click()
+    product.planned()
+    effect.wait_for()
+    page.get_by_role("button", name="Reset Speed").click()
+    effect.wait_for(state="detached")
+
+
 def test_each_motor_limit_is_drawn_and_named(product: Product) -> None:
     page = product.page
     product.choose_terrain("flat")

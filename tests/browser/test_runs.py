@@ -17,7 +17,7 @@ from tests.conftest import TAB, Server, serve
 from .conftest import PATIENCE, PHONE, Product
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Locator
+    from playwright.sync_api import Browser, Locator, Route
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -173,12 +173,39 @@ def test_a_run_opens_in_plan_with_its_settings(runs: Product) -> None:
     assert runs.corners() == len(CURB["points"])
 
 
+def test_the_list_follows_what_is_run_here_and_elsewhere(runs: Product, server: Server) -> None:
+    page = runs.page
+    page.keyboard.press("4")
+    _row(runs, "0.80").wait_for()
+    field = page.get_by_label("Friction coefficient")
+    field.fill("0.7")
+    field.press("Enter")
+    runs.planned().run()
+    _row(runs, "0.70").wait_for()
+    with sw.Client(server.url) as service:
+        service.rollout(CURB, friction=0.9)
+    page.evaluate("window.dispatchEvent(new Event('focus'))")  # back from another window
+    _row(runs, "0.90").wait_for()
+    page.keyboard.press("1")
+
+
 def test_trials_are_run_and_the_worst_replayed(runs: Product) -> None:
     page = runs.page
     page.get_by_role("radio", name="Trials").click()
     page.get_by_role("radio", name="Laboratory").click()
     page.get_by_label("Number of trials").fill("4")
+
+    def nearly_done(route: Route) -> None:
+        """The job as it is shortly before its end."""
+        job = route.fetch().json()
+        if job["state"] == "running":
+            job |= {"progress": 0.9, "eta": 0.02}
+        route.fulfill(json=job)
+
+    page.route("**/api/v1/jobs/*", nearly_done)
     page.get_by_role("button", name="Run 4 trials").click()
+    page.locator(".trials-run").get_by_text("90 %, about 5 s left").wait_for()
+    page.unroute("**/api/v1/jobs/*")
     rate = page.locator(".trials-rate")
     rate.wait_for(timeout=PATIENCE)
     assert "/ 4" in rate.inner_text()

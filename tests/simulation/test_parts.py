@@ -152,6 +152,8 @@ def test_verdicts(ending: Ending, load: float, outcome: str) -> None:
     verdict, reason = judge(ending, loads, WEIGHT)
     assert verdict == outcome
     assert reason.endswith(".")
+    if outcome == "collided" and ending.cause != "arrived":
+        assert reason.endswith(" The run ended at 9.0 s, 0.50 m of 1.00 m along the plan.")
 
 
 def test_a_tap_is_a_graze_and_a_push_is_a_load() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -52,6 +52,7 @@ def of_rollout(run: Rollout, plan: Plan) -> dict[str, Any]:
         "metrics": run.metrics.model_dump(mode="json"),
         "duration": run.metrics.duration,
         "cost_of_transport": run.metrics.cost_of_transport,
+        **({} if run.success else _end(run)),
     }
 
 
@@ -106,10 +107,26 @@ def _thumbnail(plan: Plan) -> dict[str, Any]:
     if plan.poses:
         at = plan.poses[-1].progress if place is None else place.progress
         worst = min(plan.poses, key=lambda each: abs(each.progress - at))
-        pose = {
-            "x": round(worst.x_c, 3),
-            "z": round(worst.z_c, 3),
-            "pitch": round(worst.pitch, 3),
-            "q": [round(angle, 3) for angle in worst.q],
-        }
+        pose = _drawn(worst.x_c, worst.z_c, worst.pitch, worst.q)
     return {"outline": [[round(x, 3), round(z, 3)] for x, z in outline], "pose": pose}
+
+
+def _end(run: Rollout) -> dict[str, Any]:
+    """Where a robot that did not arrive ended; nothing where it left finite numbers at once."""
+    series = run.series
+    if len(series) == 0:
+        return {}
+    x, _, z = series.base_position[-1]
+    left_and_right = series.q[-1].reshape(2, 2, 3)  # of front and rear: thigh, calf, wheel
+    q = left_and_right[:, :, :2].mean(axis=1).ravel()
+    return {"pose": _drawn(x, z, series.pitch[-1], q)}
+
+
+def _drawn(x: float, z: float, pitch: float, q: Iterable[float]) -> dict[str, Any]:
+    """A pose as thumbnails take it: trunk [m, rad], planar joints [rad]."""
+    return {
+        "x": round(float(x), 3),
+        "z": round(float(z), 3),
+        "pitch": round(float(pitch), 3),
+        "q": [round(float(angle), 3) for angle in q],
+    }

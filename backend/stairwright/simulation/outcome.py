@@ -116,12 +116,12 @@ def judge(ending: Ending, loads: LinkLoads, weight: float) -> tuple[Outcome, str
         return "fell", f"The robot {ending.detail} {where}."
     if loads.peak > GRAZE_SHARE * weight:
         link, time = loads.where
-        rest = "" if ending.cause == "arrived" else f" It ended {where}."
+        rest = "" if ending.cause == "arrived" else f" The run ended {where}."
         return "collided", f"{_words(link)} carried {loads.peak:.0f} N at {time:.1f} s.{rest}"
     if ending.cause == "stopped":
         return "stopped", f"The robot stopped {where}, and stands: {ending.detail}."
     if loads.self_contacts:
-        return "collided", f"Its legs touched each other. It ended {where}."
+        return "collided", f"Its legs touched each other. The run ended {where}."
     if ending.cause == "arrived" and ending.error <= ARRIVED:
         grazes = f"; a link grazed for {loads.contacts} control steps" if loads.contacts else ""
         return "success", f"Arrived after {ending.time:.1f} s{grazes}."

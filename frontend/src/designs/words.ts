@@ -1,6 +1,6 @@
 /** How aims and varied numbers of a design search read. */
 
-import { setting } from "../geometry/format";
+import { capital, setting } from "../geometry/format";
 import { AXES, axisKind, QUANTITIES } from "../map/quantities";
 import { NUMBERS } from "./numbers";
 
@@ -12,8 +12,7 @@ interface Words {
 
 /** "robot.thigh.mass" is "Thigh mass". */
 function plain(name: string): string {
-  const words = name.replace(/^robot\./, "").replaceAll(/[._]/g, " ");
-  return words.charAt(0).toUpperCase() + words.slice(1);
+  return capital(name.replace(/^robot\./, "").replaceAll(/[._]/g, " "));
 }
 
 export function wordsOf(name: string): Words {

@@ -21,6 +21,15 @@ export function took(seconds: number): string {
   return `${fixed(ms, ms < 10 ? 1 : 0)} ms`;
 }
 
+export const capital = (words: string) => words.charAt(0).toUpperCase() + words.slice(1);
+
+/** Remaining time, no finer than it is known: about 5 s, about 2 min. */
+export function about(seconds: number): string {
+  if (seconds < 60) return `about ${Math.max(1, Math.ceil(seconds / 5) * 5)} s`;
+  if (seconds < 3600) return `about ${Math.ceil(seconds / 60)} min`;
+  return `about ${fixed(seconds / 3600, 1)} h`;
+}
+
 /** A setting: as short as it can be without losing what the slider can set. */
 export function setting(value: number): string {
   const size = Math.abs(value);

@@ -2,6 +2,7 @@
 
 import { signal } from "@preact/signals";
 import { importTerrain } from "../api/client";
+import { capital } from "../geometry/format";
 import { report } from "../state/connection";
 import { show } from "../topbar/terrain-actions";
 import { startCut } from "./cut";
@@ -34,7 +35,7 @@ export async function takeFile(file: File, place: Place): Promise<boolean> {
 }
 
 function sentence(text: string): string {
-  return `${text.charAt(0).toUpperCase()}${text.slice(1)}${text.endsWith(".") ? "" : "."}`;
+  return `${capital(text)}${text.endsWith(".") ? "" : "."}`;
 }
 
 /** A plan holds the terrain that it is for; any other file is taken as it is. */

@@ -1,6 +1,5 @@
 /** Method, comparison, weights and controller: every row is built from the service's schema. */
 
-import { useState } from "preact/hooks";
 import type { Facing, Method, PlanTiming } from "../api/types";
 import { Effect } from "../plan/effect";
 import {
@@ -17,7 +16,7 @@ import {
   timing,
   weightSchema,
 } from "../state/setup";
-import { inspectorOpen } from "../state/view";
+import { type InspectorPage, inspectorOpen, inspectorPage } from "../state/view";
 import { Icon } from "../ui/icon";
 import { Switch } from "../ui/switch";
 import { SeedRow } from "./seed";
@@ -42,15 +41,14 @@ const TIMINGS: [PlanTiming, string][] = [
   ["fast", "Fast"],
 ];
 
-type Page = "plan" | "controller" | "trials";
-const PAGES: [Page, string][] = [
+const PAGES: [InspectorPage, string][] = [
   ["plan", "Plan"],
   ["controller", "Controller"],
   ["trials", "Trials"],
 ];
 
 export function Inspector() {
-  const [page, setPage] = useState<Page>("plan");
+  const page = inspectorPage.value;
   const open = inspectorOpen.value;
   return (
     <section class={open ? "insp" : "insp shut"} aria-label="Inspector">
@@ -65,7 +63,15 @@ export function Inspector() {
           </button>
         )}
         {open && (
-          <Segments small label="Settings" options={PAGES} value={page} onChoose={setPage} />
+          <Segments
+            small
+            label="Settings"
+            options={PAGES}
+            value={page}
+            onChoose={(next) => {
+              inspectorPage.value = next;
+            }}
+          />
         )}
         <button
           type="button"
@@ -146,13 +152,9 @@ function Planning() {
 }
 
 function Weights() {
-  // Some weights belong to one kind of timing alone.
-  const shown = Object.entries(weightSchema.value).filter(
-    ([, schema]) => !schema.timing || schema.timing === timing.value,
-  );
   return (
     <>
-      {shown.map(([name, schema]) => (
+      {Object.entries(weightSchema.value).map(([name, schema]) => (
         <SettingRow
           key={`${method.value}-${name}`}
           name={name}

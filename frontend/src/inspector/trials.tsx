@@ -1,6 +1,6 @@
 /** Disturbances of the single rollout, and trials that draw theirs at random. */
 
-import { fixed, took } from "../geometry/format";
+import { about, capital, fixed } from "../geometry/format";
 import { plan } from "../state/planning";
 import { disturbance, disturbanceSchema, setDisturbance, settings } from "../state/setup";
 import {
@@ -23,7 +23,6 @@ import { SettingGroups } from "./setting-groups";
 import { TrialsResult } from "./trials-result";
 
 const NONE = "none";
-const capital = (word: string) => word[0]!.toUpperCase() + word.slice(1);
 
 export function DisturbancesAndTrials() {
   const names = Object.keys(settings.value?.bundles ?? {});
@@ -82,7 +81,7 @@ function Start() {
       <div class="trials-run">
         <progress aria-label="Trials" max={1} value={trialsProgress.value} />
         <span>
-          {done} %{eta === null ? "" : `, ${took(eta)} left`}
+          {done} %{eta === null ? "" : `, ${about(eta)} left`}
         </span>
         <button type="button" class="btn" onClick={cancelTrials}>
           Cancel

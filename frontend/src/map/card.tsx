@@ -3,6 +3,8 @@
 import { Icon } from "../ui/icon";
 import { type CellFacts, factsAt } from "./cell";
 import { boxOf, type Frame, type Place } from "./frame";
+import { quantityOf } from "./quantities";
+import { quantity } from "./state";
 
 const WIDTH = 272;
 const GAP = 10;
@@ -25,7 +27,10 @@ export function Card({ frame, place }: { frame: Frame; place: Place }) {
 }
 
 export function Facts({ facts, short }: { facts: CellFacts; short?: boolean }) {
-  const keep = short ? ["Friction needed", "CoM margin", "Clearance", "What binds"] : null;
+  const coloured = quantityOf(quantity.value).title;
+  const keep = short
+    ? ["Friction needed", "CoM margin", "Clearance", "What binds", coloured]
+    : null;
   const rows = [...facts.both, ...facts.rows.filter((row) => !keep || keep.includes(row.name))];
   return (
     <>

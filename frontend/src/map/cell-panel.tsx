@@ -1,11 +1,13 @@
 /** On the right: what building codes ask for and the robot climbs, and the cell that is kept. */
 
 import { fixed } from "../geometry/format";
+import { PLANNED } from "../results/figures";
 import { Icon } from "../ui/icon";
 import { Facts } from "./card";
-import { factsAt, frictionAt } from "./cell";
+import { type CellFacts, factsAt, frictionAt } from "./cell";
 import { CODES } from "./codes";
-import { KeptFigure } from "./kept-figure";
+import type { Place } from "./frame";
+import { KeptFigure, useCell } from "./kept-figure";
 import { openCell } from "./open-cell";
 import { share } from "./share-climbed";
 import { fields, layout, robotAxis } from "./state";
@@ -77,6 +79,19 @@ function Pinned() {
       </section>
     );
   }
+  return <Kept place={place} facts={facts} />;
+}
+
+function Kept({ place, facts }: { place: Place; facts: CellFacts }) {
+  const shown = useCell(facts.cell);
+  const plan = facts.both.length === 0 && shown ? shown.plan : null;
+  // Studies do not hold the work of their plans: it would take them a third longer.
+  const work = typeof plan?.energy === "number" ? PLANNED : [];
+  const rows = work.map(({ title, of }) => ({
+    name: `${title}, planned`,
+    value: of(plan),
+    unit: "",
+  }));
   return (
     <section class="kept">
       <header>
@@ -92,8 +107,8 @@ function Pinned() {
           <Icon name="close" />
         </button>
       </header>
-      <KeptFigure cell={facts.cell} />
-      <Facts facts={facts} />
+      <KeptFigure shown={shown} />
+      <Facts facts={{ ...facts, rows: [...facts.rows, ...rows] }} />
       <button type="button" class="btn pri" onClick={() => void openCell(place)}>
         Open as plan
       </button>

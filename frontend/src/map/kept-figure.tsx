@@ -2,7 +2,7 @@
 
 import { useEffect, useState } from "preact/hooks";
 import { postPlan } from "../api/client";
-import type { Plan, PlanRequest, RobotDocument, TerrainDocument, Vec2 } from "../api/types";
+import type { Plan, PlanRequest, TerrainDocument, Vec2 } from "../api/types";
 import { type RobotShape, robotShape, skeleton } from "../geometry/robot";
 import { Figure } from "../profile-editor/figure";
 import type { Projection } from "../profile-editor/viewport";
@@ -10,7 +10,7 @@ import { report } from "../state/connection";
 import { study } from "./state";
 import { getCell } from "./studies";
 
-interface Shown {
+export interface Shown {
   plan: Plan;
   robot: RobotShape;
   points: readonly Vec2[];
@@ -22,7 +22,7 @@ const HEIGHT = 168;
 const AROUND = 0.5;
 
 /** The cell's plan, once it is there. A cell without a question has none. */
-function useCell(cell: number): Shown | null {
+export function useCell(cell: number): Shown | null {
   const [shown, setShown] = useState<Shown | null>(null);
   const id = study.value?.id;
   useEffect(() => {
@@ -36,7 +36,7 @@ function useCell(cell: number): Shown | null {
       const terrain = question.terrain as TerrainDocument;
       setShown({
         plan,
-        robot: robotShape(question.robot as RobotDocument),
+        robot: robotShape(plan.robot_description),
         points: terrain.points,
       });
     };
@@ -55,8 +55,7 @@ function telling(plan: Plan) {
   );
 }
 
-export function KeptFigure({ cell }: { cell: number }) {
-  const shown = useCell(cell);
+export function KeptFigure({ shown }: { shown: Shown | null }) {
   const pose = shown && telling(shown.plan);
   if (!shown || !pose) return <div class="kept-figure" />;
   const { robot, points } = shown;

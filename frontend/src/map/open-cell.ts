@@ -1,12 +1,28 @@
-/** A cell as a plan in the editor: the terrain, robot, friction and weights it was asked with. */
+/** A cell as a plan in the editor: all that it was asked with. */
 
 import { batch } from "@preact/signals";
 import { callJson } from "../api/client";
-import type { Method, RobotDocument, SettingValues, TerrainDocument } from "../api/types";
+import type {
+  Facing,
+  Method,
+  PlanTiming,
+  RobotDocument,
+  SettingValues,
+  TerrainDocument,
+} from "../api/types";
 import { fit } from "../profile-editor/viewport";
 import { report } from "../state/connection";
 import { open } from "../state/drawing";
-import { method, robotName, robots, settings, weights } from "../state/setup";
+import {
+  facing,
+  method,
+  robotName,
+  robots,
+  settings,
+  timing,
+  tolerance,
+  weights,
+} from "../state/setup";
 import { toast } from "../state/toast";
 import { workspace } from "../state/workspace";
 import { factsAt } from "./cell";
@@ -21,6 +37,9 @@ interface Question {
   friction: number;
   method: Method;
   weights: SettingValues;
+  timing?: PlanTiming;
+  facing?: Facing;
+  tolerance?: SettingValues;
 }
 
 export async function openCell(place: Place): Promise<void> {
@@ -45,6 +64,9 @@ export async function openCell(place: Place): Promise<void> {
         ...weights.peek(),
         [question.method]: changed(question.method, question.weights),
       };
+      timing.value = question.timing ?? "steady";
+      facing.value = question.facing ?? "forward";
+      tolerance.value = question.tolerance ?? {};
       workspace.value = "plan";
     });
     fit(question.terrain.points);

@@ -1,6 +1,6 @@
 /** A study or a search at work: how to begin it, stop it and go on, how far it is, what is left. */
 
-import { fixed } from "../geometry/format";
+import { about, fixed } from "../geometry/format";
 import { Icon } from "../ui/icon";
 
 interface WorkButtonsProps {
@@ -62,12 +62,5 @@ export function remaining(state: string, eta: number | null, stays: string): str
   if (state === "cancelled") return `paused, ${stays}`;
   if (state === "done") return "done";
   if (state === "failed") return "stopped";
-  return eta === null ? "measuring the pace" : `${left(eta)} left`;
-}
-
-/** Remaining time, no finer than it is known. */
-function left(seconds: number): string {
-  if (seconds < 60) return `about ${Math.max(1, Math.ceil(seconds / 5) * 5)} s`;
-  if (seconds < 3600) return `about ${Math.ceil(seconds / 60)} min`;
-  return `about ${fixed(seconds / 3600, 1)} h`;
+  return eta === null ? "measuring the pace" : `${about(eta)} left`;
 }

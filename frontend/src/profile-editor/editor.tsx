@@ -2,7 +2,7 @@
 
 import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Vec2 } from "../api/types";
-import { drawing } from "../state/drawing";
+import { committed, drawing } from "../state/drawing";
 import { outdated, preview } from "../state/planning";
 import { robotName } from "../state/setup";
 import { tool } from "../state/view";
@@ -29,7 +29,7 @@ import { RibbonPatterns, SpeedRibbon } from "./speed-ribbon";
 import { Dimensions, Ground, WheelPath } from "./terrain-layer";
 import { Toolbar } from "./toolbar";
 import { Guides, Stretches, Vertices } from "./vertices";
-import { canvasBox, fit, moved, pan, size, toWorld, zoomAt } from "./viewport";
+import { canvasBox, fit, moved, pan, refit, size, toWorld, zoomAt } from "./viewport";
 
 function targetOf(event: Event): Target {
   const element = event.target as Element;
@@ -163,13 +163,17 @@ export function Editor() {
     };
     measure();
     // Another robot may need more room; a view that was chosen by hand stays.
-    const refit = robotName.subscribe(() => {
-      if (size.peek().width > 0 && !moved.peek()) fit(drawing.peek().points);
-    });
+    const stops = [
+      robotName.subscribe(() => {
+        if (size.peek().width > 0 && !moved.peek()) fit(drawing.peek().points);
+      }),
+      // Who draws corner by corner means the place that the pen is at.
+      committed.subscribe(({ points }) => tool.peek() === "select" && refit(points)),
+    ];
     const observer = new ResizeObserver(measure);
     observer.observe(element);
     return () => {
-      refit();
+      for (const stop of stops) stop();
       observer.disconnect();
     };
   }, []);

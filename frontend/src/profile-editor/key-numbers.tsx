@@ -5,10 +5,13 @@ import { keyTimes, playing, seek } from "../state/playback";
 import { robot } from "../state/setup";
 import { layers } from "../state/view";
 import { keyed, keyIndices } from "./poses";
-import { projection } from "./viewport";
+import { projection, skyTop } from "./viewport";
 
 /** Nearer than this two would touch, and the later one is left out [px]. */
 const APART = 20;
+
+/** Of a number, below the legend [px]. */
+const ROOM = 24;
 
 interface Badge {
   /** Which of the critical poses. */
@@ -26,7 +29,10 @@ function badges(): Badge[] {
     const pose = shown.poses[index];
     const k = shown.critical.indexOf(index);
     if (!pose || k < 0) continue;
-    const at: Vec2 = [px(pose.x_c), py(pose.z_c + half) - 14 - Math.abs(pose.pitch) * 20];
+    const trunk = py(pose.z_c + half);
+    const above = trunk - 14 - Math.abs(pose.pitch) * 20;
+    // Below the legend, but not below its robot where that is out of view.
+    const at: Vec2 = [px(pose.x_c), Math.max(above, Math.min(trunk, skyTop() + ROOM))];
     const last = out[out.length - 1]?.at;
     if (!last || Math.hypot(at[0] - last[0], at[1] - last[1]) >= APART) out.push({ k, at });
   }

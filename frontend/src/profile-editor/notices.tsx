@@ -1,7 +1,7 @@
 /** What floats over the canvas: the legend, the lost service, a long solve, the first hint. */
 
 import { connected, retryIn, retryNow } from "../state/connection";
-import { drawing, isEmpty, selection } from "../state/drawing";
+import { canUndo, drawing, isEmpty, selection } from "../state/drawing";
 import { ghost } from "../state/effect";
 import { plan, planB, planKept, preview, refusal } from "../state/planning";
 import { activity, run } from "../state/rollouts";
@@ -111,11 +111,15 @@ export function Refusal() {
   );
 }
 
-/** Once, on the first visit, in the sky, where nothing is to be reached; not under a verdict. */
+/** A lower canvas has no sky to put a hint in [px]. */
+const SKY = 240;
+
+/** Until the first edit, in the sky, where nothing is to be reached; not under a verdict. */
 export function FirstHint() {
-  if (hintSeen.value || selection.value.length > 0) return null;
+  if (hintSeen.value || canUndo.value || selection.value.length > 0) return null;
   if (plan.value?.status !== "feasible" || drawing.value.points.length < 4) return null;
   if (activity.value !== "idle" || run.value || !planKept.value) return null;
+  if (size.value.height < SKY) return null;
   return (
     <div class="hint">
       <b>Drag a corner: the poses follow.</b>

@@ -2,7 +2,7 @@
 
 import { computed } from "@preact/signals";
 import type { Problem } from "../api/types";
-import { degrees, fixed } from "../geometry/format";
+import { capital, degrees, fixed } from "../geometry/format";
 import { canUndo, undo } from "../state/drawing";
 import { outdated, plan, preview } from "../state/planning";
 import { Icon } from "../ui/icon";
@@ -19,6 +19,10 @@ const angle = (radians: number) => `${fixed(degrees(radians), 1)}°`;
 /** The service's sentence with the units of the numbers below it. */
 const inDegrees = (sentence: string) =>
   sentence.replace(/(\d+(?:\.\d+)?) rad\b/g, (_, radians: string) => angle(Number(radians)));
+
+/** No line ends between a number, what it is equal to, and its unit. */
+const unbroken = (sentence: string) =>
+  sentence.replace(/ = | (?=(?:m|Nm)\b)/g, (space) => space.replaceAll(" ", "\u00a0"));
 
 /** Whether the sentence says itself what is needed and what there is. */
 const told = (sentence: string) => /\d.*\bhas\b.*\d/.test(sentence);
@@ -139,7 +143,7 @@ export function Obstruction() {
       >
         <h4>
           <Icon name="warning" />
-          {inDegrees(stop.message.charAt(0).toUpperCase() + stop.message.slice(1))}
+          {unbroken(inDegrees(capital(stop.message)))}
         </h4>
         {!(tight.value && told(stop.message)) && <Numbers stop={stop} />}
         {sentence && <p>{sentence}</p>}

@@ -82,8 +82,8 @@ function room(): (middle: Vec2, half: Vec2) => boolean {
 export function Dimensions() {
   const root = useRef<SVGGElement>(null);
   useRoving(root, "[data-dimension]");
-  if (!layers.value.has("dimensions")) return null;
-  const points = shown();
+  if (isEmpty.value || !layers.value.has("dimensions")) return null;
+  const { points } = drawing.value;
   const { px, py } = projection.value;
   const { left, right, bottom } = canvasBox.value;
   const y = bottom - 26;
@@ -95,7 +95,7 @@ export function Dimensions() {
       {segments.map(({ i, a, b }) => {
         const kind = segmentKind(a, b);
         const edit = (which: "run" | "rise") => () => {
-          if (!isEmpty.value) editingDimension.value = { segment: i, which };
+          editingDimension.value = { segment: i, which };
         };
         if (kind === "upright") {
           if (Math.abs(py(a[1]) - py(b[1])) < LEAST_RISE) return null;

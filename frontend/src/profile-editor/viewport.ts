@@ -10,7 +10,12 @@ export const RULER_Z = 36;
 
 export const size = signal({ width: 0, height: 0 });
 /** World point at the canvas's lower left corner, and pixels per metre. */
-export const view = signal({ x: -0.75, z: -0.13, scale: 378 });
+interface View {
+  x: number;
+  z: number;
+  scale: number;
+}
+export const view = signal<View>({ x: -0.75, z: -0.13, scale: 378 });
 const fitted = signal(378);
 /** Whether the user chose the view: it then stays as it is when the canvas changes its size. */
 export const moved = signal(false);
@@ -73,9 +78,11 @@ export function zoomAt(x: number, y: number, factor: number): void {
 const SIDE = 16;
 const BELOW = 48;
 
-/** A narrower canvas has no legend; above others it lies over the numbers of the poses [px]. */
+/** A narrower canvas has no legend [px]. */
 export const LEGEND_FROM = 440;
-const ABOVE = 20;
+const LEGEND = 20;
+/** Of the canvas that is free of rulers and legend [px]. */
+export const skyTop = () => canvasBox.value.top + (size.value.width < LEGEND_FROM ? 0 : LEGEND);
 
 /** What a robot needs before the first and after the last corner, and above the ground [m]. */
 function roomOf(): { before: number; after: number; above: number } {
@@ -91,14 +98,12 @@ function roomOf(): { before: number; after: number; above: number } {
   };
 }
 
-/** Show the part between the long flat ends, with room for the robot above it. */
-export function fit(points: Points): void {
+/** The view of the part between the long flat ends, with room for the robot above it. */
+function framing(points: Points): View | null {
   const box = canvasBox.peek();
   const width = box.right - box.left - 2 * SIDE;
-  const above = size.peek().width < LEGEND_FROM ? 0 : ABOVE;
-  const height = box.bottom - box.top - BELOW - above;
-  if (width <= 0) return;
-  moved.value = false;
+  const height = box.bottom - skyTop() - BELOW;
+  if (width <= 0) return null;
   const needs = roomOf();
   const inner = points.length > 2 ? points.slice(1, -1) : points;
   const all = points.length > 1 ? extent(points) : { x: [-0.75, 1.8] as Vec2, z: [0, 0] as Vec2 };
@@ -107,14 +112,39 @@ export function fit(points: Points): void {
   const x1 = Math.min(all.x[1], mid.x[1] + needs.after);
   const tall = all.z[1] + needs.above - all.z[0];
   const scale = Math.min(MOST, Math.max(LEAST, Math.min(width / (x1 - x0), height / tall)));
-  fitted.value = scale;
   const spare = width / scale - (x1 - x0);
   const sky = Math.max(0, height / scale - tall);
-  view.value = {
+  return {
     scale,
     x: x0 - SIDE / scale - spare * 0.4,
     z: all.z[0] - BELOW / scale - sky * 0.3,
   };
+}
+
+/** Show all of the profile but its long flat ends. */
+export function fit(points: Points): void {
+  const best = framing(points);
+  if (!best) return;
+  moved.value = false;
+  fitted.value = best.scale;
+  view.value = best;
+}
+
+/** So much closer a view must be to be worth leaving the one that there is. */
+const CLOSER = 1.5;
+
+/** After an edit: fit again where the profile left the view or shrank in it, unless it was chosen. */
+export function refit(points: Points): void {
+  const best = framing(points);
+  if (moved.peek() || !best || points.length < 3) return;
+  const box = canvasBox.peek();
+  const { px, py } = projection.peek();
+  const { x } = extent(points.slice(1, -1));
+  const { z } = extent(points);
+  // A robot that is cut off a little is no reason to move what the hand has just moved.
+  const top = z[1] + roomOf().above / 2;
+  const seen = px(x[0]) > box.left && px(x[1]) < box.right && py(top) > box.top;
+  if (!seen || py(z[0]) > box.bottom || best.scale > CLOSER * view.peek().scale) fit(points);
 }
 
 /** Bring a place to the middle without changing the zoom. */

@@ -1,7 +1,7 @@
 /** What came of the rollout, or why there is none. */
 
 import type { Plan } from "../api/types";
-import { fixed } from "../geometry/format";
+import { about, capital, fixed } from "../geometry/format";
 import { live, livePlan } from "../state/live";
 import { plan } from "../state/planning";
 import { activity, eta, failure, progress, run, running } from "../state/rollouts";
@@ -89,8 +89,8 @@ function Running() {
         </small>
       </h2>
       <p>
-        {eta.value !== null ? `About ${fixed(eta.value, 0)} s left. ` : ""}Editing the profile keeps
-        this run.
+        {eta.value !== null && `${capital(about(eta.value))} left. `}Editing the profile keeps this
+        run.
       </p>
     </>
   );

@@ -1,6 +1,7 @@
 /** Every number of a robot that can be seen and changed here: where it lies, its unit, its bounds. */
 
 import type { RobotDocument } from "../api/types";
+import { capital } from "../geometry/format";
 import { MASSES, wheels } from "./masses";
 import {
   ANGLE,
@@ -29,8 +30,6 @@ function withLink(file: RobotDocument, end: End, name: LinkName, link: RobotDocu
     ? { ...file, [name]: link }
     : { ...file, rear: { ...file.rear, [name]: link } };
 }
-
-const capital = (word: string) => word[0]!.toUpperCase() + word.slice(1);
 
 /** Rear links have rows of their own where they differ from the front ones. */
 function linkRows(end: End, name: LinkName): Quantity[] {

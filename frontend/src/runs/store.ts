@@ -4,7 +4,9 @@ import { batch, computed, effect, signal } from "@preact/signals";
 import { type Entry, type EntryChanges, type Kind, listStored, patchStored } from "../api/stored";
 import { report } from "../state/connection";
 import { removal } from "../state/removal";
+import { run, runB } from "../state/rollouts";
 import { toast } from "../state/toast";
+import { trials } from "../state/trials";
 
 export type Filter = "all" | Kind;
 
@@ -89,14 +91,26 @@ export function more(): void {
   wanted.value += PAGE;
 }
 
-/** Read the list whenever what it shows is chosen anew, while the workspace is open. */
-export const startListing = () =>
-  effect(() => {
+/**
+ * While the workspace is open, read the list whenever what it shows is chosen anew, this page has
+ * a result, or the user comes back from another window.
+ */
+export function startListing(): () => void {
+  const stop = effect(() => {
     filter.value;
     search.value;
     wanted.value;
+    run.value;
+    runB.value;
+    trials.value;
     void refresh();
   });
+  addEventListener("focus", refresh);
+  return () => {
+    stop();
+    removeEventListener("focus", refresh);
+  };
+}
 
 export function narrow(change: { filter?: Filter; search?: string }): void {
   batch(() => {

@@ -1,8 +1,8 @@
-/** A small picture of the terrain, with the robot where its least margin is. */
+/** A small picture of the terrain, with the robot where its margin is least, or where it failed. */
 
 import type { Summary } from "../api/stored";
 import type { Vec2 } from "../api/types";
-import { robotShape, skeleton } from "../geometry/robot";
+import { robotShape, skeleton, turned } from "../geometry/robot";
 import { robots } from "../state/setup";
 
 const WIDTH = 88;
@@ -31,7 +31,8 @@ export function Thumbnail({ summary, bad }: { summary: Summary; bad: boolean }) 
   const outline = whole && pose ? cut(whole, pose.x - AROUND, pose.x + AROUND) : (whole ?? []);
   if (outline.length < 2) return <span class="thumb" />;
   const file = robots.value.find((each) => each.name === summary.robot);
-  const shape = file && robotShape(file);
+  const built = file && robotShape(file);
+  const shape = built && summary.facing === "backward" ? turned(built) : built;
   const bones = pose && shape ? skeleton(shape, pose) : null;
   const body = bones ? [...bones.trunk, ...bones.legs.flat()] : [];
   const xs = [...outline, ...body].map((p) => p[0]);

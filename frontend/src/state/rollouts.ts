@@ -19,6 +19,7 @@ import { type Chunk, endLive, grow, haltLive, livePlan, startLive } from "./live
 import { plan, settled, stale } from "./planning";
 import { request, unoptimised } from "./question";
 import { compare, controller, disturbance, seed } from "./setup";
+import { remember, wasUnderWay } from "./under-way";
 
 export type Activity = "idle" | "running" | "cancelled" | "failed";
 
@@ -76,7 +77,8 @@ export const canRun = computed(
 let job = new AbortController();
 let blink: ReturnType<typeof setTimeout> | undefined;
 
-export async function startRollout(): Promise<void> {
+/** @param under a job that is at it already */
+export async function startRollout(under?: string): Promise<void> {
   await settled();
   const chosen = plan.peek();
   const question = request.peek();
@@ -84,7 +86,9 @@ export async function startRollout(): Promise<void> {
   const asked = setup.peek();
   const { signal } = begin(chosen);
   try {
-    const done = await runOne(chosen, asked, signal, grow);
+    const job = under ?? (await submit(chosen, asked)).id;
+    remember("rollout", { job, plan: chosen.id });
+    const done = await arrival(job, signal, grow);
     batch(() => {
       forgetResults();
       run.value = done;
@@ -98,8 +102,14 @@ export async function startRollout(): Promise<void> {
     if (signal.aborted) return;
     report(error);
     failure.value = sentence(error);
-    finish("failed");
+    finish("failed", error instanceof Offline);
   }
+}
+
+/** After a reload: the rollout that this tab waited for. */
+export async function resumeRollout(): Promise<void> {
+  const under = await wasUnderWay("rollout");
+  if (under) await startRollout(under.job);
 }
 
 function begin(chosen: Plan): AbortController {
@@ -117,9 +127,13 @@ function begin(chosen: Plan): AbortController {
   return job;
 }
 
-/** A run that did not get to its end leaves what was driven, or the plan, but not an older run. */
-function finish(how: Activity): void {
+/**
+ * A run that did not get to its end leaves what was driven, or the plan, but not an older run.
+ * @param lost only this page has lost it: a reload finds it again
+ */
+function finish(how: Activity, lost = false): void {
   clearTimeout(blink);
+  if (!lost) remember("rollout", null);
   batch(() => {
     activity.value = how;
     showProgress.value = false;
@@ -135,7 +149,7 @@ async function runOther(question: PlanRequest, asked: Setup, signal: AbortSignal
     progress.value = 0;
     const other = await postPlan(unoptimised(question), signal);
     if (other.problem && other.poses.length < 2) throw new Error(other.problem.message);
-    const done = await runOne(other, asked, signal);
+    const done = await arrival((await submit(other, asked)).id, signal);
     batch(() => {
       runB.value = done;
       runPlanB.value = other;
@@ -158,13 +172,12 @@ export function cancelRollout(): void {
   }
 }
 
-async function runOne(
-  which: Plan,
-  asked: Setup,
+/** What comes of a job; where it is given up meanwhile, it is cancelled. */
+async function arrival(
+  id: string,
   signal: AbortSignal,
   onSeries?: (chunk: Chunk) => void,
 ): Promise<Rollout> {
-  const { id } = await submit(which, asked);
   try {
     signal.throwIfAborted();
     const end = await follow(id, signal, onSeries);

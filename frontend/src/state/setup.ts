@@ -75,8 +75,13 @@ export const robot = computed<RobotShape | null>(() => {
   return shape && facing.value === "backward" ? turned(shape) : shape;
 });
 
-export const weightSchema = computed<Record<string, SettingSchema>>(
-  () => settings.value?.weights[method.value]?.properties ?? {},
+/** Some weights belong to one kind of timing alone. */
+export const weightSchema = computed<Record<string, SettingSchema>>(() =>
+  Object.fromEntries(
+    Object.entries(settings.value?.weights[method.value]?.properties ?? {}).filter(
+      ([, { timing: only }]) => !only || only === timing.value,
+    ),
+  ),
 );
 export const controllerSchema = computed<Record<string, SettingSchema>>(
   () => settings.value?.controller.properties ?? {},
@@ -87,7 +92,14 @@ export const disturbanceSchema = computed<Record<string, SettingSchema>>(
 export const toleranceSchema = computed<Record<string, SettingSchema>>(
   () => settings.value?.tolerance.properties ?? {},
 );
-export const changedWeights = computed(() => weights.value[method.value] ?? {});
+/** Those that have a say; of another timing they are kept. */
+export const changedWeights = computed<SettingValues>(() =>
+  Object.fromEntries(
+    Object.entries(weights.value[method.value] ?? {}).filter(
+      ([name]) => name in weightSchema.value,
+    ),
+  ),
+);
 export const changedCount = computed(() =>
   [changedWeights, controller, ...(method.value === "path" ? [tolerance] : [])].reduce(
     (sum, each) => sum + Object.keys(each.value).length,
@@ -107,7 +119,8 @@ export function withValue(
 }
 
 export function setWeight(name: string, value: SettingChange): void {
-  const next = withValue(changedWeights.peek(), weightSchema.peek()[name], name, value);
+  const all = weights.peek()[method.peek()] ?? {};
+  const next = withValue(all, weightSchema.peek()[name], name, value);
   weights.value = { ...weights.peek(), [method.peek()]: next };
 }
 

@@ -1,12 +1,14 @@
 /** A set of trials of the shown plan: start, follow, cancel, and replay one of them. */
 
 import { batch, computed, signal } from "@preact/signals";
-import { cancelJob, getJob, getTrials, postTrials } from "../api/client";
+import { cancelJob, getJob, getTrials, Offline, postTrials } from "../api/client";
 import type { Job, SettingValues, Trial, Trials } from "../api/types";
 import { report } from "./connection";
 import { plan, settled, stale } from "./planning";
 import { canRun, startRollout } from "./rollouts";
 import { controller, disturbance, disturbanceSchema, seed } from "./setup";
+import { remember, type UnderWay, wasUnderWay } from "./under-way";
+import { inspectorPage } from "./view";
 
 /** What trials draw their deviations from; none: there is only the single rollout. */
 export const bundle = signal<string | null>(null);
@@ -36,7 +38,14 @@ let given = new AbortController();
 
 const over = (state: Job["state"]) => state !== "queued" && state !== "running";
 
-export async function startTrials(): Promise<void> {
+/** As a reload finds them again. */
+interface TrialsUnderWay extends UnderWay {
+  bundle: string;
+  count: number;
+}
+
+/** @param under a job that is at them already */
+export async function startTrials(under?: string): Promise<void> {
   await settled();
   const shown = plan.peek();
   const from = bundle.peek();
@@ -44,17 +53,24 @@ export async function startTrials(): Promise<void> {
   given = new AbortController();
   const { signal: stop } = given;
   trialsFailure.value = null;
+  const body = {
+    plan_id: shown.id,
+    friction: shown.friction,
+    controller: controller.peek(),
+    seed: seed.peek(),
+    count: count.peek(),
+    bundle: from,
+  };
   try {
-    const asked = await postTrials({
-      plan_id: shown.id,
-      friction: shown.friction,
-      controller: controller.peek(),
-      seed: seed.peek(),
-      count: count.peek(),
-      bundle: from,
-    });
+    const asked = await (under ? getJob(under) : postTrials(body));
     if (stop.aborted) return void (await cancelJob(asked.id));
     job.value = asked;
+    remember<TrialsUnderWay>("trials", {
+      job: asked.id,
+      plan: shown.id,
+      bundle: from,
+      count: body.count,
+    });
     const end = await follow(asked, stop);
     if (end.state !== "done" || !end.result) {
       throw new Error(end.error?.detail ?? end.error?.title ?? `The trials were ${end.state}.`);
@@ -64,9 +80,23 @@ export async function startTrials(): Promise<void> {
     if (stop.aborted) return;
     report(error);
     trialsFailure.value = error instanceof Error ? error.message : String(error);
+    if (error instanceof Offline) return;
   } finally {
     if (!stop.aborted) job.value = null;
   }
+  remember("trials", null);
+}
+
+/** After a reload: the trials that this tab waited for. */
+export async function resumeTrials(): Promise<void> {
+  const under = await wasUnderWay<TrialsUnderWay>("trials");
+  if (!under) return;
+  batch(() => {
+    bundle.value = under.bundle;
+    count.value = under.count;
+    inspectorPage.value = "trials";
+  });
+  await startTrials(under.job);
 }
 
 async function follow(asked: Job, stop: AbortSignal): Promise<Job> {
@@ -85,6 +115,7 @@ export function cancelTrials(): void {
   const under = job.peek();
   given.abort();
   job.value = null;
+  remember("trials", null);
   if (under) cancelJob(under.id).catch(report);
 }
 

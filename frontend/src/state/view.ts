@@ -8,6 +8,7 @@ export { inspectorOpen } from "./layout";
 export type Theme = "dark" | "light";
 export type Tool = "select" | "stair" | "ramp" | "flat" | "free";
 export type Tab = "editor" | "scene" | "results";
+export type InspectorPage = "plan" | "controller" | "trials";
 
 export const LAYERS = {
   ghosts: "Poses between",
@@ -34,6 +35,7 @@ export const layers = signal<ReadonlySet<Layer>>(new Set(Object.keys(LAYERS) as 
 /** The table of the profile's points is open. */
 export const pointsOpen = signal(false);
 export const tab = signal<Tab>("editor");
+export const inspectorPage = signal<InspectorPage>("plan");
 
 export const hintSeen = signal(stored("hint") === "seen");
 

@@ -28,12 +28,22 @@ export function openStored(terrain: TerrainDocument): void {
   show(terrain, terrain);
 }
 
+/** The list as it is by now. */
+export async function readTerrains(): Promise<void> {
+  try {
+    terrains.value = await getTerrains();
+  } catch (error) {
+    report(error);
+  }
+}
+
 const reason = (error: unknown) => (error instanceof Error ? error.message : String(error));
 
 /** Save the drawing; what it replaces can be brought back. */
 export async function saveAs(name: string, description: string): Promise<boolean> {
-  const before = terrains.peek().find((t) => t.name === name && !t.readonly);
   try {
+    // Another window may have saved it meanwhile.
+    const before = (await getTerrains()).find((t) => t.name === name && !t.readonly);
     const saved = await putTerrain({ ...terrainDocument(committed.peek()), name, description });
     terrains.value = await getTerrains();
     origin.value = terrains.peek().find((t) => t.name === saved.name) ?? saved;

@@ -13,6 +13,7 @@ import { NameField } from "../ui/name-field";
 import { GenerateForm } from "./generate-form";
 import {
   openStored,
+  readTerrains,
   removeStored,
   saveAs,
   saveError,
@@ -37,6 +38,8 @@ export function TerrainMenu({ button }: { button: ComponentChildren }) {
 
 function TerrainPanel({ close }: { close: () => void }) {
   const file = useRef<HTMLInputElement>(null);
+  // Other windows and people save terrains, too.
+  useEffect(() => void readTerrains(), []);
   const [generating, setGenerating] = useState(false);
   const presets = terrains.value.filter((t) => t.readonly);
   const saved = terrains.value.filter((t) => !t.readonly);
@@ -96,7 +99,12 @@ function TerrainPanel({ close }: { close: () => void }) {
         {saved.length > 0 && <h4>Saved</h4>}
         {saved.map((terrain) => (
           <div class="row" key={terrain.name}>
-            <button type="button" class="item" onClick={() => choose(terrain, close)}>
+            <button
+              type="button"
+              class="item"
+              aria-pressed={terrain.name === drawing.value.name}
+              onClick={() => choose(terrain, close)}
+            >
               <span class="two" title={terrain.name}>
                 <span class="name">{terrain.name}</span>
                 <small>{terrain.description}</small>

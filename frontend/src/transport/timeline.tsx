@@ -1,5 +1,7 @@
 /** The clock as a slider, with the key poses on it. */
 
+import { computed, signal } from "@preact/signals";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import { hasFailed, type Rollout } from "../api/types";
 import { fixed } from "../geometry/format";
 import {
@@ -20,7 +22,36 @@ import { axisKind, cursor, ends, shareOf, shareOfTime, ticks, timeAt } from "./a
 const STEP = 0.1;
 const LEAP = 1;
 
+/** Marks nearer than this would lie over each other: of a cluster the first is drawn [px]. */
+const APART = 12;
+/** Of the timeline [px]. */
+const width = signal(0);
+
+/** Key poses that are marked: which, and their share of the axis. */
+const keyMarks = computed<[number, number][]>(() => {
+  const out: [number, number][] = [];
+  keyTimes.value.forEach((time, k) => {
+    const share = shareOfTime(time);
+    const last = out.at(-1)?.[1];
+    if (last === undefined || (share - last) * width.value >= APART) out.push([k, share]);
+  });
+  return out;
+});
+
+function useWidth() {
+  const bar = useRef<HTMLDivElement>(null);
+  useLayoutEffect(() => {
+    const observer = new ResizeObserver(() => {
+      width.value = bar.current?.clientWidth ?? 0;
+    });
+    observer.observe(bar.current!);
+    return () => observer.disconnect();
+  }, []);
+  return bar;
+}
+
 export function Timeline() {
+  const bar = useWidth();
   const end = plannedEnd.value;
   const percent = (share: number) => `${share * 100}%`;
   const growing = running.value === "a";
@@ -53,6 +84,7 @@ export function Timeline() {
   };
   return (
     <div
+      ref={bar}
       class="scrub"
       role="slider"
       tabIndex={0}
@@ -73,8 +105,8 @@ export function Timeline() {
         class={growing ? "buf" : failed ? "fell" : ""}
         style={{ width: percent(growing ? progress.value : cursor.value) }}
       />
-      {keyTimes.value.map((at, k) => (
-        <i key={k} style={{ left: percent(shareOfTime(at)) }} title={`Key pose ${k + 1}`} />
+      {keyMarks.value.map(([k, share]) => (
+        <i key={k} style={{ left: percent(share) }} title={`Key pose ${k + 1}`} />
       ))}
       {end > 0 && <em style={{ left: percent(cursor.value) }} />}
     </div>

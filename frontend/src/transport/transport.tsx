@@ -54,8 +54,12 @@ export function Transport() {
   );
 }
 
+/** From here on tenths are told, else hundredths: both times fit beside the buttons [s]. */
+const LONG = 100;
+
 function Clock() {
   const shown = plan.value;
+  const digits = plannedEnd.value < LONG ? 2 : 1;
   if (duration.value <= 0) {
     return (
       <div class="tm">
@@ -72,7 +76,7 @@ function Clock() {
   }
   return (
     <div class="tm">
-      {fixed(shownTime.value, 2)} <small>/ {fixed(plannedEnd.value, 2)} s</small>
+      {fixed(shownTime.value, digits)} <small>/ {fixed(plannedEnd.value, digits)} s</small>
     </div>
   );
 }

@@ -26,6 +26,8 @@ export function useRoving(root: RefObject<Item | null>, of = BUTTONS): void {
   useLayoutEffect(() => {
     const bar = root.current;
     if (!bar) return;
+    // Chromium makes SVG that listens for the focus a stop of its own.
+    if (bar instanceof SVGElement) bar.tabIndex = -1;
     const later = tended.current === bar ? setTimeout(() => tend(bar, of), SETTLED) : undefined;
     if (later === undefined) tend(bar, of);
     tended.current = bar;
