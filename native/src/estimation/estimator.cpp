@@ -15,7 +15,7 @@ constexpr double kWindow = 0.12;        // m; a wheel is looked for this far fro
 constexpr double kTouching = 0.15;      // of the share of the weight: a wheel that carries less says nothing
 constexpr double kForceTime = 0.015;    // s, smoothing of the forces
 // s, smoothing of the speed by which the wheels' scale is judged: noise in it would count twice, and shrink the scale.
-constexpr double kCruiseTime = 0.1;
+constexpr double kCruiseTime = 0.2;
 constexpr double kForceAtRest = 0.3;    // of a force's uncertainty in motion
 constexpr double kForceSpeed = 0.15;    // m/s of the wheel's centre from which on it is that in motion
 constexpr double kRoom = 0.10;          // m to the next face that a pair needs to roll on freely

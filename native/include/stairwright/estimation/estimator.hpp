@@ -31,7 +31,7 @@ namespace stairwright::estimation {
 struct Noise {
     // At the start, of what is believed there.
     double start_place = 0.03, start_height = 0.003, start_tilt = 0.02, start_heading = 0.04;
-    double start_gyro_bias = 0.01, start_force_bias = 0.2, scale = 0.01;
+    double start_gyro_bias = 0.01, start_force_bias = 0.2, scale = 0.015;
     // Of the sensors, a reading.
     double gyro = 0.02, specific_force = 0.5;
     // Growth in the square root of a second.
@@ -42,7 +42,7 @@ struct Noise {
     double face_place = 0.018, tread_height = 0.010;
     double place = 0.002, rolling = 0.03, aside = 0.03, off_face = 0.02;
     // A loaded tyre rolls on a radius that is smaller by this [m].
-    double deflection = 0.0003;
+    double deflection = 0.0004;
     // A wheel creeps: under a traction of a quarter of the weight it moves slower than it rolls by this, until a test of
     // the grip tells better [m/s].
     double creep = 0.014;
