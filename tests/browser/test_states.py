@@ -372,6 +372,8 @@ def test_narrow_pages_have_tabs(shared: Product) -> None:
         page.get_by_role("button", name="Download").click()
         assert page.evaluate(UNCOVERED, ".downloads .item"), "nor on a phone"
         page.keyboard.press("Escape")
+        # The page has a name where its logo alone is left of it.
+        assert page.get_by_role("heading", name="Stairwright").count() == 1
         # The clock is at hand beside the profile, and wide enough for a finger beside the results.
         timeline = page.get_by_role("slider", name="Time")
         assert timeline.is_visible()

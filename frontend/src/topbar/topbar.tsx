@@ -18,7 +18,7 @@ import { WorkspaceTabs } from "./workspace-tabs";
 export function TopBar() {
   return (
     <header class="top">
-      <h1 class="brand">
+      <h1 class="brand" aria-label="Stairwright">
         <Logo />
         <span class="wide">Stairwright</span>
       </h1>
