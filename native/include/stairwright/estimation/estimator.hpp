@@ -31,7 +31,7 @@ namespace stairwright::estimation {
 struct Noise {
     // At the start, of what is believed there.
     double start_place = 0.03, start_height = 0.003, start_tilt = 0.02, start_heading = 0.04;
-    double start_gyro_bias = 0.01, start_force_bias = 0.2, scale = 0.015;
+    double start_gyro_bias = 0.01, start_force_bias = 0.2, scale = 0.01;
     // Of the sensors, a reading.
     double gyro = 0.02, specific_force = 0.5;
     // Growth in the square root of a second.
