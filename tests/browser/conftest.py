@@ -104,6 +104,15 @@ class Product:
         panel.locator(".item", has_text=name).first.click()
         return self.planned()
 
+    def draw_flight(self, steps: int) -> Product:
+        """A flight of so many steps, otherwise as the generator offers it."""
+        page = self.page
+        page.get_by_role("button", name=TERRAIN).click()
+        page.get_by_role("button", name="Generate", exact=True).click()
+        page.get_by_label("Steps").fill(str(steps))
+        page.get_by_role("dialog").get_by_role("button", name="Generate", exact=True).click()
+        return self.has_corners(2 * steps + 2).planned()
+
     @property
     def status(self) -> str:
         """`feasible`, `infeasible`, `planning`, `refused` or `none`."""

@@ -369,11 +369,7 @@ def test_a_tall_flight_leaves_the_numbers_of_its_poses_readable(product: Product
     page = product.page
     page.set_viewport_size({"width": 1280, "height": 720})
     try:
-        page.get_by_role("button", name=TERRAIN).click()
-        page.get_by_role("button", name="Generate", exact=True).click()
-        page.get_by_label("Steps").fill("20")
-        page.get_by_role("dialog").get_by_role("button", name="Generate", exact=True).click()
-        product.has_corners(42).planned()
+        product.draw_flight(20)
         assert page.locator(".kb g").count() > 10
         assert page.evaluate(UNREADABLE) == []
     finally:

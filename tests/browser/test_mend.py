@@ -259,11 +259,7 @@ MARKS = """() => {
 
 def test_marks_on_the_timeline_do_not_lie_over_each_other(product: Product) -> None:
     page = product.page
-    page.get_by_role("button", name=TERRAIN).click()
-    page.get_by_role("button", name="Generate", exact=True).click()
-    page.get_by_label("Steps").fill("20")
-    page.get_by_role("dialog").get_by_role("button", name="Generate", exact=True).click()
-    product.has_corners(42).planned()
+    product.draw_flight(20)
     gaps = page.evaluate(MARKS)
     assert len(gaps) > 20
     assert min(gaps) > 11.5

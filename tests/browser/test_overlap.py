@@ -161,11 +161,7 @@ def test_a_refusal_has_no_overlaps(product: Product) -> None:
 
 def test_a_plan_of_minutes_has_no_overlaps(product: Product) -> None:
     page = product.page
-    page.get_by_role("button", name=TERRAIN).click()
-    page.get_by_role("button", name="Generate", exact=True).click()
-    page.get_by_label("Steps").fill("25")
-    page.get_by_role("dialog").get_by_role("button", name="Generate", exact=True).click()
-    product.has_corners(52).planned()
+    product.draw_flight(25)
     page.get_by_role("slider", name="Time").press("End")
     assert _everywhere(product) == []
 

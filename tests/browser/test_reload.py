@@ -8,7 +8,7 @@ import httpx
 import pytest
 from playwright.sync_api import expect
 
-from .conftest import PATIENCE, TERRAIN, Product
+from .conftest import PATIENCE, Product
 
 if TYPE_CHECKING:
     from tests.conftest import Server
@@ -19,12 +19,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 @pytest.fixture
 def climb(product: Product) -> Product:
     """A flight that takes the simulator some seconds."""
-    page = product.open().page
-    page.get_by_role("button", name=TERRAIN).click()
-    page.get_by_role("button", name="Generate", exact=True).click()
-    page.get_by_label("Steps").fill("20")
-    page.get_by_role("dialog").get_by_role("button", name="Generate", exact=True).click()
-    product.has_corners(42).planned()
+    product.open().draw_flight(20)
     product.linked('"stair-')
     return product
 

@@ -20,7 +20,7 @@ import { type InspectorPage, inspectorOpen, inspectorPage } from "../state/view"
 import { Icon } from "../ui/icon";
 import { Switch } from "../ui/switch";
 import { SeedRow } from "./seed";
-import { Segments } from "./segments";
+import { Choice, Segments } from "./segments";
 import { SettingGroups } from "./setting-groups";
 import { SettingRow } from "./setting-row";
 import { Tolerance } from "./tolerance";
@@ -103,32 +103,9 @@ export function Inspector() {
 function Planning() {
   return (
     <>
-      <Segments
-        label="Method"
-        options={METHODS}
-        value={method.value}
-        onChoose={(next) => {
-          method.value = next;
-        }}
-      />
-      {method.value === "path" && (
-        <Segments
-          label="Timing"
-          options={TIMINGS}
-          value={timing.value}
-          onChoose={(next) => {
-            timing.value = next;
-          }}
-        />
-      )}
-      <Segments
-        label="Facing"
-        options={FACINGS}
-        value={facing.value}
-        onChoose={(next) => {
-          facing.value = next;
-        }}
-      />
+      <Choice label="Method" options={METHODS} of={method} />
+      {method.value === "path" && <Choice label="Timing" options={TIMINGS} of={timing} />}
+      <Choice label="Facing" options={FACINGS} of={facing} />
       <div class="r2 cmp-row">
         <span class="lab">Compare</span>
         <div class="ab">

@@ -1,5 +1,7 @@
 /** One of a few choices side by side; arrows walk them. */
 
+import type { Signal } from "@preact/signals";
+
 interface SegmentsProps<T extends string> {
   label: string;
   /** In a header: no visible label. */
@@ -47,5 +49,21 @@ export function Segments<T extends string>({
         ))}
       </div>
     </div>
+  );
+}
+
+/** The same of a choice that a signal holds. */
+export function Choice<T extends string>({
+  of,
+  ...named
+}: Pick<SegmentsProps<T>, "label" | "options"> & { of: Signal<T> }) {
+  return (
+    <Segments
+      {...named}
+      value={of.value}
+      onChoose={(next) => {
+        of.value = next;
+      }}
+    />
   );
 }

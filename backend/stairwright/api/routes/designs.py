@@ -218,9 +218,8 @@ def _state(summary: DesignSummary, following: Following | None) -> dict[str, Any
     job = following.job
     return {
         "state": job.state,
-        "progress": round(
-            min(1.0, max(share, following.progress.share)), 4
-        ),  # counts what is replayed, too
+        # A search that goes on counts what is replayed, too.
+        "progress": round(min(1.0, max(share, following.progress.share)), 4),
         "eta": following.eta,
         "stage": following.stage,
         "outdated": following.record.engine != engine_of(_asked(following).ask),
