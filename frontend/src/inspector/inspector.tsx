@@ -20,7 +20,7 @@ import { type InspectorPage, inspectorOpen, inspectorPage } from "../state/view"
 import { Icon } from "../ui/icon";
 import { Switch } from "../ui/switch";
 import { SeedRow } from "./seed";
-import { Choice, Segments } from "./segments";
+import { Choice } from "./segments";
 import { SettingGroups } from "./setting-groups";
 import { SettingRow } from "./setting-row";
 import { Tolerance } from "./tolerance";
@@ -62,17 +62,7 @@ export function Inspector() {
             Reset all
           </button>
         )}
-        {open && (
-          <Segments
-            small
-            label="Settings"
-            options={PAGES}
-            value={page}
-            onChoose={(next) => {
-              inspectorPage.value = next;
-            }}
-          />
-        )}
+        {open && <Choice small label="Settings" options={PAGES} of={inspectorPage} />}
         <button
           type="button"
           class="t ico"

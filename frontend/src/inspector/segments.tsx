@@ -56,7 +56,7 @@ export function Segments<T extends string>({
 export function Choice<T extends string>({
   of,
   ...named
-}: Pick<SegmentsProps<T>, "label" | "options"> & { of: Signal<T> }) {
+}: Omit<SegmentsProps<T>, "value" | "onChoose"> & { of: Signal<T> }) {
   return (
     <Segments
       {...named}
