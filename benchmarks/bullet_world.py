@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from stairwright._core import GRAVITY
 from stairwright.export.urdf_file import FIXED_FRAMES, robot_urdf
 from stairwright.robot.description import JOINTS, LEGS, Robot
-from stairwright.robot.mujoco_model import TERRAIN_HALF_WIDTH, TIMESTEP, prisms
+from stairwright.robot.mujoco_model import TIMESTEP
+from stairwright.robot.mujoco_terrain import TERRAIN_HALF_WIDTH, prisms
 from stairwright.terrain.profile import Terrain
 
 Floats = NDArray[np.float64]

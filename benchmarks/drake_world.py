@@ -38,7 +38,8 @@ from pydrake.systems.framework import DiagramBuilder
 
 from stairwright._core import GRAVITY
 from stairwright.robot.description import LEGS, Robot
-from stairwright.robot.mujoco_model import TERRAIN_HALF_WIDTH, TIMESTEP, prisms
+from stairwright.robot.mujoco_model import TIMESTEP
+from stairwright.robot.mujoco_terrain import TERRAIN_HALF_WIDTH, prisms
 from stairwright.terrain.profile import Terrain
 
 Floats = NDArray[np.float64]

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from .benchmark import Figures
     from .planning.plan import Certificate, Plan
     from .simulation.margins_result import RobustMargins
-    from .simulation.result import Rollout
+    from .simulation.result import Metrics, Rollout
     from .simulation.trials_result import Trials
 
 
@@ -113,12 +113,20 @@ def of_rollout(run: Rollout) -> str:
                 _degrees(m.pitch_error_rms) + " rms, " + _degrees(m.pitch_error_max) + " at most",
             ),
             ("torque peaks", f"legs {m.torque_peak:.1f} Nm, wheels {m.wheel_torque_peak:.1f} Nm"),
+            *([("torque rms", _warmth(m))] if m.torque_rms is not None else []),
             ("energy", f"{m.energy:.0f} J"),
             ("contacts", f"{m.link_contacts} control steps with a link on the terrain"),
             ("speed", f"{m.speed_mean:.3f} m/s; simulated {m.real_time_factor:.0f} x real time"),
             ("id", run.id),
         ]
     )
+
+
+def _warmth(m: Metrics) -> str:
+    """What heats the motors, and whether they stand it."""
+    share = m.continuous_share
+    known = "" if share is None else f", {100 * share:.0f} % of what a motor holds without end"
+    return f"legs {m.torque_rms:.1f} Nm{known}"
 
 
 def _degrees(angle: float) -> str:

@@ -5,8 +5,9 @@ import pytest
 
 import stairwright as sw
 from stairwright.planning.path_planner import path_planner
-from stairwright.planning.standing import sample_wheel_places, stance
+from stairwright.planning.standing import stance
 from stairwright.planning.weights import PathWeights
+from stairwright.planning.wheel_samples import sample_wheel_places
 from stairwright.terrain.profile import Terrain
 
 A1S = ("a1_wheeled", "a1_wheeled_x")

@@ -11,7 +11,8 @@ import pytest
 from stairwright import load_robot, robots
 from stairwright.robot import kinematics
 from stairwright.robot.description import JOINTS, LEGS, Robot
-from stairwright.robot.mujoco_model import build_model, build_spec, prisms
+from stairwright.robot.mujoco_model import build_model, build_spec
+from stairwright.robot.mujoco_terrain import prisms
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
 

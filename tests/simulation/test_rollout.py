@@ -55,6 +55,17 @@ def test_climbs_a_stair(climbed: Rollout) -> None:
     assert metrics.progress == pytest.approx(1.0)
 
 
+def test_what_heats_the_motors_is_told_against_what_they_hold(climbed: Rollout) -> None:
+    """As a share of the continuous torque that the robot's file states, of the motor nearest it."""
+    assert climbed.metrics.torque_rms is not None
+    assert 1.0 < climbed.metrics.torque_rms < climbed.metrics.torque_peak
+    assert climbed.metrics.continuous_share is None  # nobody publishes it of the A1
+    described = climbed.robot_description.model_dump(mode="json")
+    described["actuators"]["leg"]["continuous"] = 20.0
+    again = rollout(sw.plan(climbed.terrain, described))
+    assert again.metrics.continuous_share == pytest.approx(again.metrics.torque_rms / 20.0)
+
+
 def test_series_are_consistent(climbed: Rollout) -> None:
     series, robot = climbed.series, climbed.robot_description
     assert np.allclose(np.diff(series.time), 0.01)

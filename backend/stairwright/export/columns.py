@@ -15,6 +15,7 @@ FRAMES = (
     "joints turn about +y, zero: link straight down (thigh) or in line with the thigh (calf)"
 )
 UNITS = "SI: m, s, rad, N, Nm"
+SHOWN_HALF_WIDTH = 0.5  # m of a terrain, in what shows a run in 3-D
 
 # Names and units of the columns; an empty unit is a number without dimension.
 PLAN_COLUMNS: dict[str, tuple[tuple[str, str], ...]] = {

@@ -19,10 +19,9 @@ import numpy as np
 from stairwright.robot.description import Robot
 from stairwright.simulation.result import Rollout
 
-from .columns import FRAMES, UNITS
+from .columns import FRAMES, SHOWN_HALF_WIDTH, UNITS
 
 MAX_SAMPLES = 2500
-TERRAIN_HALF_WIDTH = 0.5  # m
 _LAYOUT = (
     ("time", 1),
     ("base_position", 3),
@@ -77,7 +76,7 @@ def _run(rollout: Rollout) -> dict[str, Any]:
             "vertices": rollout.terrain.vertices.tolist(),
             "hash": rollout.terrain_hash,
         },
-        "half_width": TERRAIN_HALF_WIDTH,
+        "half_width": SHOWN_HALF_WIDTH,
         "robot": {**_robot(rollout.robot_description), "hash": rollout.robot_hash},
         "metrics": _metrics(rollout),
         "series": _series(rollout),

@@ -21,7 +21,7 @@ from stairwright.robot.kinematics import lengths
 from stairwright.simulation.result import Rollout
 from stairwright.terrain.profile import Terrain
 
-from .columns import FRAMES, UNITS, plan_arrays
+from .columns import FRAMES, SHOWN_HALF_WIDTH, UNITS, plan_arrays
 from .joint_commands import JointCommands, joint_commands
 from .mcap_bag import Bag, stamp
 from .urdf_file import FIXED_FRAMES, TRUNK, robot_urdf
@@ -29,7 +29,6 @@ from .urdf_file import FIXED_FRAMES, TRUNK, robot_urdf
 WORLD = "world"
 STATE_RATE = 50.0  # Hz; a plan's joint states and transforms, at most
 MOST_STATES = 20_000  # of a plan
-TERRAIN_HALF_WIDTH = 0.5  # m
 TERRAIN_DEPTH = 0.1  # m below the lowest point
 TERRAIN_COLOUR = (0.62, 0.65, 0.70, 1.0)
 _WHEELS = slice(2, 12, 3)
@@ -134,7 +133,7 @@ def _transforms(
 def terrain_triangles(terrain: Terrain) -> Floats:
     """Corners (3 n, 3) of triangles [m]: the surface, and the cut faces on both sides."""
     p = terrain.vertices
-    left, right = (np.insert(p, 1, y, axis=1) for y in (TERRAIN_HALF_WIDTH, -TERRAIN_HALF_WIDTH))
+    left, right = (np.insert(p, 1, y, axis=1) for y in (SHOWN_HALF_WIDTH, -SHOWN_HALF_WIDTH))
     floor = float(p[:, 1].min()) - TERRAIN_DEPTH
     quads = [(right, left)]  # each between two lines of points along the terrain
     for side in (left, right):

@@ -20,29 +20,23 @@ import numpy as np
 
 from stairwright._core import GRAVITY
 from stairwright.arguments import as_friction
-from stairwright.arrays import Floats
 from stairwright.terrain.profile import Terrain
 
 from .description import JOINTS, LEGS, Robot
 from .legs import LinkForm
+from .mujoco_terrain import GROUND, TERRAIN_HALF_WIDTH, add_terrain
 from .parts import Actuator, Outline
 
 TIMESTEP = 0.001  # s
-TERRAIN_HALF_WIDTH = 1.0  # m
-TERRAIN_DEPTH = 0.5  # m below the lowest point
-RUN_OUT = 1.0  # m of level ground beyond either end
-SPIKE_WIDTH = 0.002  # m; a zero-width spike becomes a prism this thick
-_VERTICAL = 1e-6  # m; a face that advances less than this is vertical
 
 # Collision bits: a pair touches when contype of one meets conaffinity of the other.
-_GROUND, _LEFT, _RIGHT = 1, 2, 4
+_LEFT, _RIGHT = 2, 4  # beside the terrain's, `GROUND`
 _BITS = {  # contype, conaffinity
-    "terrain": (_GROUND, 0),
-    "trunk": (0, _GROUND),
-    "FL": (_LEFT, _GROUND),
-    "RL": (0, _GROUND | _LEFT),
-    "FR": (_RIGHT, _GROUND),
-    "RR": (0, _GROUND | _RIGHT),
+    "trunk": (0, GROUND),
+    "FL": (_LEFT, GROUND),
+    "RL": (0, GROUND | _LEFT),
+    "FR": (_RIGHT, GROUND),
+    "RR": (0, GROUND | _RIGHT),
 }
 _COLLISION_GROUP, _VISUAL_GROUP = 3, 2
 # Contact sensor of a wheel: how many contacts with the world, and their net force *on the world*.
@@ -55,7 +49,6 @@ _WHEEL_SENSOR = [
 # Contact sensor of the whole robot: how many contacts, with the world or with itself.
 _COUNT_SENSOR = [1 << int(mujoco.mjtConDataField.mjCONDATA_FOUND), 0, 1]
 _COLOURS = {
-    "terrain": (0.62, 0.65, 0.70, 1.0),
     "trunk": (0.16, 0.22, 0.32, 1.0),
     "thigh": (0.90, 0.55, 0.15, 1.0),
     "calf": (0.75, 0.78, 0.82, 1.0),
@@ -137,54 +130,6 @@ def build_model(
 ) -> Any:
     """The compiled `mujoco.MjModel` of `build_spec`."""
     return build_spec(robot, terrain, friction, half_width=half_width, visual=visual).compile()
-
-
-def prisms(terrain: Terrain) -> list[Floats]:
-    """Convex outlines (k, 2) of the ground: one under each stretch, thin ones for spikes.
-
-    The ground goes on level beyond its ends: a robot that is not quite where it believes rolls on.
-    """
-    run_out = np.array([RUN_OUT, 0.0])
-    p = np.vstack([terrain.vertices[0] - run_out, terrain.vertices, terrain.vertices[-1] + run_out])
-    floor = float(p[:, 1].min()) - TERRAIN_DEPTH
-    outlines = []
-    for i in range(len(p) - 1):
-        (x0, z0), (x1, z1) = p[i], p[i + 1]
-        if x1 - x0 > _VERTICAL:
-            outlines.append(np.array([(x0, floor), (x1, floor), (x1, z1), (x0, z0)]))
-        elif i + 2 < len(p) and z1 > z0 and p[i + 2, 0] - x1 <= _VERTICAL and p[i + 2, 1] < z1:
-            a, b = x1 - SPIKE_WIDTH / 2, x1 + SPIKE_WIDTH / 2
-            outlines.append(np.array([(a, floor), (b, floor), (b, z1), (a, z1)]))
-    return outlines
-
-
-def add_terrain(spec: Any, terrain: Terrain, friction: float, half_width: float) -> None:
-    """Add the terrain's prisms to the world: boxes where the top is level, meshes elsewhere."""
-    contype, conaffinity = _BITS["terrain"]
-    for i, outline in enumerate(prisms(terrain)):
-        shape: dict[str, Any]
-        (x0, floor), (x1, _), (_, z1), (_, z0) = outline
-        if z0 == z1:
-            shape = {
-                "type": mujoco.mjtGeom.mjGEOM_BOX,
-                "size": [(x1 - x0) / 2, half_width, (z0 - floor) / 2],
-                "pos": [(x0 + x1) / 2, 0.0, (z0 + floor) / 2],
-            }
-        else:
-            mesh = spec.add_mesh(name=f"terrain_{i}")
-            corners = [(x, y, z) for y in (-half_width, half_width) for x, z in outline]
-            mesh.uservert = np.array(corners).ravel()
-            shape = {"type": mujoco.mjtGeom.mjGEOM_MESH, "meshname": mesh.name}
-        spec.worldbody.add_geom(
-            name=f"terrain_{i}",
-            contype=contype,
-            conaffinity=conaffinity,
-            priority=1,  # the terrain's friction holds, whatever touches it
-            condim=3,
-            friction=[friction, 0.0, 0.0],
-            rgba=_COLOURS["terrain"],
-            **shape,
-        )
 
 
 def _add_robot(spec: Any, robot: Robot, friction: float, visual: bool) -> None:

@@ -27,12 +27,8 @@ from stairwright.robot.importing.read import read_closely
 from stairwright.robot.importing.report import JointMap, Notes
 from stairwright.robot.importing.source import read_spec
 from stairwright.robot.importing.upload import Upload, unpack
-from stairwright.robot.mujoco_model import (
-    TERRAIN_HALF_WIDTH,
-    add_contact_sensors,
-    add_terrain,
-    set_physics,
-)
+from stairwright.robot.mujoco_model import add_contact_sensors, set_physics
+from stairwright.robot.mujoco_terrain import TERRAIN_HALF_WIDTH, add_terrain
 from stairwright.terrain.profile import Terrain
 
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)

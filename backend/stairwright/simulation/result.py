@@ -109,6 +109,14 @@ class Metrics(Model):
     joint_error_rms: float = Field(description="thighs and calves [rad]")
     torque_peak: float = Field(description="thighs and calves [Nm]")
     wheel_torque_peak: float = Field(description="[Nm]")
+    torque_rms: float | None = Field(
+        None, description="largest root mean square of a thigh's or calf's torque [Nm]"
+    )
+    continuous_share: float | None = Field(
+        None,
+        description="largest root mean square of a motor's torque as a share of its `continuous` "
+        "torque: above 1 it gets too hot in time; null where the robot's file has none",
+    )
     energy: float = Field(description="integral of |torque x speed| over all joints [J]")
     link_contacts: int = Field(
         description="control steps in which trunk or a link touched the terrain"

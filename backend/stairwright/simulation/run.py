@@ -261,7 +261,7 @@ class Run:
             outcome=outcome,
             reason=reason,
             metrics=measured(
-                ending, self.loads, self.score, self.robot.mass, self.wall, self.dt, speed
+                ending, self.loads, self.score, self.robot, series, self.wall, self.dt, speed
             ),
             series=series,
             plan=plan if keep_plan else None,

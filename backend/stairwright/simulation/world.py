@@ -12,7 +12,8 @@ import numpy as np
 
 from stairwright.arrays import Floats
 from stairwright.robot.description import LEGS, Robot
-from stairwright.robot.mujoco_model import TERRAIN_HALF_WIDTH, build_spec
+from stairwright.robot.mujoco_model import build_spec
+from stairwright.robot.mujoco_terrain import TERRAIN_HALF_WIDTH
 from stairwright.terrain.profile import Terrain
 
 from .disturbance import Disturbance

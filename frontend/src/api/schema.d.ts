@@ -2326,6 +2326,16 @@ export interface components {
              */
             wheel_torque_peak: number;
             /**
+             * Torque Rms
+             * @description largest root mean square of a thigh's or calf's torque [Nm]
+             */
+            torque_rms?: number | null;
+            /**
+             * Continuous Share
+             * @description largest root mean square of a motor's torque as a share of its `continuous` torque: above 1 it gets too hot in time; null where the robot's file has none
+             */
+            continuous_share?: number | null;
+            /**
              * Energy
              * @description integral of |torque x speed| over all joints [J]
              */

@@ -62,6 +62,8 @@ export interface Metrics {
   joint_error_rms: number;
   torque_peak: number;
   wheel_torque_peak: number;
+  torque_rms?: number | null;
+  continuous_share?: number | null;
   energy: number;
   link_contacts: number;
   speed_mean: number;

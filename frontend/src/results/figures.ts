@@ -117,6 +117,13 @@ export function figures(count: number, limits: Limits | undefined, apart: boolea
       bad: (_m, r) => limits !== undefined && atLimit(r, limits),
     },
     {
+      title: "Torque",
+      note: "rms",
+      hint: "Largest root mean square of a thigh’s or calf’s torque, which heats its motor; marked where it is more than a motor’s continuous torque",
+      of: (m) => maybe(m.torque_rms, 1, " Nm"),
+      bad: (m) => (m.continuous_share ?? 0) > 1,
+    },
+    {
       title: "Energy",
       hint: "Work that the motors did or took up in the rollout",
       ...(apart ? {} : { planned: PLANNED[0]!.of }),

@@ -20,14 +20,13 @@ from stairwright.arrays import Floats
 from stairwright.errors import InputError
 from stairwright.planning.certificate.dynamics import dynamics_of
 from stairwright.planning.certificate.equilibrium import TOUCH, WHEEL_GAP, balanced, near_faces
-from stairwright.planning.certificate.motion import Motion, Samples, sampled
+from stairwright.planning.certificate.motion import LEGS_GAP, Motion, Samples, sampled
 from stairwright.planning.certificate.tolerance.checks import tolerance_checks
 from stairwright.planning.plan import Certificate, Check, Plan
 from stairwright.planning.tolerance import Tolerance
 from stairwright.robot import kinematics as kin
 
 WHEEL_SINK = 0.001  # m
-LEGS_GAP = 0.005  # m between front and rear leg
 _JOINT_STEP = 0.35  # rad between two poses
 
 Scope = Literal["motion", "poses"]

@@ -17,6 +17,7 @@ from stairwright.planning.plan import Plan
 from stairwright.robot.description import Robot
 from stairwright.robot.kinematics import Frames
 
+LEGS_GAP = 0.005  # m, least between front and rear leg
 _STRIDE = 0.006  # m
 _CLOSER = 8  # times more samples where those do not settle it
 

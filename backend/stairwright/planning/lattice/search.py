@@ -10,8 +10,9 @@ from stairwright.planning.lattice.body_lattice import Bounds, Lattice, LatticePa
 from stairwright.planning.lattice.cells import ALL_MOVES, FORWARD, Cells, alike
 from stairwright.planning.lattice.ends import anywhere, arrival, near, pose_in, widest_pose
 from stairwright.planning.path_problem import LAG, PathProblem
-from stairwright.planning.standing import StandingPose, sample_wheel_places, scale, standing_height
+from stairwright.planning.standing import StandingPose, scale, standing_height
 from stairwright.planning.threads import still_wanted
+from stairwright.planning.wheel_samples import sample_wheel_places
 
 Place = tuple[float, float]  # arc lengths of front and rear wheel [m]
 

@@ -24,9 +24,9 @@ from stairwright.planning.plan import (
 )
 from stairwright.planning.smoothing.path_timing import path_parameter, pose_times
 from stairwright.planning.smoothing.refine import Refined
-from stairwright.planning.standing import CORNER, kink
 from stairwright.planning.tolerance import Tolerance
 from stairwright.planning.weights import PathWeights
+from stairwright.planning.wheel_samples import CORNER, kink
 from stairwright.robot import kinematics as kin
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain

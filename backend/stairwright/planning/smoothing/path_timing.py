@@ -7,7 +7,7 @@ import numpy as np
 from stairwright import _core
 from stairwright.arrays import Floats
 from stairwright.planning.plan import Plan
-from stairwright.planning.standing import rolled
+from stairwright.planning.wheel_samples import rolled
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import wheel_path

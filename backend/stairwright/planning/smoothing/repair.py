@@ -16,8 +16,9 @@ from stairwright.planning.lattice.body_lattice import LOOSE, make_lattice
 from stairwright.planning.lattice.search import Search
 from stairwright.planning.path_problem import PathProblem
 from stairwright.planning.smoothing.refine import NodeSpacing, Refined, concatenated, refine
-from stairwright.planning.standing import rolled, scale
+from stairwright.planning.standing import scale
 from stairwright.planning.threads import still_wanted
+from stairwright.planning.wheel_samples import rolled
 
 
 class Stage(NamedTuple):

@@ -16,7 +16,7 @@ import shapely
 from numpy.typing import NDArray
 
 from stairwright.arrays import Floats, Ints
-from stairwright.planning.certificate.motion import Motion, Samples, sampled
+from stairwright.planning.certificate.motion import LEGS_GAP, Motion, Samples, sampled
 from stairwright.planning.certificate.tolerance.ground import Geometry
 from stairwright.planning.certificate.tolerance.holding import Holding
 from stairwright.planning.certificate.tolerance.legs import Sweep, VariedLeg
@@ -25,7 +25,6 @@ from stairwright.planning.plan import Check
 from stairwright.planning.tolerance import Tolerance
 from stairwright.robot import kinematics as kin
 
-LEGS_GAP = 0.005  # m between front and rear leg
 NAMES = {  # of the checks, by what a tolerance may lack
     "trunk": "clearance of the trunk within tolerance",
     "links": "clearance of the links within tolerance",
