@@ -69,7 +69,8 @@ function useRoom() {
 export function Card({ result }: { result: Rollout }) {
   const card = useRoom();
   const other = compare.value ? runB.value : null;
-  const rows = (apart: boolean) => figures(other ? 2 : 1, robot.value?.limits, apart);
+  const results = other ? [result, other] : [result];
+  const rows = (apart: boolean) => figures(results, robot.value?.limits, apart);
   const sentences = result.outcome !== "success" || runPlan.value?.certificate?.motion;
   const heads = other ? 1 : 0;
   const needed = AROUND + (sentences ? SENTENCES : 0) + (rows(Boolean(other)).length + heads) * ROW;

@@ -49,6 +49,18 @@ function atLimit({ series }: Rollout, [front, rear]: Limits): boolean {
   );
 }
 
+/** Whether a motor gave more than it can give without end. */
+const tooHot = ({ metrics }: Rollout): boolean => (metrics.continuous_share ?? 0) > 1;
+
+/** Told where there is room, or a motor gets too hot. */
+const torqueRms: Figure = {
+  title: "Torque",
+  note: "rms",
+  hint: "Largest root mean square of a thigh’s or calf’s torque, which heats its motor; marked where it is more than a motor’s continuous torque",
+  of: (m) => maybe(m.torque_rms, 1, " Nm"),
+  bad: (_m, r) => tooHot(r),
+};
+
 /** What a plan states of its motors' work. */
 export const PLANNED: readonly {
   title: string;
@@ -75,7 +87,11 @@ export const PLANNED: readonly {
  * Of one rollout, or of several to compare: only then their outcomes are among the figures.
  * What was planned has rows of its own where it stands `apart`, else it stands beside a title.
  */
-export function figures(count: number, limits: Limits | undefined, apart: boolean): Figure[] {
+export function figures(
+  results: readonly Rollout[],
+  limits: Limits | undefined,
+  apart: boolean,
+): Figure[] {
   const outcome: Figure = {
     title: "Outcome",
     of: (_m, r) => OUTCOMES[r.outcome],
@@ -83,7 +99,7 @@ export function figures(count: number, limits: Limits | undefined, apart: boolea
   };
   const motors = limits ? legLimits(limits).map((each) => fixed(each, 1)) : [];
   return [
-    ...(count > 1 ? [outcome] : []),
+    ...(results.length > 1 ? [outcome] : []),
     {
       title: "Duration",
       of: (m) => `${fixed(m.duration, 1)} s`,
@@ -116,13 +132,7 @@ export function figures(count: number, limits: Limits | undefined, apart: boolea
       of: (m) => `${fixed(m.torque_peak, 1)} Nm`,
       bad: (_m, r) => limits !== undefined && atLimit(r, limits),
     },
-    {
-      title: "Torque",
-      note: "rms",
-      hint: "Largest root mean square of a thigh’s or calf’s torque, which heats its motor; marked where it is more than a motor’s continuous torque",
-      of: (m) => maybe(m.torque_rms, 1, " Nm"),
-      bad: (m) => (m.continuous_share ?? 0) > 1,
-    },
+    ...(apart || results.some(tooHot) ? [torqueRms] : []),
     {
       title: "Energy",
       hint: "Work that the motors did or took up in the rollout",

@@ -37,7 +37,9 @@ function Figures({ of, plan }: { of: Rollout; plan: Plan | null }) {
         pitch error {fixed(degrees(m.pitch_error_max), 1)}° max,{" "}
         {fixed(degrees(m.pitch_error_rms), 1)}° rms
       </span>
-      <span>peak torque {fixed(m.torque_peak, 1)} Nm</span>
+      <span>
+        peak torque {fixed(m.torque_peak, 1)} Nm, {maybe(m.torque_rms, 1, " Nm")} rms
+      </span>
       <span>{m.link_contacts} link contacts</span>
       <span>mean speed {fixed(m.speed_mean, 2)} m/s</span>
       {m.speed_stairs && <span>on the stairs {fixed(m.speed_stairs, 2)} m/s</span>}
