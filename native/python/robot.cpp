@@ -23,7 +23,7 @@ std::array<LegPoints, 2> legs(const Robot& robot, const Trunk3& t, const Joints4
 void bind_robot(nb::module_& m) {
     nb::class_<Vec2>(m, "Vec2").def(nb::init<double, double>()).def_rw("x", &Vec2::x).def_rw("z", &Vec2::z);
     nb::class_<Range>(m, "Range").def(nb::init<double, double>()).def_rw("lower", &Range::lower).def_rw("upper", &Range::upper);
-    nb::class_<Motor>(m, "Motor").def(nb::init<double, double, double>(), nb::arg("torque"), nb::arg("speed"), nb::arg("armature") = 0.0).def_rw("torque", &Motor::torque).def_rw("speed", &Motor::speed);
+    nb::class_<Motor>(m, "Motor").def(nb::init<double, double, double, double>(), nb::arg("torque"), nb::arg("speed"), nb::arg("armature") = 0.0, nb::arg("damping") = 0.0).def_rw("torque", &Motor::torque).def_rw("speed", &Motor::speed);
     nb::class_<Capsule>(m, "Capsule").def(nb::init<Vec2, Vec2, double>());
     nb::class_<Polygon>(m, "Polygon").def("__init__", [](Polygon* self, const Points& corners) { new (self) Polygon(points(corners)); });
     nb::class_<Link>(m, "Link").def("__init__", [](Link* self, Vec2 end, Vec2 com, double mass, double inertia, std::vector<Capsule> shape) {

@@ -66,7 +66,7 @@ def _leg(leg: Leg) -> Iterator[str]:
     yield _line("calf_range", *leg.limits.calf)
     for part in ("thigh", "calf", "wheel"):
         motor: Actuator = getattr(leg, f"{part}_motor")
-        yield _line(f"{part}_motor", motor.torque, motor.speed, motor.armature)
+        yield _line(f"{part}_motor", motor.torque, motor.speed, motor.armature, motor.damping)
     yield _line("knee", leg.knee)
 
 

@@ -43,7 +43,7 @@ def _link(link: LinkForm) -> _core.Link:
 
 
 def _motor(actuator: Actuator) -> _core.Motor:
-    return _core.Motor(actuator.torque, actuator.speed, actuator.armature)
+    return _core.Motor(actuator.torque, actuator.speed, actuator.armature, actuator.damping)
 
 
 def _anticlockwise(points: list[tuple[float, float]]) -> Floats:

@@ -27,6 +27,7 @@ struct Motor {
     double torque = 0.0;  // Nm
     double speed = 0.0;   // rad/s
     double armature = 0.0;  // rotor inertia, as the joint feels it [kg m^2]
+    double damping = 0.0;   // viscous friction in motor and joint [Nm s/rad]
 };
 
 struct Capsule {

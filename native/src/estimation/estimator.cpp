@@ -14,8 +14,7 @@ namespace {
 constexpr double kWindow = 0.12;        // m; a wheel is looked for this far from where it was
 constexpr double kTouching = 0.15;      // of the share of the weight: a wheel that carries less says nothing
 constexpr double kForceTime = 0.015;    // s, smoothing of the forces
-// s, smoothing of the speed by which the wheels' scale is judged: noise in it would count twice, and shrink the scale.
-constexpr double kCruiseTime = 0.1;
+constexpr double kCruiseTime = 0.1;    // s, smoothing of the speed that a wheel rolls at
 constexpr double kForceAtRest = 0.3;    // of a force's uncertainty in motion
 constexpr double kForceSpeed = 0.15;    // m/s of the wheel's centre from which on it is that in motion
 constexpr double kRoom = 0.10;          // m to the next face that a pair needs to roll on freely
@@ -112,15 +111,17 @@ void Estimator::see_legs(const Readings& readings, double dt) {
         const Vec2 at_knee = leg.hip + knee;
         w.leg = {world(leg.hip), world(at_knee), world(w.place), world(leg.hip + upper * leg.thigh.com),
                  world(at_knee + lower * leg.calf.com)};
-        const WheelForce f = wheel_force(leg, w.leg, readings.torques[3 * i], readings.torques[3 * i + 1], readings.torques[3 * i + 2]);
+        // What turns the joint: the motor's torque less what its own friction takes.
+        const auto torque = [&](int k, const Motor& motor) { return readings.torques[3 * i + k] - motor.damping * readings.joint_rates[3 * i + k]; };
+        const WheelForce f = wheel_force(leg, w.leg, torque(0, leg.thigh_motor), torque(1, leg.calf_motor), torque(2, leg.wheel_motor));
         if (f.known) w.felt += share * (f.force - w.felt);
         const double rate = readings.joint_rates[3 * i] + readings.joint_rates[3 * i + 1] + readings.joint_rates[3 * i + 2] + rate_[1];
         w.rolled = leg.wheel.radius * rate * dt;
         // What spins the wheel up does not reach the ground.
         const double spin_up = started_ ? (leg.wheel.inertia + leg.wheel_motor.armature) * (rate - w.rate_now) / dt / leg.wheel.radius : 0.0;
         w.traction += share * (f.traction - spin_up - w.traction);
+        w.cruise += dt / (kCruiseTime + dt) * (leg.wheel.radius * w.rate_now - w.cruise);
         w.rate_now = rate;
-        w.cruise += dt / (kCruiseTime + dt) * (leg.wheel.radius * rate - w.cruise);
     }
 }
 

@@ -78,7 +78,7 @@ class Lines {
 // Place of the next joint (x, z), of the mass centre (x, z), mass, moment of inertia.
 Link link(const Numbers& n) { return {{n[0], n[1]}, {n[2], n[3]}, n[4], n[5], {}}; }
 // Torque, no-load speed, rotor inertia.
-Motor motor(const Numbers& n) { return {n[0], n[1], n[2]}; }
+Motor motor(const Numbers& n) { return {n[0], n[1], n[2], n[3]}; }
 
 Leg leg(Lines& lines, const std::string& pair) {
     const auto numbers = [&](const char* key, std::size_t count) { return lines.numbers(pair + "." + key, count); };
@@ -89,8 +89,8 @@ Leg leg(Lines& lines, const std::string& pair) {
     out.thigh = link(numbers("thigh", 6)), out.calf = link(numbers("calf", 6));
     out.wheel = {wheel[0], wheel[1], wheel[2]};  // radius, mass, moment of inertia
     out.thigh_range = {thigh_range[0], thigh_range[1]}, out.calf_range = {calf_range[0], calf_range[1]};
-    out.thigh_motor = motor(numbers("thigh_motor", 3)), out.calf_motor = motor(numbers("calf_motor", 3));
-    out.wheel_motor = motor(numbers("wheel_motor", 3));
+    out.thigh_motor = motor(numbers("thigh_motor", 4)), out.calf_motor = motor(numbers("calf_motor", 4));
+    out.wheel_motor = motor(numbers("wheel_motor", 4));
     out.knee = knee[0];
     return out;
 }

@@ -117,7 +117,7 @@ class Estimator {
         double put_back = 0.0;    // how far it has been put back on that piece, see Estimator::put_back [m]
         double rolled = 0.0;      // by the last step [m]
         double rate_now = 0.0;    // absolute, of its turning [rad/s]
-        double cruise = 0.0;      // speed that it rolls at, smoothed [m/s]
+        double cruise = 0.0;      // speed that it rolled at until the reading before this one, smoothed [m/s]
         bool on_face = false;     // a steep one, or in a corner before one
         double known = 0.0;       // for how long it has been there, or on a tread [s]
         double least_push = 0.0;  // of a wall that counts as felt [N]
