@@ -16,7 +16,8 @@ MOTION = 1.25  # of the friction at rest, that is needed in motion
 TESTED = 0.9  # of the friction that the plan needs: more than that is not asked for in the test
 ENOUGH = 0.75  # of it; with less there is no going on where no other plan is found
 LEAST = 0.2  # friction on which no robot is sent: what is known of it is too rough
-USABLE = 0.95  # of the friction that was found
+# Of the friction that was found, what another plan may need: motion included where there is such a plan, else at rest.
+USABLE = (1.0 / MOTION, 0.95)
 
 
 def tested_friction(line: Track, plan: Plan) -> float:
@@ -64,9 +65,9 @@ def after_slip(plan: Plan, need: float, found: float, *, front: bool) -> Decisio
     """What to do after a test of the grip in which wheels slipped at the friction `found`."""
     if found >= TESTED * need:
         return Decision()
-    new = plan_anew(plan, plan.terrain, USABLE * found) if found >= LEAST else None
-    if new is not None:
-        return Decision(new)
+    for usable in USABLE if found >= LEAST else ():
+        if new := plan_anew(plan, plan.terrain, usable * found):
+            return Decision(new)
     if found >= ENOUGH * need:
         return Decision()
     pair = "front" if front else "rear"
