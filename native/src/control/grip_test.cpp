@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "stairwright/kinematics.hpp"
+#include "stairwright/statics.hpp"
+
 namespace stairwright::control {
 
 namespace {
@@ -15,7 +18,10 @@ constexpr double kHold = 0.1;      // s at the full need
 constexpr double kSmooth = 0.05;   // s
 constexpr double kLeastPull = 0.05;  // s; less says nothing of creep
 constexpr double kMostCreep = 0.03; // m/s
+constexpr double kTorque = 0.85;     // of what a motor gives: the test leaves the rest to the balance
 constexpr double kSlips = 0.045;   // m/s of rolling that gets nowhere; tyres creep by less
+
+double largest_load(const Reference& planned) { return std::max(planned.forces[0].z, planned.forces[1].z); }
 
 }  // namespace
 
@@ -25,11 +31,34 @@ std::array<double, 4> GripTest::rolled(const RobotState& state) const {
     std::array<double, 4> out;
     for (int i = 0; i < 4; ++i) {
         const Leg& leg = robot_.legs[i / 2];
-        const double thigh = pitch + state.joints[3 * i], calf = thigh + state.joints[3 * i + 1];
-        const Vec2 wheel = Turn::by(pitch) * leg.hip + Turn::by(thigh) * leg.thigh.end + Turn::by(calf) * leg.calf.end;
-        out[i] = leg.wheel.radius * (calf + state.joints[3 * i + 2]) - wheel.x;
+        const Vec2 wheel = forward(leg, {0.0, 0.0, pitch}, {state.joints[3 * i], state.joints[3 * i + 1]}).wheel;
+        const double turned = pitch + state.joints[3 * i] + state.joints[3 * i + 1] + state.joints[3 * i + 2];
+        out[i] = leg.wheel.radius * turned - wheel.x;
     }
     return out;
+}
+
+double GripTest::most_push(const Reference& planned) const {
+    const double load = largest_load(planned);
+    double most = need_;
+    for (std::size_t pair = 0; pair < 2; ++pair) {
+        const Leg& leg = robot_.legs[pair];
+        const Planned& pose = planned.value;
+        const LegLevers levers = leg_levers(leg, forward(leg, {pose.trunk.x, pose.trunk.z, pose.pitch}, {pose.joints[2 * pair], pose.joints[2 * pair + 1]}));
+        const auto torques = [&](double push) {
+            const Vec2 force = {0.5 * (planned.forces[pair].x + (pair == 0 ? -push : push) * load), 0.5 * planned.forces[pair].z};
+            return static_torques(levers, {force, leg.wheel.radius * -force.x});
+        };
+        const LegTorques now = torques(0.0), more = torques(1.0);
+        const auto keep_within = [&](double at_rest, double pushing, const Motor& motor) {
+            const double slope = std::abs(pushing - at_rest), towards = pushing > at_rest ? at_rest : -at_rest;
+            most = std::min(most, std::max(0.0, kTorque * motor.torque - towards) / std::max(slope, 1e-9));
+        };
+        keep_within(now.thigh, more.thigh, leg.thigh_motor);
+        keep_within(now.calf, more.calf, leg.calf_motor);
+        keep_within(now.wheel, more.wheel, leg.wheel_motor);
+    }
+    return most;
 }
 
 // Rear wheels roll forward under the traction by which front wheels are pushed back; the trunk's motion is the same for both.
@@ -47,7 +76,7 @@ Reference GripTest::step(const Reference& planned, const RobotState& state, cons
     time_ += dt;
     if (time_ < kStands) return planned;
     const std::array<double, 4> now = rolled(state);
-    if (!begun_) before_.fill(now), begun_ = true;
+    if (!begun_) before_.fill(now), most_ = most_push(planned), begun_ = true;
     for (std::size_t i = 0; i < 4; ++i) used_[i] += dt / (kSmooth + dt) * (used[i] - used_[i]);
     const std::array<double, 4> then = std::exchange(before_[steps_++ % before_.size()], now);
     watch_creep(planned, now, dt);
@@ -57,8 +86,8 @@ Reference GripTest::step(const Reference& planned, const RobotState& state, cons
         over_ = over_ || push_ == 0.0;
         if (over_ && !slipped_ && pulled_ > kLeastPull) creep_ = std::clamp(crept_ / pulled_, 0.0, kMostCreep);
     } else {
-        push_ = std::min(need_, push_ + kRamp * dt);
-        releasing_ = time_ > kStands + need_ / kRamp + kHold;
+        push_ = std::min(most_, push_ + kRamp * dt);
+        releasing_ = time_ > kStands + most_ / kRamp + kHold;
         double speed[2];
         for (std::size_t pair = 0; pair < 2; ++pair) {
             const double left = now[2 * pair] - then[2 * pair], right = now[2 * pair + 1] - then[2 * pair + 1];
@@ -73,7 +102,7 @@ Reference GripTest::step(const Reference& planned, const RobotState& state, cons
         }
     }
     Reference out = planned;
-    const double load = std::max(planned.forces[0].z, planned.forces[1].z);
+    const double load = largest_load(planned);
     out.forces[0].x -= push_ * load, out.forces[1].x += push_ * load;
     out.friction_share = 1.0;
     return out;

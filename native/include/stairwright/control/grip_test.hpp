@@ -15,7 +15,7 @@ struct Grip {
 
 class GripTest {
   public:
-    // `need` is the friction to be tested for, 0 for no test.
+    // `need` is the friction to be tested for, 0 for no test. Motors that cannot give that bound the test.
     GripTest(Robot robot, double need) : robot_(std::move(robot)), need_(need), over_(!(need > 0.0)) {}
 
     // One control step of a robot that stands: `planned` with the wheels pushing against each other. `used` is the
@@ -34,12 +34,15 @@ class GripTest {
     // How far each wheel has rolled less how far it has moved against the trunk [m].
     std::array<double, 4> rolled(const RobotState& state) const;
 
+    // The friction that can be asked for: `need_`, or what the motors leave of it.
+    double most_push(const Reference& planned) const;
+
     void watch_creep(const Reference& planned, const std::array<double, 4>& now, double dt);
 
     Robot robot_;
     double need_;
     bool over_, releasing_ = false, begun_ = false;
-    double time_ = 0.0, push_ = 0.0;  // s; friction asked for now
+    double time_ = 0.0, push_ = 0.0, most_ = 0.0;  // s; friction asked for now, and at most
     std::array<std::array<double, 4>, 60> before_{};  // a ring of what the wheels have rolled [m]
     std::array<double, 4> used_{};  // smoothed
     std::size_t steps_ = 0;
