@@ -15,7 +15,8 @@ constexpr double kStands = 0.3;    // s before it begins
 constexpr double kRamp = 1.0;      // 1/s, growth of the friction that is asked for
 constexpr double kRelease = 3.0;   // 1/s
 constexpr double kHold = 0.1;      // s at the full need
-constexpr double kSmooth = 0.05;   // s
+constexpr double kSmooth = 0.05;   // s, of forces
+constexpr double kSmoothPlace = 0.02;  // s; noise of encoders grows with the legs, that of a long one would look like slip
 constexpr double kLeastPull = 0.05;  // s; less says nothing of creep
 constexpr double kMostCreep = 0.03; // m/s
 constexpr double kTorque = 0.85;     // of what a motor gives: the test leaves the rest to the balance
@@ -75,8 +76,10 @@ Reference GripTest::step(const Reference& planned, const RobotState& state, cons
     if (over_) return planned;
     time_ += dt;
     if (time_ < kStands) return planned;
-    const std::array<double, 4> now = rolled(state);
-    if (!begun_) before_.fill(now), most_ = most_push(planned), begun_ = true;
+    const std::array<double, 4> reading = rolled(state);
+    if (!begun_) before_.fill(reading), rolled_ = reading, most_ = most_push(planned), begun_ = true;
+    for (std::size_t i = 0; i < 4; ++i) rolled_[i] += dt / (kSmoothPlace + dt) * (reading[i] - rolled_[i]);
+    const std::array<double, 4>& now = rolled_;
     for (std::size_t i = 0; i < 4; ++i) used_[i] += dt / (kSmooth + dt) * (used[i] - used_[i]);
     const std::array<double, 4> then = std::exchange(before_[steps_++ % before_.size()], now);
     watch_creep(planned, now, dt);

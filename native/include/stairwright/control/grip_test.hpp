@@ -44,7 +44,7 @@ class GripTest {
     bool over_, releasing_ = false, begun_ = false;
     double time_ = 0.0, push_ = 0.0, most_ = 0.0;  // s; friction asked for now, and at most
     std::array<std::array<double, 4>, 60> before_{};  // a ring of what the wheels have rolled [m]
-    std::array<double, 4> used_{};  // smoothed
+    std::array<double, 4> rolled_{}, used_{};  // smoothed
     std::size_t steps_ = 0;
     std::optional<Grip> slipped_;
     double pulled_ = 0.0, crept_ = 0.0, apart_ = 0.0;  // s and m, of rear wheels against front ones
