@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable
 from typing import Annotated, Any, Literal, Self
 
@@ -134,6 +135,7 @@ class Certificate(Model):
 
 Bend = Literal["back", "forward"]
 Facing = Literal["forward", "backward"]
+FacingChoice = Literal["forward", "backward", "either"]
 Quantity = Literal["clearance", "com", "friction", "torque", "wheel_torque", "joint_limit"]
 
 
@@ -243,9 +245,12 @@ def plan_id(
     weights: dict[str, Any],
     rule: str = "limits",
     tolerance: Tolerance | None = None,
-    facing: Facing = "forward",
+    facing: FacingChoice = "forward",
 ) -> str:
     """Content hash that names a plan: the same question has the same id.
+
+    `facing` is the one asked for: of two questions of which one leaves it open, neither's answer
+    takes the place of the other's.
 
     Names and descriptions belong to the question, for the plan repeats them.
     """
@@ -255,6 +260,11 @@ def plan_id(
         key.append(rule)
     if tolerance is not None:
         key.append({"tolerance": tolerance.asked})
-    if facing == "backward":
+    if facing != "forward":
         key.append(facing)
     return "p-" + content_hash(key).removeprefix("sha256:")
+
+
+def reach(plan: Plan) -> float:
+    """How far a plan gets [m]; infinite where it is feasible."""
+    return plan.problem.progress if plan.problem else math.inf
