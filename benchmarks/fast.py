@@ -83,7 +83,7 @@ def main() -> None:
     parser.add_argument("--robots", default=ROBOTS)
     parser.add_argument("--aggressiveness", type=float, default=0.75)
     parser.add_argument("--friction", type=float, default=0.6)
-    parser.add_argument("--facing", choices=("forward", "backward"), default="forward")
+    parser.add_argument("--facing", choices=("forward", "backward", "either"), default="forward")
     parser.add_argument("--bundle")
     parser.add_argument("--sensing", choices=("robot", "ideal"))
     parser.add_argument("--quick", action="store_true", help="one robot, three profiles")

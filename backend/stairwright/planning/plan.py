@@ -135,7 +135,7 @@ class Certificate(Model):
 
 Bend = Literal["back", "forward"]
 Facing = Literal["forward", "backward"]
-FacingChoice = Literal["forward", "backward", "either"]
+FacingChoice = Literal["forward", "backward", "either"]  # either: as the planner finds better
 Quantity = Literal["clearance", "com", "friction", "torque", "wheel_torque", "joint_limit"]
 
 
@@ -263,6 +263,11 @@ def plan_id(
     if facing != "forward":
         key.append(facing)
     return "p-" + content_hash(key).removeprefix("sha256:")
+
+
+def usual_facing(timing: PlanTiming) -> FacingChoice:
+    """Which end leads where nothing is said of it."""
+    return "either" if timing == "fast" else "forward"
 
 
 def reach(plan: Plan) -> float:

@@ -25,11 +25,12 @@ from stairwright.planning.plan import (
     PlanTiming,
     plan_id,
     reach,
+    usual_facing,
 )
 from stairwright.planning.tolerance import Tolerance, parse_tolerance
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
-from stairwright.robot.turning import turned
+from stairwright.robot.turning import symmetric, turned
 from stairwright.terrain.profile import Terrain
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ def plan(
     weights: Mapping[str, float] | Model | None = None,
     *,
     timing: PlanTiming = "steady",
-    facing: FacingChoice = "forward",
+    facing: FacingChoice | None = None,
     tolerance: Mapping[str, float] | Tolerance | None = None,
     certified: bool = True,
     diagnose: bool = True,
@@ -67,9 +68,10 @@ def plan(
         weights: Cost weights by name, see `stairwright.planning.weights`.
         timing: ``steady``, or of a ``path`` ``fast``: time-optimal under friction, torque and speed
             limits with the dynamics in them, as hard as the weight ``aggressiveness`` says.
-        facing: ``backward`` has the robot's rear lead, as many robots do down stairs: the plan is
-            that of the robot turned about, see `Plan.facing`. ``either``: the planner chooses, see
-            `leading_end.better_led`.
+        facing: Which end of the robot leads. ``backward`` is its rear, as of many robots down
+            stairs: the plan is that of the robot turned about, see `Plan.facing`. ``either`` has
+            the planner choose, see `leading_end.better_led`. By default ``either`` where `timing`
+            is ``fast``, else ``forward``.
         tolerance: Of a ``path``: how far the world may be from what is drawn, by name (`height`,
             `place` [m], `friction`), see `Tolerance`. The certificate holds for all of it.
         certified: Check single poses and the motion between them; without, ``critical`` is sooner.
@@ -96,7 +98,8 @@ def plan(
     tyre = machine.wheel.friction or math.inf
     mu = min(ground.friction, tyre) if friction is None else as_friction(friction)
     chosen = parse_weights(method, weights)
-    for field, word, known in (("timing", timing, PlanTiming), ("facing", facing, FacingChoice)):
+    end = facing or usual_facing(timing)
+    for field, word, known in (("timing", timing, PlanTiming), ("facing", end, FacingChoice)):
         if word not in get_args(known):
             raise InputError(f"must be one of: {', '.join(get_args(known))}", (field,))
     if timing == "fast" and method != "path":
@@ -104,7 +107,7 @@ def plan(
     stood = parse_tolerance(tolerance, method, mu)
     search = _pose_search(method, solver, extra_cost, extra_constraints)
     asked = _Asked(ground, machine, mu, method, chosen, timing, stood, certified, search)
-    return asked.plan(facing, diagnose)
+    return asked.plan(end, diagnose)
 
 
 @dataclass(frozen=True)
@@ -122,13 +125,16 @@ class _Asked:
     search: PoseSearcher
 
     def plan(self, facing: FacingChoice, diagnose: bool) -> Plan:
-        """The plan; of ``either`` the better one, of which only the one that is told is diagnosed."""
+        """The plan; of ``either`` the better one. Only what is answered is diagnosed."""
         if facing != "either":
             return self._led_by(facing, diagnose)
         begun = clock.perf_counter()
-        found = better_led(partial(self._led_by, diagnose=False), self.timing)
-        if self.method == "path" and diagnose and not found.feasible:
-            found = self._led_by(found.facing, diagnose)
+        if symmetric(self.robot):
+            found = self._led_by("forward", diagnose)
+        else:
+            found = better_led(partial(self._led_by, diagnose=False), self.timing)
+            if self.method == "path" and diagnose and not found.feasible:
+                found = self._led_by(found.facing, diagnose)
         took = clock.perf_counter() - begun
         return found.model_copy(update={"id": self._id(found, facing), "solve_time": took})
 
