@@ -245,12 +245,12 @@ def plan_id(
     weights: dict[str, Any],
     rule: str = "limits",
     tolerance: Tolerance | None = None,
-    facing: FacingChoice = "forward",
+    facing: Facing = "forward",
 ) -> str:
     """Content hash that names a plan: the same question has the same id.
 
-    `facing` is the one asked for: of two questions of which one leaves it open, neither's answer
-    takes the place of the other's.
+    So has the one that leaves to the planner which end leads, with the end that it has chosen: the
+    plan is the same.
 
     Names and descriptions belong to the question, for the plan repeats them.
     """
@@ -260,7 +260,7 @@ def plan_id(
         key.append(rule)
     if tolerance is not None:
         key.append({"tolerance": tolerance.asked})
-    if facing != "forward":
+    if facing == "backward":
         key.append(facing)
     return "p-" + content_hash(key).removeprefix("sha256:")
 

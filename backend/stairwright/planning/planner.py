@@ -122,7 +122,7 @@ class _Asked:
     timing: PlanTiming
     tolerance: Tolerance | None
     certified: bool
-    search: PoseSearcher
+    search: PoseSearcher | None
 
     def plan(self, facing: FacingChoice, diagnose: bool) -> Plan:
         """The plan; of ``either`` the better one. Only what is answered is diagnosed."""
@@ -136,7 +136,7 @@ class _Asked:
             if self.method == "path" and diagnose and not found.feasible:
                 found = self._led_by(found.facing, diagnose)
         took = clock.perf_counter() - begun
-        return found.model_copy(update={"id": self._id(found, facing), "solve_time": took})
+        return found.model_copy(update={"solve_time": took})
 
     def _led_by(self, facing: Facing, diagnose: bool) -> Plan:
         leading = turned(self.robot) if facing == "backward" else self.robot
@@ -144,7 +144,9 @@ class _Asked:
         found = with_energy(self._found(configured, diagnose))
         if configured == [self.robot]:
             return found
-        known: dict[str, Any] = {"id": self._id(found, facing), "facing": facing}
+        asked = (self.terrain, self.robot, self.friction, self.method, found.weights)
+        name = plan_id(*asked, found.timing.rule, self.tolerance, facing)
+        known: dict[str, Any] = {"id": name, "facing": facing}
         if configured != [leading]:
             known["knees"] = knees_of(found.robot_description)
         return found.model_copy(update=known)
@@ -155,9 +157,11 @@ class _Asked:
         if self.method == "path":
             from stairwright.planning.path import plan_path
 
-            how: Any = {"timing": self.timing, "tolerance": self.tolerance, "diagnose": diagnose}
-            return plan_path(ground, robots, mu, weights, **how)
-        if self.method == "critical":
+            timing, tolerance = self.timing, self.tolerance
+            return plan_path(
+                ground, robots, mu, weights, timing=timing, tolerance=tolerance, diagnose=diagnose
+            )
+        if self.search is not None:
             from stairwright.planning.poses.critical_poses import plan_critical
 
             how = self.search, self.certified
@@ -165,11 +169,6 @@ class _Asked:
         from stairwright.planning.poses.nominal import plan_nominal
 
         return _first_feasible(plan_nominal(ground, one, mu, weights) for one in robots)
-
-    def _id(self, found: Plan, facing: FacingChoice) -> str:
-        rule, weights = found.timing.rule, found.weights
-        asked = (self.terrain, self.robot, self.friction, self.method, weights, rule)
-        return plan_id(*asked, self.tolerance, facing)
 
 
 def _first_feasible(plans: Iterable[Plan]) -> Plan:
@@ -189,8 +188,8 @@ def _pose_search(
     solver: PoseSolver | None,
     cost: ExtraCost | None,
     constraints: ExtraConstraints | None,
-) -> PoseSearcher:
-    """What solves the poses of ``critical``."""
+) -> PoseSearcher | None:
+    """What solves the poses of ``critical``; None of other methods."""
     if solver not in (None, *get_args(PoseSolver)):
         there = ", ".join(get_args(PoseSolver))
         raise InputError(f"unknown solver {solver!r}; there are: {there}", ("solver",))
@@ -198,6 +197,8 @@ def _pose_search(
     for field, value in terms.items():
         if value is not None and method != "critical":
             raise InputError("belongs to the method critical", (field,))
+    if method != "critical":
+        return None
     extra = cost is not None or constraints is not None
     if solver == "native" and extra:
         raise InputError("terms of yours are in CasADi, which ipopt solves", ("solver",))
