@@ -9,9 +9,9 @@ import { report } from "../state/connection";
 import { open } from "../state/drawing";
 import { forgetRollout, restoreRollout } from "../state/rollouts";
 import {
+  chosenFacing,
   controller,
   disturbance,
-  facing,
   method,
   robotName,
   robots,
@@ -45,7 +45,7 @@ function showPlan(plan: Plan): void {
   open({ ...terrain, friction: plan.friction }, stored);
   robotName.value = plan.robot;
   method.value = plan.method;
-  facing.value = plan.facing ?? "forward";
+  chosenFacing.value = plan.facing ?? "forward";
   timing.value = plan.timing.rule === "fast" ? "fast" : "steady";
   const schema = settings.peek()?.weights[plan.method]?.properties;
   weights.value = { ...weights.peek(), [plan.method]: differing(plan.weights ?? {}, schema) };
