@@ -18,8 +18,8 @@ def better_led(led_by: Callable[[Facing], Plan], timing: PlanTiming) -> Plan:
     """Of the plans with either end in front the better one.
 
     A steady plan faces forward where there is such a plan. A fast one faces backward where that is
-    clearly sooner and not thin: thin plans fail sooner, and it is only time that is gained. Where
-    there is no plan, it is the one that comes farther.
+    clearly sooner and leaves the CoM no less margin; more than keeps a plan from being thin does
+    not count. Where there is no plan, it is the one that comes farther.
 
     Args:
         led_by: Plans with that end in front.
@@ -31,13 +31,14 @@ def better_led(led_by: Callable[[Facing], Plan], timing: PlanTiming) -> Plan:
     other = side_thread().submit(led_by, "backward")
     forward, backward = led_by("forward"), other.result()
     if forward.feasible and backward.feasible:
-        return backward if _worth_turning(forward, backward) else forward
+        sooner = backward.timing.total < CLEARLY_SOONER * forward.timing.total
+        return backward if sooner and _room(backward) >= _room(forward) else forward
     return max(forward, backward, key=reach)
 
 
-def _worth_turning(forward: Plan, backward: Plan) -> bool:
+def _room(plan: Plan) -> float:
+    """Least CoM margin [m], as far as it matters."""
     from .path_planner import THIN_IF_FAST
     from .smoothing.path_document import least_margins
 
-    sooner = backward.timing.total < CLEARLY_SOONER * forward.timing.total
-    return sooner and least_margins(backward)["com"] > THIN_IF_FAST
+    return min(least_margins(plan)["com"], THIN_IF_FAST)

@@ -5,7 +5,6 @@ import { Effect } from "../plan/effect";
 import {
   changedCount,
   changedWeights,
-  chosenFacing,
   compare,
   controller,
   controllerSchema,
@@ -13,6 +12,7 @@ import {
   method,
   resetAll,
   setController,
+  setFacing,
   setWeight,
   timing,
   weightSchema,
@@ -97,14 +97,7 @@ function Planning() {
     <>
       <Choice label="Method" options={METHODS} of={method} />
       {method.value === "path" && <Choice label="Timing" options={TIMINGS} of={timing} />}
-      <Segments
-        label="Facing"
-        options={FACINGS}
-        value={facing.value}
-        onChoose={(next) => {
-          chosenFacing.value = next;
-        }}
-      />
+      <Segments label="Facing" options={FACINGS} value={facing.value} onChoose={setFacing} />
       <div class="r2 cmp-row">
         <span class="lab">Compare</span>
         <div class="ab">

@@ -9,13 +9,13 @@ import { report } from "../state/connection";
 import { open } from "../state/drawing";
 import { forgetRollout, restoreRollout } from "../state/rollouts";
 import {
-  chosenFacing,
   controller,
   disturbance,
   method,
   robotName,
   robots,
   seed,
+  setFacing,
   settings,
   terrains,
   timing,
@@ -45,8 +45,8 @@ function showPlan(plan: Plan): void {
   open({ ...terrain, friction: plan.friction }, stored);
   robotName.value = plan.robot;
   method.value = plan.method;
-  chosenFacing.value = plan.facing ?? "forward";
   timing.value = plan.timing.rule === "fast" ? "fast" : "steady";
+  setFacing(plan.facing ?? "forward");
   const schema = settings.peek()?.weights[plan.method]?.properties;
   weights.value = { ...weights.peek(), [plan.method]: differing(plan.weights ?? {}, schema) };
   tolerance.value = differing({ ...plan.tolerance }, toleranceSchema.peek());

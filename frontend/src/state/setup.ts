@@ -29,10 +29,9 @@ export const chosenFacing = signal<FacingChoice | null>(null);
 /** Which end leads where nothing is said, as the service has it. */
 export const usualFacing = (by: PlanTiming = "steady"): FacingChoice =>
   by === "fast" ? "either" : "forward";
+const usual = computed(() => usualFacing(method.value === "path" ? timing.value : "steady"));
 /** What is asked for. */
-export const facing = computed<FacingChoice>(
-  () => chosenFacing.value ?? usualFacing(method.value === "path" ? timing.value : "steady"),
-);
+export const facing = computed(() => chosenFacing.value ?? usual.value);
 export const compare = signal(false);
 export const seed = signal(0);
 /** Only what differs from the default, by method. */
@@ -124,6 +123,10 @@ export function withValue(
 ): SettingValues {
   const { [name]: _, ...rest } = values;
   return value === null || value === schema?.default ? rest : { ...rest, [name]: value };
+}
+
+export function setFacing(next: FacingChoice): void {
+  chosenFacing.value = next === usual.peek() ? null : next;
 }
 
 export function setWeight(name: string, value: SettingChange): void {
