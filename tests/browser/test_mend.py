@@ -15,7 +15,7 @@ import stairwright as sw
 from .conftest import TERRAIN, Product
 
 if TYPE_CHECKING:
-    from playwright.sync_api import FloatRect
+    from playwright.sync_api import FloatRect, Page
 
     from tests.conftest import Server
 
@@ -34,6 +34,11 @@ def _canvas(product: Product) -> FloatRect:
     box = product.page.locator(".ed").bounding_box()
     assert box is not None
     return box
+
+
+def _choose_robot(page: Page, name: str) -> None:
+    page.get_by_role("button", name=re.compile("^Robot")).first.click()
+    page.get_by_role("menuitemradio", name=re.compile(rf"^{name}\b")).click()
 
 
 def test_clicks_with_the_pen_draw_corners_and_risers_stand_upright(product: Product) -> None:
@@ -208,8 +213,7 @@ def test_a_robot_turns_about(product: Product) -> None:
 def test_a_fast_plan_says_and_shows_which_end_leads(product: Product) -> None:
     """Nobody has asked for it: down stairs a1_wheeled is sooner with its rear in front."""
     page = product.page
-    page.get_by_role("button", name=re.compile("^Robot")).first.click()
-    page.get_by_role("menuitemradio", name="a1_wheeled", exact=True).click()
+    _choose_robot(page, "a1_wheeled")
     product.paste(json.dumps({"points": [[-1.5, 0.2], [0, 0.2], [0, 0], [1.5, 0]]}))
     product.has_corners(4).planned()
     pill, robot = page.locator(".pill"), page.locator(".ed g.cur").first
@@ -234,6 +238,10 @@ def test_a_fast_plan_says_and_shows_which_end_leads(product: Product) -> None:
     product.linked('"b":"forward"')
     page.evaluate("link => { location.href = link; }", link)
     facing.get_by_role("radio", name="Backward", checked=True).wait_for()
+    page.get_by_role("radio", name="Steady").click()
+    facing.get_by_role("radio", name="Forward").click()
+    _choose_robot(page, "a1_wheeled_x")
+    product.planned()
 
 
 def test_a_fast_plan_tells_what_limits_its_speed(product: Product) -> None:
