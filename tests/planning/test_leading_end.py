@@ -50,6 +50,7 @@ def test_steady_plans_face_forward() -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_refusal_is_that_of_the_end_that_comes_farther() -> None:
     refused = sw.plan(WALL, facing="either")
     ways: tuple[Facing, ...] = ("forward", "backward")
