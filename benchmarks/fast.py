@@ -2,7 +2,7 @@
 
     python benchmarks/fast.py [--first 0] [--count 30] [--robots a1_wheeled,a1_wheeled_x,go2w]
                               [--aggressiveness 0.75] [--bundle laboratory] [--sensing ideal]
-                              [--friction 0.6] [--facing forward] [--quick]
+                              [--friction 0.6] [--facing backward] [--quick]
 
 Five stairs of 0.18 m by 0.28 m up and down, and random profiles (`profiles.py`). Speeds are those
 over the faces: from the first contact with the first one to all wheels on the landing. With
@@ -83,7 +83,7 @@ def main() -> None:
     parser.add_argument("--robots", default=ROBOTS)
     parser.add_argument("--aggressiveness", type=float, default=0.75)
     parser.add_argument("--friction", type=float, default=0.6)
-    parser.add_argument("--facing", choices=("forward", "backward"), default="forward")
+    parser.add_argument("--facing", choices=("forward", "backward", "either"))
     parser.add_argument("--bundle")
     parser.add_argument("--sensing", choices=("robot", "ideal"))
     parser.add_argument("--quick", action="store_true", help="one robot, three profiles")

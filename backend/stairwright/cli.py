@@ -165,7 +165,9 @@ def _add_planning(command: argparse.ArgumentParser) -> None:
     command.add_argument("--method", choices=METHODS, help="(path)")
     command.add_argument("--timing", choices=("steady", "fast"), help="of a path (steady)")
     command.add_argument(
-        "--facing", choices=("forward", "backward"), help="which end of the robot leads (forward)"
+        "--facing",
+        choices=("forward", "backward", "either"),
+        help="which end of the robot leads (forward; either where timing is fast)",
     )
     command.add_argument(
         "--solver", choices=("native", "ipopt"), help="of the poses of critical (native)"

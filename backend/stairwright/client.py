@@ -21,7 +21,7 @@ import httpx
 
 from stairwright.answers import JobState, ServiceError, ask
 from stairwright.documents import Model, parse
-from stairwright.planning.plan import Facing, Method, Plan, PlanTiming
+from stairwright.planning.plan import FacingChoice, Method, Plan, PlanTiming
 from stairwright.robot.description import Robot
 from stairwright.robot.importing.report import Imported
 from stairwright.terrain.profile import Terrain
@@ -143,11 +143,11 @@ class Client:
         weights: Mapping[str, float] | None = None,
         timing: PlanTiming = "steady",
         tolerance: Mapping[str, float] | None = None,
-        facing: Facing = "forward",
+        facing: FacingChoice | None = None,
     ) -> Plan:
         """Plan; an infeasible terrain gives a plan with a problem, no error."""
         body = {**_question(terrain, robot, friction, method, weights), "timing": timing}
-        if facing != "forward":
+        if facing is not None:
             body["facing"] = facing
         if tolerance:
             body["tolerance"] = dict(tolerance)

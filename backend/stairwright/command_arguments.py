@@ -31,7 +31,7 @@ def planned(source: str, given: Arguments) -> Plan:
         weights=settings_of(given.weight, "weights"),
         solver=given.solver,
         timing=given.timing or "steady",
-        facing=given.facing or "forward",
+        facing=given.facing,
         tolerance=settings_of(given.tolerance, "tolerance"),
     )
 

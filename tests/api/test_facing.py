@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from tests.conftest import Server
 
 CURB = {"points": [[-1.2, 0.0], [0.0, 0.0], [0.0, 0.05], [1.2, 0.05]]}
+DROP = {"points": [[-1.2, 0.25], [0.0, 0.25], [0.0, 0.0], [1.2, 0.0]]}
 
 
 @pytest.fixture
@@ -37,6 +38,19 @@ def test_a_backward_plan_is_that_of_python(server: Server, api: httpx.Client) ->
     assert listed[plan.id]["facing"] == "backward"
 
 
+def test_the_service_is_asked_for_either_end(server: Server) -> None:
+    own = sw.plan(DROP, facing="backward", timing="fast")
+    with sw.Client(server.url) as service:
+        usual, either, backward = (
+            service.plan(DROP, timing="fast", facing=end) for end in (None, "either", "backward")
+        )
+        forward = service.plan(DROP, facing="either")
+        again = service.get_plan(either.id)
+    assert {plan.id for plan in (usual, either, backward)} == {own.id}
+    assert {plan.facing for plan in (usual, either, backward, again)} == {"backward"}
+    assert forward.facing == "forward"
+
+
 def test_a_way_that_is_none_is_told_by_its_field(api: httpx.Client) -> None:
     answer = api.post("/plans", json={"terrain": CURB, "facing": "sideways"})
     assert answer.status_code == 422
@@ -48,3 +62,6 @@ def test_the_command_line_asks_for_it(tmp_path: Path) -> None:
     terrain.write_text(json.dumps(CURB))
     assert main(["plan", str(terrain), "--facing", "backward", "-o", str(out)]) == 0
     assert json.loads(out.read_text())["id"] == sw.plan(CURB, facing="backward").id
+    terrain.write_text(json.dumps(DROP))
+    assert main(["plan", str(terrain), "--timing", "fast", "-o", str(out)]) == 0
+    assert json.loads(out.read_text())["facing"] == "backward"

@@ -217,3 +217,22 @@ def test_trials_are_run_and_the_worst_replayed(runs: Product) -> None:
     assert asked.value.post_data_json["disturbance"]["delay"] > 0.0
     page.locator(".app[data-run=running]").wait_for(state="detached", timeout=PATIENCE)
     assert runs.errors == []
+
+
+def test_a_fast_run_opens_with_the_end_that_led(runs: Product, server: Server) -> None:
+    """The plan asked for with that end is the one that the planner chose: the run is its own."""
+    drop = {"name": "runs-drop", "points": [[-1.2, 0.25], [0, 0.25], [0, 0], [1.2, 0]]}
+    with sw.Client(server.url) as service:
+        plan = service.plan(drop, "a1_wheeled", timing="fast")
+        service.rollout(plan_id=plan.id)
+    page = runs.page
+    page.goto("/#v=runs")
+    page.get_by_label("Search names").fill("runs-drop")
+    page.locator(".run").filter(has_text="runs-drop").locator(".run-open").first.click()
+    page.locator(".app[data-workspace=plan][data-run=success]").wait_for(timeout=PATIENCE)
+    runs.planned()
+    settings = page.get_by_role("radiogroup", name="Settings")
+    settings.get_by_role("radio", name="Plan").click()
+    page.get_by_role("radio", name="Backward", checked=True).wait_for()
+    assert page.locator(".pill").get_by_text("backward").count() == 1
+    assert "seed 0" in page.locator(".card h2").inner_text()

@@ -9,7 +9,7 @@ import stairwright as sw
 from stairwright.errors import InputError
 from stairwright.robot import kinematics as kin
 from stairwright.robot.description import Robot
-from stairwright.robot.turning import turned
+from stairwright.robot.turning import symmetric, turned
 
 from .random_robots import random_robot
 
@@ -49,6 +49,12 @@ def test_twice_is_not_at_all(name: str) -> None:
     assert Robot.model_validate(document) == turned(robot)
 
 
+def test_which_robots_are_the_same_from_behind() -> None:
+    assert [name for name in sw.robots() if symmetric(sw.load_robot(name))] == ["a1_wheeled_x"]
+    named = {"joint_names": {"FL_thigh": "front_left_hip_pitch"}}
+    assert symmetric(sw.load_robot("a1_wheeled_x").model_copy(update=named))
+
+
 def test_its_own_software_still_knows_its_joints() -> None:
     own = {"joint_names": {"FL_thigh": "front_left_hip_pitch"}} | {
         "joint_frames": {"FL_thigh": {"sign": -1, "offset": 0.3}}
@@ -76,5 +82,5 @@ def test_a_plan_backward_is_carried_out() -> None:
 
 
 def test_an_unknown_facing_is_told() -> None:
-    with pytest.raises(InputError, match="facing: must be one of: forward, backward"):
+    with pytest.raises(InputError, match="facing: must be one of: forward, backward, either"):
         sw.plan("curb-015", facing="sideways")  # type: ignore[arg-type]

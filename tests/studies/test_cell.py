@@ -131,8 +131,24 @@ def test_robots_may_face_either_way(tmp_path: Path) -> None:
     both = sw.study(asked, workers=1, store=tmp_path / "f.zarr")
     ids = both.dataset.plan_id.values.tolist()
     assert ids == [sw.plan("curb-015", "a1_wheeled", facing=way).id for way in ways]
-    with pytest.raises(InputError, match="unknown facing; there are: forward, backward"):
+    with pytest.raises(InputError, match="unknown facing; there are: forward, backward, either"):
         Questions(load_study(asked | {"axes": [{"name": "facing", "values": [*ways, "aside"]}]}))
+
+
+def test_of_fast_plans_the_planner_chooses_the_end_that_leads() -> None:
+    axis = {"name": "friction", "values": [0.6]}
+    usual, either, forward = (
+        Questions(load_study(study(axis, terrain="curb-015", timing="fast", **said)))
+        for said in ({}, {"facing": "either"}, {"facing": "forward"})
+    )
+    assert [each.at((0.6,)).facing for each in (usual, either, forward)] == [
+        "either",
+        "either",
+        "forward",
+    ]
+    assert "facing" not in either.at((0.6,)).plan
+    assert forward.at((0.6,)).plan["facing"] == "forward"
+    assert usual.study.family == either.study.family != forward.study.family
 
 
 def test_rollouts_and_trials(tmp_path: Path) -> None:

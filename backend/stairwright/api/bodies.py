@@ -10,7 +10,7 @@ from stairwright.arguments import MOST_SEED
 from stairwright.documents import Model
 from stairwright.export.table import Kind as Exported
 from stairwright.jobs.job import State
-from stairwright.planning.plan import Facing, Method, Plan, PlanTiming
+from stairwright.planning.plan import FacingChoice, Method, Plan, PlanTiming
 from stairwright.planning.tolerance import Tolerance
 from stairwright.robot.description import Robot
 from stairwright.simulation.disturbance import Disturbance
@@ -74,7 +74,10 @@ Id = Annotated[str, Field(min_length=1, max_length=64)]
 
 TIMING = "fast: a path as fast as friction, torques and speeds allow, see `aggressiveness`"
 
-FACING = "backward: the robot's rear leads, see `facing` of a plan"
+FACING = (
+    "which end of the robot leads, see `facing` of a plan; either: as the planner finds better, "
+    "which is the default where `timing` is fast, else forward"
+)
 
 TOLERANCE = (
     "how far the world may be from what is drawn, with the certificate holding for all of it; of "
@@ -105,7 +108,7 @@ class PlanRequest(Model):
     method: Method = "path"
     weights: Weights = Field(None, description="cost weights by name, see GET /settings")
     timing: PlanTiming = Field("steady", description=TIMING)
-    facing: Facing = Field("forward", description=FACING)
+    facing: FacingChoice | None = Field(None, description=FACING)
     tolerance: Tolerance | None = Field(None, description=TOLERANCE)
 
 
@@ -119,7 +122,7 @@ class Simulation(Model):
     method: Method = Field("path", description="with `terrain`")
     weights: Weights = Field(None, description="with `terrain`")
     timing: PlanTiming = Field("steady", description="with `terrain`")
-    facing: Facing = Field("forward", description="with `terrain`")
+    facing: FacingChoice | None = Field(None, description="with `terrain`")
     tolerance: Tolerance | None = Field(None, description="with `terrain`")
     friction: Friction | None = Field(
         None, description="friction in the simulation (and of the plan, with `terrain`)"

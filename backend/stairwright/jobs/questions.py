@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Literal
 
 from stairwright.documents import content_hash, parse
 from stairwright.errors import InputError
-from stairwright.planning.plan import Facing, Method, Plan, PlanTiming
+from stairwright.planning.plan import FacingChoice, Method, Plan, PlanTiming, usual_facing
 from stairwright.planning.tolerance import Tolerance, parse_tolerance
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
@@ -29,7 +29,7 @@ class PlanQuestion:
     weights: Mapping[str, float]
     timing: PlanTiming = "steady"
     tolerance: Tolerance | None = None
-    facing: Facing = "forward"
+    facing: FacingChoice = "forward"
 
     @classmethod
     def of(
@@ -41,7 +41,7 @@ class PlanQuestion:
         weights: Mapping[str, float] | None,
         timing: PlanTiming = "steady",
         tolerance: Mapping[str, float] | Tolerance | None = None,
-        facing: Facing = "forward",
+        facing: FacingChoice | None = None,
     ) -> PlanQuestion:
         """Fill in defaults.
 
@@ -54,7 +54,8 @@ class PlanQuestion:
         complete = parse_weights(method, weights).model_dump(mode="json")
         mu = terrain.friction if friction is None else friction
         stood = parse_tolerance(tolerance, method, mu)
-        return cls(terrain, robot, mu, method, complete, timing, stood, facing)
+        end = facing or usual_facing(timing)
+        return cls(terrain, robot, mu, method, complete, timing, stood, end)
 
     @classmethod
     def restored(cls, data: Mapping[str, Any]) -> PlanQuestion:

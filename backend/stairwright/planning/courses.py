@@ -16,7 +16,7 @@ from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
-_KEPT = 4  # robots of one terrain: as many as knees that bend both ways make of one
+_KEPT = 8  # robots of one terrain: as many as knees that bend both ways make of one, either way
 
 
 class Courses:

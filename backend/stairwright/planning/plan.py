@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable
 from typing import Annotated, Any, Literal, Self
 
@@ -134,6 +135,7 @@ class Certificate(Model):
 
 Bend = Literal["back", "forward"]
 Facing = Literal["forward", "backward"]
+FacingChoice = Literal["forward", "backward", "either"]  # either: as the planner finds better
 Quantity = Literal["clearance", "com", "friction", "torque", "wheel_torque", "joint_limit"]
 
 
@@ -247,6 +249,9 @@ def plan_id(
 ) -> str:
     """Content hash that names a plan: the same question has the same id.
 
+    So has the one that leaves to the planner which end leads, with the end that it has chosen: the
+    plan is the same.
+
     Names and descriptions belong to the question, for the plan repeats them.
     """
     texts = [terrain.name, terrain.description, robot.name, robot.description]
@@ -258,3 +263,13 @@ def plan_id(
     if facing == "backward":
         key.append(facing)
     return "p-" + content_hash(key).removeprefix("sha256:")
+
+
+def usual_facing(timing: PlanTiming) -> FacingChoice:
+    """Which end leads where nothing is said of it."""
+    return "either" if timing == "fast" else "forward"
+
+
+def reach(plan: Plan) -> float:
+    """How far a plan gets [m]; infinite where it is feasible."""
+    return plan.problem.progress if plan.problem else math.inf

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Mapping
+import time as clock
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
@@ -14,11 +16,21 @@ from stairwright.errors import InputError
 from stairwright.library import load_robot, load_terrain
 from stairwright.planning.energy import with_energy
 from stairwright.planning.knees import configurations, knees_of
-from stairwright.planning.plan import Facing, Method, Plan, PlanTiming, plan_id
+from stairwright.planning.leading_end import better_led
+from stairwright.planning.plan import (
+    Facing,
+    FacingChoice,
+    Method,
+    Plan,
+    PlanTiming,
+    plan_id,
+    reach,
+    usual_facing,
+)
 from stairwright.planning.tolerance import Tolerance, parse_tolerance
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
-from stairwright.robot.turning import turned
+from stairwright.robot.turning import symmetric, turned
 from stairwright.terrain.profile import Terrain
 
 if TYPE_CHECKING:
@@ -37,7 +49,7 @@ def plan(
     weights: Mapping[str, float] | Model | None = None,
     *,
     timing: PlanTiming = "steady",
-    facing: Facing = "forward",
+    facing: FacingChoice | None = None,
     tolerance: Mapping[str, float] | Tolerance | None = None,
     certified: bool = True,
     diagnose: bool = True,
@@ -56,8 +68,10 @@ def plan(
         weights: Cost weights by name, see `stairwright.planning.weights`.
         timing: ``steady``, or of a ``path`` ``fast``: time-optimal under friction, torque and speed
             limits with the dynamics in them, as hard as the weight ``aggressiveness`` says.
-        facing: ``backward`` has the robot's rear lead, as many robots do down stairs: the plan is
-            that of the robot turned about, see `Plan.facing`.
+        facing: Which end of the robot leads. ``backward`` is its rear, as of many robots down
+            stairs: the plan is that of the robot turned about, see `Plan.facing`. ``either`` has
+            the planner choose, see `leading_end.better_led`. By default ``either`` where `timing`
+            is ``fast``, else ``forward``.
         tolerance: Of a ``path``: how far the world may be from what is drawn, by name (`height`,
             `place` [m], `friction`), see `Tolerance`. The certificate holds for all of it.
         certified: Check single poses and the motion between them; without, ``critical`` is sooner.
@@ -84,49 +98,77 @@ def plan(
     tyre = machine.wheel.friction or math.inf
     mu = min(ground.friction, tyre) if friction is None else as_friction(friction)
     chosen = parse_weights(method, weights)
-    if timing not in get_args(PlanTiming):
-        raise InputError(f"must be one of: {', '.join(get_args(PlanTiming))}", ("timing",))
+    end = facing or usual_facing(timing)
+    for field, word, known in (("timing", timing, PlanTiming), ("facing", end, FacingChoice)):
+        if word not in get_args(known):
+            raise InputError(f"must be one of: {', '.join(get_args(known))}", (field,))
     if timing == "fast" and method != "path":
         raise InputError("fast belongs to the method path", ("timing",))
-    if facing not in get_args(Facing):
-        raise InputError(f"must be one of: {', '.join(get_args(Facing))}", ("facing",))
     stood = parse_tolerance(tolerance, method, mu)
-    if solver not in (None, *get_args(PoseSolver)):
-        there = ", ".join(get_args(PoseSolver))
-        raise InputError(f"unknown solver {solver!r}; there are: {there}", ("solver",))
-    for field, value in (
-        ("solver", solver),
-        ("extra_cost", extra_cost),
-        ("extra_constraints", extra_constraints),
-    ):
-        if value is not None and method != "critical":
-            raise InputError("belongs to the method critical", (field,))
-    leading = turned(machine) if facing == "backward" else machine
-    configured = list(configurations(leading))
-    if method == "path":
-        from stairwright.planning.path import plan_path
+    search = _pose_search(method, solver, extra_cost, extra_constraints)
+    asked = _Asked(ground, machine, mu, method, chosen, timing, stood, certified, search)
+    return asked.plan(end, diagnose)
 
-        found = plan_path(
-            ground, configured, mu, chosen, timing=timing, tolerance=stood, diagnose=diagnose
-        )
-    elif method == "critical":
-        from stairwright.planning.poses.critical_poses import plan_critical
 
-        search = _pose_search(solver, extra_cost, extra_constraints)
-        plans = (plan_critical(ground, one, mu, chosen, search, certified) for one in configured)
-        found = _first_feasible(plans)
-    else:
+@dataclass(frozen=True)
+class _Asked:
+    """What a plan depends on, complete and checked; but for the end of the robot that leads."""
+
+    terrain: Terrain
+    robot: Robot
+    friction: float
+    method: Method
+    weights: Any
+    timing: PlanTiming
+    tolerance: Tolerance | None
+    certified: bool
+    search: PoseSearcher | None
+
+    def plan(self, facing: FacingChoice, diagnose: bool) -> Plan:
+        """The plan; of ``either`` the better one. Only what is answered is diagnosed."""
+        if facing != "either":
+            return self._led_by(facing, diagnose)
+        begun = clock.perf_counter()
+        if symmetric(self.robot):
+            found = self._led_by("forward", diagnose)
+        else:
+            found = better_led(partial(self._led_by, diagnose=False), self.timing)
+            if self.method == "path" and diagnose and not found.feasible:
+                found = self._led_by(found.facing, diagnose)
+        took = clock.perf_counter() - begun
+        return found.model_copy(update={"solve_time": took})
+
+    def _led_by(self, facing: Facing, diagnose: bool) -> Plan:
+        leading = turned(self.robot) if facing == "backward" else self.robot
+        configured = list(configurations(leading))
+        found = with_energy(self._found(configured, diagnose))
+        if configured == [self.robot]:
+            return found
+        asked = (self.terrain, self.robot, self.friction, self.method, found.weights)
+        name = plan_id(*asked, found.timing.rule, self.tolerance, facing)
+        known: dict[str, Any] = {"id": name, "facing": facing}
+        if configured != [leading]:
+            known["knees"] = knees_of(found.robot_description)
+        return found.model_copy(update=known)
+
+    def _found(self, robots: Sequence[Robot], diagnose: bool) -> Plan:
+        """The plan of one of `robots`, which is the robot with its knees bent every way."""
+        ground, mu, weights = self.terrain, self.friction, self.weights
+        if self.method == "path":
+            from stairwright.planning.path import plan_path
+
+            timing, tolerance = self.timing, self.tolerance
+            return plan_path(
+                ground, robots, mu, weights, timing=timing, tolerance=tolerance, diagnose=diagnose
+            )
+        if self.search is not None:
+            from stairwright.planning.poses.critical_poses import plan_critical
+
+            how = self.search, self.certified
+            return _first_feasible(plan_critical(ground, one, mu, weights, *how) for one in robots)
         from stairwright.planning.poses.nominal import plan_nominal
 
-        found = _first_feasible(plan_nominal(ground, one, mu, chosen) for one in configured)
-    found = with_energy(found)
-    if configured == [machine]:
-        return found
-    asked = (found.weights, found.timing.rule, stood, facing)
-    known: dict[str, Any] = {"id": plan_id(ground, machine, mu, method, *asked), "facing": facing}
-    if configured != [leading]:
-        known["knees"] = knees_of(found.robot_description)
-    return found.model_copy(update=known)
+        return _first_feasible(plan_nominal(ground, one, mu, weights) for one in robots)
 
 
 def _first_feasible(plans: Iterable[Plan]) -> Plan:
@@ -135,20 +177,28 @@ def _first_feasible(plans: Iterable[Plan]) -> Plan:
     for found in plans:
         if found.feasible:
             return found
-        if best is None or _reach(found) > _reach(best):
+        if best is None or reach(found) > reach(best):
             best = found
     assert best is not None
     return best
 
 
-def _reach(found: Plan) -> float:
-    return found.problem.progress if found.problem else math.inf
-
-
 def _pose_search(
-    solver: PoseSolver | None, cost: ExtraCost | None, constraints: ExtraConstraints | None
-) -> PoseSearcher:
-    """What solves the poses of ``critical``."""
+    method: Method,
+    solver: PoseSolver | None,
+    cost: ExtraCost | None,
+    constraints: ExtraConstraints | None,
+) -> PoseSearcher | None:
+    """What solves the poses of ``critical``; None of other methods."""
+    if solver not in (None, *get_args(PoseSolver)):
+        there = ", ".join(get_args(PoseSolver))
+        raise InputError(f"unknown solver {solver!r}; there are: {there}", ("solver",))
+    terms = {"solver": solver, "extra_cost": cost, "extra_constraints": constraints}
+    for field, value in terms.items():
+        if value is not None and method != "critical":
+            raise InputError("belongs to the method critical", (field,))
+    if method != "critical":
+        return None
     extra = cost is not None or constraints is not None
     if solver == "native" and extra:
         raise InputError("terms of yours are in CasADi, which ipopt solves", ("solver",))

@@ -43,10 +43,21 @@ def turned(robot: Robot) -> Robot:
     return robot.model_copy(update=changed | {"schema_": "stairwright/robot/2"})
 
 
+def symmetric(robot: Robot) -> bool:
+    """Whether the turned robot is the same but for what its joints are called."""
+    return _form(robot) == _form(turned(robot))
+
+
 def opposite(joint: str) -> str:
     """The joint that stands in the place of `joint` once the robot is turned."""
     leg, part = joint.split("_")
     return f"{_OTHER_END[leg]}_{part}"
+
+
+def _form(robot: Robot) -> dict[str, Any]:
+    form = robot.model_dump(exclude={"schema_", "joint_names", "joint_frames"})
+    points = form.get("collision_points", {})
+    return form | {"collision_points": {part: sorted(each) for part, each in points.items()}}
 
 
 def _legs(robot: Robot) -> dict[str, Any]:

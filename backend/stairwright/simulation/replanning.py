@@ -54,6 +54,7 @@ def plan_anew(old: Plan, terrain: Terrain, friction: float) -> Plan | None:
             old.method,
             old.weights or None,
             timing=old.timing.rule if old.timing.rule == "fast" else "steady",
+            facing="forward",  # the end that leads already
             diagnose=False,
         )
     except InputError:

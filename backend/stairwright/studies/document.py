@@ -11,7 +11,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from stairwright.arguments import MOST_SEED
 from stairwright.documents import Model, content_hash
 from stairwright.errors import InputError
-from stairwright.planning.plan import Facing, Method, PlanTiming
+from stairwright.planning.plan import FacingChoice, Method, PlanTiming, usual_facing
 from stairwright.planning.tolerance import Tolerance
 from stairwright.robot.description import Robot
 from stairwright.simulation.ranges import Ranges
@@ -93,7 +93,9 @@ class Study(Model):
     method: Method = "path"
     weights: dict[SettingName, bool | float] = Field({}, max_length=32)
     timing: PlanTiming = Field("steady", description="of plans of the method path, as for a plan")
-    facing: Facing = Field("forward", description="which end of the robot leads, as for a plan")
+    facing: FacingChoice | None = Field(
+        None, description="which end of the robot leads, as for a plan"
+    )
     tolerance: Tolerance | None = Field(
         None, description="that plans of the method path shall stand; axes may vary it"
     )
@@ -162,7 +164,8 @@ class Study(Model):
             data.pop("tolerance")
         if self.timing == "steady":
             data.pop("timing")
-        if self.facing == "forward":
+        data["facing"] = self.facing or usual_facing(self.timing)
+        if data["facing"] == "forward":
             data.pop("facing")
         data["axes"] = [axis.name for axis in self.axes]
         if self.diagnose == "last" and self.boundary_axis is not None:

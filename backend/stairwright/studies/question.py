@@ -14,7 +14,7 @@ from stairwright.control.settings import parse_settings
 from stairwright.documents import parse, wording
 from stairwright.errors import InputError
 from stairwright.planning.courses import Courses
-from stairwright.planning.plan import Facing, Method, PlanTiming
+from stairwright.planning.plan import FacingChoice, Method, PlanTiming, usual_facing
 from stairwright.planning.tolerance import Tolerance, parse_tolerance
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
@@ -43,7 +43,7 @@ class CellQuestion:
     seed: int = 0
     tolerance: Tolerance | None = None
     timing: PlanTiming = "steady"
-    facing: Facing = "forward"
+    facing: FacingChoice = "forward"
 
     @property
     def plan(self) -> dict[str, Any]:
@@ -59,7 +59,7 @@ class CellQuestion:
             body["tolerance"] = self.tolerance.asked
         if self.timing != "steady":
             body["timing"] = self.timing
-        if self.facing != "forward":
+        if self.facing != usual_facing(self.timing):
             body["facing"] = self.facing
         return body
 
@@ -133,7 +133,7 @@ class Questions:
             _whole(plain.get("seed", study.seed), "seed"),
             parse_tolerance(tolerance, method, mu),
             study.timing,
-            plain.get("facing", study.facing),  # type: ignore[arg-type]
+            plain.get("facing", study.facing) or usual_facing(study.timing),  # type: ignore[arg-type]
         )
 
     def _terrain(self, measures: dict[str, Value]) -> Terrain:

@@ -12,7 +12,7 @@ from pydantic import BaseModel
 
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
-from stairwright.planning.plan import Facing, Method
+from stairwright.planning.plan import FacingChoice, Method
 from stairwright.planning.tolerance import Tolerance
 from stairwright.planning.weights import MODELS
 from stairwright.robot.description import Robot
@@ -142,7 +142,7 @@ def check_value(where: Target, value: float | str) -> None:
     """
     if where.words != isinstance(value, str):
         raise InputError(f"must be {'words' if where.words else 'numbers'}")
-    for part, known in (("method", Method), ("facing", Facing)):
+    for part, known in (("method", Method), ("facing", FacingChoice)):
         if where.part == part and value not in get_args(known):
             raise InputError(f"unknown {part}; there are: {', '.join(get_args(known))}")
 

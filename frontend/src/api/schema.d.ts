@@ -1061,10 +1061,8 @@ export interface components {
             /**
              * Facing
              * @description which end of the robot leads, as for a plan
-             * @default forward
-             * @enum {string}
              */
-            facing: "forward" | "backward";
+            facing?: ("forward" | "backward" | "either") | null;
             /** @description that plans of the method path shall stand; axes may vary it */
             tolerance?: components["schemas"]["Tolerance"] | null;
             /**
@@ -2580,11 +2578,9 @@ export interface components {
             timing: "steady" | "fast";
             /**
              * Facing
-             * @description backward: the robot's rear leads, see `facing` of a plan
-             * @default forward
-             * @enum {string}
+             * @description which end of the robot leads, see `facing` of a plan; either: as the planner finds better, which is the default where `timing` is fast, else forward
              */
-            facing: "forward" | "backward";
+            facing?: ("forward" | "backward" | "either") | null;
             /** @description how far the world may be from what is drawn, with the certificate holding for all of it; of the method `path` */
             tolerance?: components["schemas"]["Tolerance"] | null;
         };
@@ -3264,10 +3260,8 @@ export interface components {
             /**
              * Facing
              * @description with `terrain`
-             * @default forward
-             * @enum {string}
              */
-            facing: "forward" | "backward";
+            facing?: ("forward" | "backward" | "either") | null;
             /** @description with `terrain` */
             tolerance?: components["schemas"]["Tolerance"] | null;
             /**
@@ -3476,10 +3470,8 @@ export interface components {
             /**
              * Facing
              * @description with `terrain`
-             * @default forward
-             * @enum {string}
              */
-            facing: "forward" | "backward";
+            facing?: ("forward" | "backward" | "either") | null;
             /** @description with `terrain` */
             tolerance?: components["schemas"]["Tolerance"] | null;
             /**
@@ -3670,10 +3662,8 @@ export interface components {
             /**
              * Facing
              * @description which end of the robot leads, as for a plan
-             * @default forward
-             * @enum {string}
              */
-            facing: "forward" | "backward";
+            facing?: ("forward" | "backward" | "either") | null;
             /** @description that plans of the method path shall stand; axes may vary it */
             tolerance?: components["schemas"]["Tolerance"] | null;
             /** Axes */
@@ -4067,10 +4057,8 @@ export interface components {
             /**
              * Facing
              * @description with `terrain`
-             * @default forward
-             * @enum {string}
              */
-            facing: "forward" | "backward";
+            facing?: ("forward" | "backward" | "either") | null;
             /** @description with `terrain` */
             tolerance?: components["schemas"]["Tolerance"] | null;
             /**

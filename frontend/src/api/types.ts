@@ -21,7 +21,9 @@ export type RobotDocument = Schemas["RobotDocument"];
 export type SentRobot = Omit<RobotDocument, "readonly" | "version">;
 export type ImportedRobot = Schemas["Imported"];
 export type Method = Schemas["PlanRequest"]["method"];
-export type Facing = NonNullable<Schemas["PlanRequest"]["facing"]>;
+export type Facing = NonNullable<Schemas["Plan"]["facing"]>;
+/** Which end of the robot shall lead; either: as the planner finds better. */
+export type FacingChoice = NonNullable<Schemas["PlanRequest"]["facing"]>;
 export type PlanTiming = NonNullable<Schemas["PlanRequest"]["timing"]>;
 export type Margins = Schemas["Margins"];
 
@@ -190,6 +192,6 @@ export interface PlanRequest {
   method: Method;
   weights?: SettingValues;
   timing?: PlanTiming;
-  facing?: Facing;
+  facing?: FacingChoice;
   tolerance?: SettingValues;
 }

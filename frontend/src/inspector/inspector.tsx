@@ -1,6 +1,6 @@
 /** Method, comparison, weights and controller: every row is built from the service's schema. */
 
-import type { Facing, Method, PlanTiming } from "../api/types";
+import type { FacingChoice, Method, PlanTiming } from "../api/types";
 import { Effect } from "../plan/effect";
 import {
   changedCount,
@@ -12,6 +12,7 @@ import {
   method,
   resetAll,
   setController,
+  setFacing,
   setWeight,
   timing,
   weightSchema,
@@ -20,7 +21,7 @@ import { type InspectorPage, inspectorOpen, inspectorPage } from "../state/view"
 import { Icon } from "../ui/icon";
 import { Switch } from "../ui/switch";
 import { SeedRow } from "./seed";
-import { Choice } from "./segments";
+import { Choice, Segments } from "./segments";
 import { SettingGroups } from "./setting-groups";
 import { SettingRow } from "./setting-row";
 import { Tolerance } from "./tolerance";
@@ -31,9 +32,10 @@ const METHODS: [Method, string][] = [
   ["critical", "Paper: critical poses"],
 ];
 
-const FACINGS: [Facing, string][] = [
+const FACINGS: [FacingChoice, string][] = [
   ["forward", "Forward"],
   ["backward", "Backward"],
+  ["either", "Either"],
 ];
 
 const TIMINGS: [PlanTiming, string][] = [
@@ -95,7 +97,7 @@ function Planning() {
     <>
       <Choice label="Method" options={METHODS} of={method} />
       {method.value === "path" && <Choice label="Timing" options={TIMINGS} of={timing} />}
-      <Choice label="Facing" options={FACINGS} of={facing} />
+      <Segments label="Facing" options={FACINGS} value={facing.value} onChoose={setFacing} />
       <div class="r2 cmp-row">
         <span class="lab">Compare</span>
         <div class="ab">

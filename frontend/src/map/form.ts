@@ -1,6 +1,7 @@
 /** What a map is asked for: its axes and what is done about friction; and the study that asks it. */
 
 import { signal } from "@preact/signals";
+import type { FacingChoice } from "../api/types";
 import { drawing } from "../state/drawing";
 import { request } from "../state/question";
 import { axisKind } from "./quantities";
@@ -109,12 +110,18 @@ export function ground(now: Form): string {
   return drawing.value.name;
 }
 
+const MANNERS: Record<FacingChoice, string> = {
+  forward: ", forward",
+  backward: ", backward",
+  either: ", either end in front",
+};
+
 /** What the page's settings make of every plan of the map, in a few words. */
 export function manner(): string {
   const { timing, facing, tolerance } = request.value ?? {};
   return [
     timing === "fast" && ", fast",
-    facing === "backward" && ", backward",
+    facing && MANNERS[facing],
     tolerance && ", with the tolerance set",
   ]
     .filter(Boolean)

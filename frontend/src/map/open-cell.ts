@@ -3,7 +3,7 @@
 import { batch } from "@preact/signals";
 import { callJson } from "../api/client";
 import type {
-  Facing,
+  FacingChoice,
   Method,
   PlanTiming,
   RobotDocument,
@@ -14,7 +14,7 @@ import { fit } from "../profile-editor/viewport";
 import { report } from "../state/connection";
 import { open } from "../state/drawing";
 import {
-  facing,
+  chosenFacing,
   method,
   robotName,
   robots,
@@ -38,7 +38,7 @@ interface Question {
   method: Method;
   weights: SettingValues;
   timing?: PlanTiming;
-  facing?: Facing;
+  facing?: FacingChoice;
   tolerance?: SettingValues;
 }
 
@@ -65,7 +65,7 @@ export async function openCell(place: Place): Promise<void> {
         [question.method]: changed(question.method, question.weights),
       };
       timing.value = question.timing ?? "steady";
-      facing.value = question.facing ?? "forward";
+      chosenFacing.value = question.facing ?? null;
       tolerance.value = question.tolerance ?? {};
       workspace.value = "plan";
     });

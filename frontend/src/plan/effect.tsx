@@ -5,8 +5,8 @@ import { fixed, maybe } from "../geometry/format";
 import { legLimits } from "../geometry/robot";
 import { MARGINS, marginClass, worst } from "../profile-editor/margins";
 import { defaultPlan, ghostShown } from "../state/effect";
-import { plan, stale } from "../state/planning";
-import { changedWeights, robot, weightSchema } from "../state/setup";
+import { plan, robot, stale } from "../state/planning";
+import { changedWeights, weightSchema } from "../state/setup";
 import { Switch } from "../ui/switch";
 
 interface Quantity {

@@ -4,10 +4,10 @@ import { computed, type ReadonlySignal } from "@preact/signals";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import { hasFailed } from "../api/types";
 import { live, livePlan } from "../state/live";
-import { plan } from "../state/planning";
+import { plan, robotOf } from "../state/planning";
 import { plannedEnd, shownRun } from "../state/playback";
 import { progress, run, runB, running, runPlan } from "../state/rollouts";
-import { compare, robot } from "../state/setup";
+import { compare } from "../state/setup";
 import type { Tint } from "./chart";
 import { PANELS, type Panel, type PanelId, type Source, timeAxis } from "./lines";
 import { buildPanel } from "./panels";
@@ -23,11 +23,12 @@ const source = computed<Source>(() => {
   const part = growing.value || (!run.value && shownRun.value !== null);
   const driven = part ? livePlan.value : runPlan.value;
   const drive = part ? live.value : run.value;
+  const shown = (drive && driven) ?? plan.value;
   return {
-    plan: (drive && driven) ?? plan.value,
+    plan: shown,
     run: drive,
     runB: compare.value && result ? runB.value : null,
-    limits: robot.value?.limits ?? null,
+    limits: robotOf(shown)?.limits ?? null,
   };
 });
 

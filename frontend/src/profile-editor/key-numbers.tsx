@@ -1,8 +1,8 @@
 /** Numbers over the key poses, above the robot: a click sets the clock to when it is there. */
 
 import type { Vec2 } from "../api/types";
+import { robot } from "../state/planning";
 import { keyTimes, playing, seek } from "../state/playback";
-import { robot } from "../state/setup";
 import { layers } from "../state/view";
 import { keyed, keyIndices } from "./poses";
 import { projection, skyTop } from "./viewport";

@@ -5,10 +5,9 @@ import { hasFailed, type Plan, type Vec2 } from "../api/types";
 import { planFrame, runFrame } from "../geometry/frames";
 import { type Frame, nearestPart, type Part, type RobotShape, skeleton } from "../geometry/robot";
 import { ghost } from "../state/effect";
-import { plan, planB, planKept, preview } from "../state/planning";
+import { plan, planB, planKept, preview, robot, robotOf } from "../state/planning";
 import { duration, frame, poseIndex, shownRun, shownTime } from "../state/playback";
 import { runB } from "../state/rollouts";
-import { robot } from "../state/setup";
 import { layers } from "../state/view";
 import { workspace } from "../state/workspace";
 import { collisionPoints, Details, Figure } from "./figure";
@@ -111,7 +110,7 @@ function Between() {
 
 function Keys() {
   const shown = keyed.value;
-  const shape = robot.value;
+  const shape = robotOf(shown);
   if (!shown || !shape || !layers.value.has("keys")) return null;
   return (
     <g>
@@ -165,7 +164,7 @@ function CentreOfMass({ at, to }: { at: Vec2; to: Projection }) {
 /** With changed weights: the default's path, and its robot at the cursor's progress, dashed. */
 function Default() {
   const other = ghost.value;
-  const shape = robot.value;
+  const shape = robotOf(other);
   const here = plan.value?.poses[poseIndex.value];
   if (!other?.poses.length || !shape || !here) return null;
   const { at } = projection.value;
@@ -182,7 +181,7 @@ function Default() {
 /** B at the same time: where it cannot go on, it stays behind. */
 function Other() {
   const shown = planB.value;
-  const shape = robot.value;
+  const shape = robotOf(shown);
   if (!shown || !shape) return null;
   const driven = shownRun.value ? runB.value : null;
   const f = driven ? runFrame(driven, shownTime.value) : planFrame(shown, shownTime.value);

@@ -6,7 +6,7 @@ import { fixed, slope } from "../geometry/format";
 import { segmentKind } from "../geometry/profile";
 import { wheelPath } from "../geometry/wheel-path";
 import { drawing, isEmpty, selection } from "../state/drawing";
-import { robot } from "../state/setup";
+import { robot } from "../state/planning";
 import { layers } from "../state/view";
 import { useRoving } from "../ui/roving";
 import { editingDimension } from "./dimension-field";

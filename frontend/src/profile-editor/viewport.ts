@@ -3,7 +3,7 @@
 import { computed, signal } from "@preact/signals";
 import type { Vec2 } from "../api/types";
 import { extent, type Points } from "../geometry/profile";
-import { robot } from "../state/setup";
+import { robot } from "../state/planning";
 
 export const RULER_X = 20;
 export const RULER_Z = 36;

@@ -4,6 +4,7 @@ import { signal } from "@preact/signals";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Plan, Rollout } from "../api/types";
 import { fixed } from "../geometry/format";
+import { robotOf } from "../state/planning";
 import {
   failureB,
   progress,
@@ -14,7 +15,7 @@ import {
   runPlanB,
   runStale,
 } from "../state/rollouts";
-import { compare, robot } from "../state/setup";
+import { compare } from "../state/setup";
 import { Icon } from "../ui/icon";
 import { type Figure, figures, OUTCOMES, verdict } from "./figures";
 
@@ -70,7 +71,7 @@ export function Card({ result }: { result: Rollout }) {
   const card = useRoom();
   const other = compare.value ? runB.value : null;
   const results = other ? [result, other] : [result];
-  const rows = (apart: boolean) => figures(results, robot.value?.limits, apart);
+  const rows = (apart: boolean) => figures(results, robotOf(runPlan.value)?.limits, apart);
   const sentences = result.outcome !== "success" || runPlan.value?.certificate?.motion;
   const heads = other ? 1 : 0;
   const needed = AROUND + (sentences ? SENTENCES : 0) + (rows(Boolean(other)).length + heads) * ROW;

@@ -11,11 +11,11 @@ import { forgetRollout, restoreRollout } from "../state/rollouts";
 import {
   controller,
   disturbance,
-  facing,
   method,
   robotName,
   robots,
   seed,
+  setFacing,
   settings,
   terrains,
   timing,
@@ -45,8 +45,8 @@ function showPlan(plan: Plan): void {
   open({ ...terrain, friction: plan.friction }, stored);
   robotName.value = plan.robot;
   method.value = plan.method;
-  facing.value = plan.facing ?? "forward";
   timing.value = plan.timing.rule === "fast" ? "fast" : "steady";
+  setFacing(plan.facing ?? "forward");
   const schema = settings.peek()?.weights[plan.method]?.properties;
   weights.value = { ...weights.peek(), [plan.method]: differing(plan.weights ?? {}, schema) };
   tolerance.value = differing({ ...plan.tolerance }, toleranceSchema.peek());

@@ -11,7 +11,7 @@ import type { Plan, PlanRequest } from "../api/types";
 import { connected, report } from "./connection";
 import { Pace } from "./pace";
 import { answered, plan, planB, preview, refusal, shownKey, stale } from "./planning";
-import { quick, request, requestKey, unoptimised } from "./question";
+import { request, requestKey, simpler } from "./question";
 import { compare } from "./setup";
 import { startWaiting, stopWaiting } from "./waiting";
 
@@ -116,7 +116,7 @@ function askForA(request: PlanRequest, key: string): void {
   clearTimeout(resting);
   const asked = performance.now();
   if (request.method === "path" && pace.worthPreview) {
-    const easier = quick(request);
+    const easier = simpler(request, "critical", plan.peek());
     const text = JSON.stringify(easier);
     // A weight of the path changes nothing that the quick method could tell.
     if (text !== previewed) {
@@ -243,7 +243,7 @@ export function startPlanning(): () => void {
     askForA(question, key);
   });
   const nominal = computed(() =>
-    compare.value && request.value ? unoptimised(request.value) : null,
+    compare.value && request.value ? simpler(request.value, "nominal", plan.value) : null,
   );
   const stopB = follow(nominal, planB);
   return () => {

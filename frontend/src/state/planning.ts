@@ -2,8 +2,10 @@
 
 import { computed, effect, signal } from "@preact/signals";
 import type { Plan } from "../api/types";
+import type { RobotShape } from "../geometry/robot";
 import { connected } from "./connection";
 import { requestKey } from "./question";
+import { robotFacing } from "./setup";
 import { slow } from "./waiting";
 
 export const plan = signal<Plan | null>(null);
@@ -24,6 +26,12 @@ export const refusal = signal<string | null>(null);
 export const answered = signal(0);
 /** The question that `plan` answers, as text. */
 export const shownKey = signal("");
+
+/** The robot as a plan has it: the end that leads is its front. */
+export const robotOf = (shown: Plan | null): RobotShape | null =>
+  robotFacing.value?.[shown?.facing ?? "forward"] ?? null;
+/** As the shown plan has it. */
+export const robot = computed(() => robotOf(plan.value));
 
 /** The shown plan answers an older question than the one on screen. */
 export const stale = computed(() => shownKey.value !== requestKey.value);

@@ -1,7 +1,7 @@
 /** What the planner is asked, from drawing and set-up. */
 
 import { computed } from "@preact/signals";
-import type { Method, PlanRequest } from "../api/types";
+import type { Method, Plan, PlanRequest } from "../api/types";
 import { drawing, isEmpty, terrainDocument } from "./drawing";
 import {
   changedWeights,
@@ -12,6 +12,7 @@ import {
   settings,
   timing,
   tolerance,
+  usualFacing,
 } from "./setup";
 
 export const request = computed<PlanRequest | null>(() => {
@@ -25,27 +26,32 @@ export const requestKey = computed(() => JSON.stringify(request.value));
 export const requestWith = (robot: PlanRequest["robot"]): PlanRequest | null =>
   request.value && { ...request.value, robot };
 
-/** The question of B: the same without pose optimisation. */
-export function unoptimised(question: PlanRequest): PlanRequest {
-  const { weights: _, timing: __, tolerance: ___, ...rest } = question;
-  return { ...rest, method: "nominal" };
-}
-
-/** The question that the quick method is asked: the same without the full method's weights. */
-export function quick(question: PlanRequest): PlanRequest {
-  const { weights: _, timing: __, tolerance: ___, ...rest } = question;
-  return { ...rest, method: "critical" };
+/**
+ * The same question to a simpler method: B's, without pose optimisation, or the quick one of a few
+ * poses. Weights, timing and tolerance are the full method's.
+ * @param beside where the planner chooses which end leads, it is the one of this plan
+ */
+export function simpler(
+  question: PlanRequest,
+  by: "nominal" | "critical",
+  beside: Plan | null,
+): PlanRequest {
+  const { weights: _, timing, tolerance: __, facing: said, ...rest } = question;
+  const asked = said ?? usualFacing(timing);
+  const leads = asked === "either" ? beside?.facing : asked;
+  return { ...rest, method: by, ...(leads === "backward" ? { facing: leads } : {}) };
 }
 
 function ask(by: Method, weights: PlanRequest["weights"]): PlanRequest {
   const state = drawing.value;
+  const fast = by === "path" && timing.value === "fast" ? ("fast" as const) : undefined;
   return {
     terrain: terrainDocument(state),
     robot: robotSource.value,
     friction: state.friction,
     method: by,
-    ...(by === "path" && timing.value === "fast" ? { timing: "fast" as const } : {}),
-    ...(facing.value === "backward" ? { facing: "backward" as const } : {}),
+    ...(fast ? { timing: fast } : {}),
+    ...(facing.value === usualFacing(fast) ? {} : { facing: facing.value }),
     ...(by === "path" && Object.keys(tolerance.value).length > 0
       ? { tolerance: tolerance.value }
       : {}),

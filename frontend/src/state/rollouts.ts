@@ -17,7 +17,7 @@ import type { Job, Plan, PlanRequest, Rollout } from "../api/types";
 import { report } from "./connection";
 import { type Chunk, endLive, grow, haltLive, livePlan, startLive } from "./live";
 import { plan, settled, stale } from "./planning";
-import { request, unoptimised } from "./question";
+import { request, simpler } from "./question";
 import { compare, controller, disturbance, seed } from "./setup";
 import { remember, wasUnderWay } from "./under-way";
 
@@ -147,7 +147,7 @@ function finish(how: Activity, lost = false): void {
 async function runOther(question: PlanRequest, asked: Setup, signal: AbortSignal): Promise<void> {
   try {
     progress.value = 0;
-    const other = await postPlan(unoptimised(question), signal);
+    const other = await postPlan(simpler(question, "nominal", runPlan.peek()), signal);
     if (other.problem && other.poses.length < 2) throw new Error(other.problem.message);
     const done = await arrival((await submit(other, asked)).id, signal);
     batch(() => {

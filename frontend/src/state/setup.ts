@@ -3,6 +3,7 @@
 import { batch, computed, signal } from "@preact/signals";
 import type {
   Facing,
+  FacingChoice,
   Method,
   PlanTiming,
   RobotDocument,
@@ -23,8 +24,14 @@ export const robotName = signal("a1_wheeled_x");
 export const method = signal<Method>("path");
 /** How a path is timed: within limits of speed, or as fast as its dynamics allow. */
 export const timing = signal<PlanTiming>("steady");
-/** Which end of the robot leads. */
-export const facing = signal<Facing>("forward");
+/** Which end of the robot shall lead, where that was said. */
+export const chosenFacing = signal<FacingChoice | null>(null);
+/** Which end leads where nothing is said, as the service has it. */
+export const usualFacing = (by: PlanTiming = "steady"): FacingChoice =>
+  by === "fast" ? "either" : "forward";
+const usual = computed(() => usualFacing(method.value === "path" ? timing.value : "steady"));
+/** What is asked for. */
+export const facing = computed(() => chosenFacing.value ?? usual.value);
 export const compare = signal(false);
 export const seed = signal(0);
 /** Only what differs from the default, by method. */
@@ -69,10 +76,10 @@ export function sentRobot(document: RobotDocument): SentRobot {
 export const robotAsBuilt = computed<RobotShape | null>(() =>
   robotDocument.value ? robotShape(robotDocument.value) : null,
 );
-/** As plans have it: the end that leads is its front. */
-export const robot = computed<RobotShape | null>(() => {
-  const shape = robotAsBuilt.value;
-  return shape && facing.value === "backward" ? turned(shape) : shape;
+/** As plans have it, by the end that leads: that one is its front. */
+export const robotFacing = computed<Record<Facing, RobotShape> | null>(() => {
+  const forward = robotAsBuilt.value;
+  return forward && { forward, backward: turned(forward) };
 });
 
 /** Some weights belong to one kind of timing alone. */
@@ -118,6 +125,10 @@ export function withValue(
   return value === null || value === schema?.default ? rest : { ...rest, [name]: value };
 }
 
+export function setFacing(next: FacingChoice): void {
+  chosenFacing.value = next === usual.peek() ? null : next;
+}
+
 export function setWeight(name: string, value: SettingChange): void {
   const all = weights.peek()[method.peek()] ?? {};
   const next = withValue(all, weightSchema.peek()[name], name, value);
@@ -142,7 +153,7 @@ export const choices = computed(() => ({
   robotEdits: robotEdits.value,
   method: method.value,
   timing: timing.value,
-  facing: facing.value,
+  chosenFacing: chosenFacing.value,
   seed: seed.value,
   weights: weights.value,
   tolerance: tolerance.value,
@@ -157,7 +168,7 @@ export function choose(again: Choices): void {
     robotEdits.value = again.robotEdits;
     method.value = again.method;
     timing.value = again.timing;
-    facing.value = again.facing;
+    chosenFacing.value = again.chosenFacing;
     seed.value = again.seed;
     weights.value = again.weights;
     tolerance.value = again.tolerance;

@@ -3,6 +3,7 @@
 
 import { effect, signal } from "@preact/signals";
 import type {
+  FacingChoice,
   Method,
   RobotDocument,
   SentRobot,
@@ -13,10 +14,10 @@ import type {
 import { committed, isEmpty, open, origin, terrainDocument } from "./drawing";
 import { run, runB, runStale } from "./rollouts";
 import {
+  chosenFacing,
   compare,
   controller,
   disturbance,
-  facing,
   method,
   robotEdits,
   robotName,
@@ -39,8 +40,8 @@ interface Shared {
   m: Method;
   /** Fast timing. */
   f?: 1;
-  /** Backward. */
-  b?: 1;
+  /** Which end shall lead, where that was said; 1 is backward. */
+  b?: 1 | FacingChoice;
   w?: Partial<Record<Method, SettingValues>>;
   /** Tolerance. */
   l?: SettingValues;
@@ -85,13 +86,14 @@ function currentState(): Shared {
   );
   const source = robotSource.value;
   const result = runStale.value ? null : run.value;
+  const end = chosenFacing.value;
   return {
     t: terrain,
     r: robotName.value,
     ...(typeof source === "string" ? {} : { rd: source }),
     m: method.value,
     ...(timing.value === "fast" ? { f: 1 as const } : {}),
-    ...(facing.value === "backward" ? { b: 1 as const } : {}),
+    ...(end ? { b: end === "backward" ? (1 as const) : end } : {}),
     ...(filled(changed) ? { w: changed } : {}),
     ...(filled(tolerance.value) ? { l: tolerance.value } : {}),
     ...(filled(controller.value) ? { c: controller.value } : {}),
@@ -137,7 +139,7 @@ export function restoreFromAddress(instead = "the sample is shown instead"): Res
   }
   method.value = state.m;
   timing.value = state.f ? "fast" : "steady";
-  facing.value = state.b ? "backward" : "forward";
+  chosenFacing.value = state.b === 1 ? "backward" : (state.b ?? null);
   weights.value = state.w ?? {};
   tolerance.value = state.l ?? {};
   controller.value = state.c ?? {};

@@ -60,7 +60,8 @@ export function PlanPill() {
         <Icon name="warning" />
         <b>Infeasible</b>
         <span class="wide">
-          at x {fixed(at[0], 2)} m{corner ? `, ${corner}` : ""}
+          {shown.facing === "backward" && "backward, "}at x {fixed(at[0], 2)} m
+          {corner ? `, ${corner}` : ""}
         </span>
       </div>
     );
@@ -83,6 +84,7 @@ export function PlanPill() {
       <Icon name="check" />
       <b>Feasible</b>
       <span class="wide">
+        {shown!.facing === "backward" ? "backward, " : ""}
         {shown!.certificate?.passed ? "certified, " : ""}
         {took(answered.value)}
       </span>

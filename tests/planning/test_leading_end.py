@@ -1,0 +1,126 @@
+"""Which end leads where the planner chooses: forward unless it is clearly sooner about."""
+
+from __future__ import annotations
+
+import pytest
+
+import stairwright as sw
+from stairwright.planning.leading_end import better_led
+from stairwright.planning.plan import Facing, Plan, PlanTiming
+from stairwright.simulation.replanning import plan_anew
+from stairwright.terrain.stairs import stair
+
+DROP = {"points": [[-1.2, 0.25], [0.0, 0.25], [0.0, 0.0], [1.2, 0.0]]}
+WALL = {"points": [[-1.2, 0.0], [0.0, 0.0], [0.0, 1.0], [1.2, 1.0]]}
+
+
+@pytest.fixture(scope="module")
+def backward() -> Plan:
+    return sw.plan(DROP, timing="fast")
+
+
+def test_a1_wheeled_goes_down_with_its_rear_in_front(backward: Plan) -> None:
+    ways: tuple[Facing, ...] = ("forward", "backward")
+    forward, asked = (sw.plan(DROP, timing="fast", facing=way) for way in ways)
+    assert backward.facing == "backward"
+    assert (backward.id, backward.poses) == (asked.id, asked.poses)
+    assert backward.timing.total < 0.9 * forward.timing.total
+    assert backward.certificate is not None
+    assert backward.certificate.passed
+
+
+@pytest.mark.slow
+def test_down_five_stairs_too() -> None:
+    flight = stair(0.18, 0.28, 5, direction="down", approach=1.18, platform=1.0)
+    plan = sw.plan(flight, "a1_wheeled", 0.6, timing="fast")
+    assert plan.facing == "backward"
+    run = sw.rollout(plan)
+    assert run.success
+    assert run.metrics.speed_stairs is not None
+    assert run.metrics.speed_stairs > 0.3
+
+
+def test_it_stays_forward_where_that_is_as_good() -> None:
+    assert sw.plan("curb-015", "go2w", timing="fast").facing == "forward"
+
+
+def test_steady_plans_face_forward() -> None:
+    assert (
+        sw.plan(DROP).id == sw.plan(DROP, facing="either").id == sw.plan(DROP, facing="forward").id
+    )
+
+
+@pytest.mark.slow
+def test_a_refusal_is_that_of_the_end_that_comes_farther() -> None:
+    refused = sw.plan(WALL, facing="either")
+    ways: tuple[Facing, ...] = ("forward", "backward")
+    each = [sw.plan(WALL, facing=way) for way in ways]
+    farther = max(each, key=lambda plan: plan.problem.progress if plan.problem else 0.0)
+    assert not refused.feasible
+    assert (refused.facing, refused.problem) == (farther.facing, farther.problem)
+    assert refused.problem is not None
+    assert refused.problem.limit is not None
+
+
+def test_another_plan_on_the_way_keeps_the_end_that_leads() -> None:
+    step = {"points": [[-1.2, 0.0], [0.0, 0.0], [0.0, 0.25], [1.2, 0.25]]}
+    old = sw.plan(step, timing="fast", facing="backward")
+    new = plan_anew(old, old.terrain, 0.5)
+    assert new is not None
+    assert (new.facing, new.robot_description) == ("backward", old.robot_description)
+
+
+class Ends:
+    """Plans with either end in front, of given times [s] and least CoM margins [m]."""
+
+    def __init__(self, like: Plan, forward: tuple[float, float], backward: tuple[float, float]):
+        self.plans = {
+            "forward": _altered(like, "forward", *forward),
+            "backward": _altered(like, "backward", *backward),
+        }
+        self.asked: list[Facing] = []
+
+    def __call__(self, facing: Facing) -> Plan:
+        self.asked.append(facing)
+        return self.plans[facing]
+
+
+def _altered(like: Plan, facing: Facing, total: float, com: float) -> Plan:
+    first, *rest = like.poses
+    thin = first.model_copy(update={"margins": first.margins.model_copy(update={"com": com})})
+    timing = like.timing.model_copy(update={"total": total})
+    return like.model_copy(update={"facing": facing, "timing": timing, "poses": [thin, *rest]})
+
+
+@pytest.mark.parametrize(
+    ("time", "com", "leads"),
+    [
+        (8.0, 0.016, "backward"),
+        (9.5, 0.03, "forward"),
+        (8.0, 0.01, "forward"),
+    ],
+    ids=["clearly sooner", "hardly sooner", "sooner but thin"],
+)
+def test_it_turns_about_for_time_and_with_room(
+    backward: Plan, time: float, com: float, leads: Facing
+) -> None:
+    assert better_led(Ends(backward, (10.0, 0.02), (time, com)), "fast").facing == leads
+
+
+def test_of_thin_plans_the_sooner_may_not_be_the_thinner(backward: Plan) -> None:
+    for margin, leads in ((0.007, "backward"), (0.004, "forward")):
+        ends = Ends(backward, (10.0, 0.005), (8.0, margin))
+        assert better_led(ends, "fast").facing == leads
+
+
+@pytest.mark.parametrize("timing", ["steady", "fast"])
+def test_what_is_feasible_goes_before_what_is_not(backward: Plan, timing: PlanTiming) -> None:
+    ends = Ends(backward, (10.0, 0.02), (20.0, 0.001))
+    ends.plans["forward"] = sw.plan(WALL, diagnose=False)
+    assert better_led(ends, timing).facing == "backward"
+
+
+def test_no_second_plan_is_made_where_a_steady_one_faces_forward(backward: Plan) -> None:
+    ends = Ends(backward, (10.0, 0.02), (5.0, 0.02))
+    assert better_led(ends, "steady").facing == "forward"
+    assert ends.asked == ["forward"]
