@@ -16,7 +16,8 @@ MOTION = 1.25  # of the friction at rest, that is needed in motion
 TESTED = 0.9  # of the friction that the plan needs: more than that is not asked for in the test
 ENOUGH = 0.75  # of it; with less there is no going on where no other plan is found
 LEAST = 0.2  # friction on which no robot is sent: what is known of it is too rough
-# Of the friction that was found, what another plan may need: motion included where there is such a plan, else at rest.
+# Of the friction that was found, what another plan may need: with the motion where there is such a
+# plan, else at rest.
 USABLE = (1.0 / MOTION, 0.95)
 
 
