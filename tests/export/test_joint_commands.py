@@ -30,10 +30,13 @@ from tests.scene.example import example_plan
 LEGS = [name for name in JOINTS if not name.endswith("wheel")]
 WHEELS = [name for name in JOINTS if name.endswith("wheel")]
 FOLLOWED = 1e-3  # rad
+TERRACE = {
+    "points": [(-1, 0), (0, 0), (0, 0.12), (0.3, 0.12), (0.3, 0.24), (1, 0.24), (1, 0), (2, 0)]
+}
 PLANS = {
     "stair": ("single-stair-036", "a1_wheeled_x", "path"),
     "critical": ("single-stair-030", "a1_wheeled_x", "critical"),
-    "stairs": ("three-stairs-up-down", "a1_wheeled", "path"),
+    "stairs": (TERRACE, "a1_wheeled", "path"),
 }
 
 
