@@ -108,6 +108,7 @@ def test_a_bug_is_recorded_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> N
     assert record["message"] == "ZeroDivisionError: by zero"
 
 
+@pytest.mark.slow
 def test_fast_plans_take_less_time(tmp_path: Path) -> None:
     low = {"name": "step.height", "values": [0.1]}
     slow, fast = (study(low, timing=timing) for timing in ("steady", "fast"))
@@ -135,6 +136,7 @@ def test_robots_may_face_either_way(tmp_path: Path) -> None:
         Questions(load_study(asked | {"axes": [{"name": "facing", "values": [*ways, "aside"]}]}))
 
 
+@pytest.mark.slow
 def test_rollouts_and_trials(tmp_path: Path) -> None:
     low = {"name": "step.height", "values": [0.04]}
     run = sw.study(study(low, compute="rollout"), workers=1, store=tmp_path / "r.zarr").dataset

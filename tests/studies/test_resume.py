@@ -54,6 +54,7 @@ def _asked(document: dict[str, Any], path: Path) -> list[int]:
     return cells
 
 
+@pytest.mark.slow
 def test_xarray_opens_stores_and_copies_without_a_warning(tmp_path: Path) -> None:
     store, copy = tmp_path / "a.zarr", tmp_path / "copy.zarr"
     with warnings.catch_warnings():
@@ -102,6 +103,7 @@ def test_an_extended_axis_computes_only_new_cells(tmp_path: Path) -> None:
     assert identical(before, after.sel({"step.height": [0.05, 0.1]}))
 
 
+@pytest.mark.slow
 def test_studies_in_the_data_folder_share_their_cells(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -151,6 +153,7 @@ def test_failures_are_not_tried_for_ever(tmp_path: Path, monkeypatch: pytest.Mon
     assert tried.counts()["done"] == 1
 
 
+@pytest.mark.slow
 def test_two_writers_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "a.zarr"
     made = prepared(_heights(0.05))
