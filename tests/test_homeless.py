@@ -53,6 +53,7 @@ def test_a_service_without_a_home_works(start_server: Any, tmp_path: Path, varia
         assert (data / "stairwright.sqlite").is_file()
 
 
+@pytest.mark.slow
 def test_a_folder_of_code_that_is_read_only_needs_no_home(tmp_path: Path) -> None:
     package = tmp_path / "stairwright"
     source = Path(stairwright.__file__).parent

@@ -26,6 +26,7 @@ def api(server: Server) -> Iterator[httpx.Client]:
         yield client
 
 
+@pytest.mark.slow
 def test_a_backward_plan_is_that_of_python(server: Server, api: httpx.Client) -> None:
     own = sw.plan(CURB, facing="backward")
     with sw.Client(server.url) as service:

@@ -67,6 +67,7 @@ def busiest(server: Server) -> int:
     return max(after, key=lambda pid: after[pid] - before.get(pid, 0))
 
 
+@pytest.mark.slow
 def test_cancelling_a_running_rollout(api: httpx.Client) -> None:
     job = long_rollout(api, 1)
     wait_for(api, job, "running")

@@ -106,6 +106,7 @@ def test_another_content_type(api: httpx.Client, kind: str) -> None:
         refused(api.post(path, content=b"{}", headers={"content-type": kind}), 415)
 
 
+@pytest.mark.slow
 def test_wrong_methods_and_places(api: httpx.Client) -> None:
     wrong = api.request("PATCH", "/terrains/flat")
     refused(wrong, 405)
@@ -164,6 +165,7 @@ def test_odd_headers(api: httpx.Client, headers: dict[str, str]) -> None:
         assert answer.status_code < 500
 
 
+@pytest.mark.slow
 def test_mesh_bombs(api: httpx.Client) -> None:
     many = b"\0" * 80 + struct.pack("<I", 10_000_000) + b"\0" * 5000  # says 10^7, holds 100
     answer = api.post("/terrains/import", files={"file": ("a.stl", many)})

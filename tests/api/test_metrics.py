@@ -8,6 +8,7 @@ import signal
 import time
 
 import httpx
+import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
 from tests.api.test_damage import done
@@ -39,6 +40,7 @@ def cancelled_rollouts(server: Server) -> float:
     return counted
 
 
+@pytest.mark.slow
 def test_times_and_outcomes(server: Server) -> None:
     cancelled_before = cancelled_rollouts(server)
     before = figures(server)
@@ -83,6 +85,7 @@ def test_what_it_takes(server: Server) -> None:
     assert found["process_open_fds"] > 0
 
 
+@pytest.mark.slow
 def test_a_dead_worker_is_counted(server: Server) -> None:
     name = "stairwright_worker_deaths_total{pool=rollouts}"
     with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api:

@@ -101,6 +101,7 @@ def test_compressed_or_not_it_is_the_same_plan(api: httpx.Client) -> None:
     assert plain.json() == packed.json()
 
 
+@pytest.mark.slow
 def test_what_cannot_be_climbed_is_a_plan_with_a_problem(api: httpx.Client) -> None:
     answer = api.post("/plans", json={"terrain": WALL, "method": "path"})
     assert answer.status_code == 200, answer.text
@@ -161,6 +162,7 @@ def test_null_is_the_default_as_in_python(api: httpx.Client) -> None:
         assert api.post("/rollouts", json=body).status_code == 202
 
 
+@pytest.mark.slow
 def test_a_rollout_from_start_to_files(api: httpx.Client) -> None:
     started = api.post("/rollouts", json={"terrain": CURB, "robot": "a1_wheeled_x", "seed": 3})
     assert started.status_code == 202, started.text
@@ -211,6 +213,7 @@ def test_a_rollout_from_start_to_files(api: httpx.Client) -> None:
     assert missed == told[-1:]
 
 
+@pytest.mark.slow
 def test_a_changed_plan_and_its_rollout_get_ids_of_their_own(api: httpx.Client) -> None:
     plan = api.post("/plans", json={"terrain": CURB, "method": "critical"}).json()
     changed = json.loads(json.dumps(plan))
@@ -222,6 +225,7 @@ def test_a_changed_plan_and_its_rollout_get_ids_of_their_own(api: httpx.Client) 
     assert results[0] == results[1] != results[2]
 
 
+@pytest.mark.slow
 def test_the_client_does_the_same(service: Client) -> None:
     terrain = Terrain.model_validate(CURB)
     plan = service.plan(terrain, robot="a1_wheeled_x", friction=0.65)
@@ -265,6 +269,7 @@ def test_bad_rollouts(api: httpx.Client, body: dict[str, object], status: int, f
     assert [error["field"] for error in answer.json()["errors"]] == [field]
 
 
+@pytest.mark.slow
 def test_a_rollout_over_a_wall_says_what_happened(api: httpx.Client) -> None:
     job = api.post("/rollouts", json={"terrain": WALL}).json()
     last = events(api, job["id"])[-1][1]

@@ -134,6 +134,12 @@ def test_the_plan_is_of_the_robot_in_hand(product: Product) -> None:
     assert "torque" in page.locator(".rivals").first.locator(".facts-line").inner_text()
 
 
+STEP_UP = """fields => fields.forEach(field => {
+  field.focus();
+  field.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowUp", bubbles: true }));
+})"""
+
+
 @pytest.mark.slow
 def test_every_number_of_every_preset_makes_a_robot_that_the_service_takes(
     product: Product,
@@ -142,12 +148,12 @@ def test_every_number_of_every_preset_makes_a_robot_that_the_service_takes(
     page = product.page
     for name in sw.robots():
         _choose(product, name)
-        for field in page.locator(".rows .num").all():
-            field.press("ArrowUp")
+        fields = page.locator(".rows .num")
+        fields.evaluate_all(STEP_UP)
+        assert int(_state(product).split()[1]) >= fields.count() > 30
         page.evaluate("document.activeElement.blur()")
         product.planned()
         assert product.status in ("feasible", "infeasible"), name
-        assert "edited" in _state(product)
         page.get_by_role("button", name="Reset robot").click()
         product.planned()
 

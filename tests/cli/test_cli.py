@@ -92,6 +92,7 @@ def test_a_plan_is_certified_exported_and_rolled_out(plan: Path) -> None:
     run("export", rollout, "--format", "html", "-o", plan.with_name("run.html"))
 
 
+@pytest.mark.slow
 def test_a_robot_and_a_plan_for_ros_are_written(curb: Path, plan: Path, tmp_path: Path) -> None:
     out = tmp_path / "robot.urdf"
     run("export", "a1_wheeled_x", "--format", "urdf", "-o", out)
@@ -128,6 +129,7 @@ def test_trials(plan: Path) -> None:
     run("rollout", plan, "--trials", "2", "-o", "trials.csv", status=2)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_done_is_status_1(tmp_path: Path) -> None:
     wall = tmp_path / "wall.json"
     wall.write_text(WALL)
@@ -215,6 +217,7 @@ def test_a_table_is_a_terrain_too(tmp_path: Path) -> None:
     assert "feasible" in run("plan", table, "--method", "critical")
 
 
+@pytest.mark.slow
 def test_as_a_process_of_its_own() -> None:
     command = f"{sys.executable} -m stairwright terrains | head -1"
     done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)

@@ -42,6 +42,7 @@ def test_without_an_output_the_robot_is_printed(maker: Path, tmp_path: Path) -> 
     assert sw.load_robot(printed) == sw.import_robot(maker).robot
 
 
+@pytest.mark.slow
 def test_options(maker: Path) -> None:
     arguments = ("--abduction", "-0.05", "--wheel-radius", "0.09", "--json")
     robot = json.loads(run("robot", "import", maker, *arguments))["robot"]
@@ -90,6 +91,7 @@ def test_robots_are_converted_to_the_newest_schema(suffix: str, tmp_path: Path) 
     assert run("robot", "convert", out) == run("robot", "convert", "a1_wheeled")
 
 
+@pytest.mark.slow
 def test_what_was_imported_is_planned_with(maker: Path, tmp_path: Path) -> None:
     out, curb = tmp_path / "robot.yaml", tmp_path / "curb.json"
     run("robot", "import", maker, "-o", out)

@@ -45,6 +45,7 @@ def test_solvers_agree_with_clarabel(solver: str) -> None:
         assert np.max(C @ found - d) < 1e-5
 
 
+@pytest.mark.slow
 def test_native_is_exact() -> None:
     """Against an active-set solver, from cold and from random starts, limits active or not."""
     random = np.random.default_rng(4)

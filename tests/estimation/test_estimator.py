@@ -82,6 +82,7 @@ def test_legs_reach_for_ground_that_is_not_as_drawn(plan: Plan) -> None:
     assert run.metrics.pitch_error_max < np.radians(5.0)
 
 
+@pytest.mark.slow
 def test_rear_wheels_know_what_front_wheels_found() -> None:
     """Climbing an edge that is not where it was drawn they would slide off it."""
     flight = sw.plan("stairs-industrial", "a1_wheeled", 0.6)
@@ -90,6 +91,7 @@ def test_rear_wheels_know_what_front_wheels_found() -> None:
     assert np.abs(judged[:, 8]).max() < 0.02
 
 
+@pytest.mark.slow
 def test_wheels_that_stand_at_a_wall_stay_there_on_the_map() -> None:
     """Rear wheels lean on the riser with a push that is hardly felt, while the front ones roll."""
     ledge = {"points": [(-1.3, 0), (0, 0), (0, 0.17), (0.1, 0.17), (0.1, 0), (1.4, 0)]}

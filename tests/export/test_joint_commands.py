@@ -30,10 +30,13 @@ from tests.scene.example import example_plan
 LEGS = [name for name in JOINTS if not name.endswith("wheel")]
 WHEELS = [name for name in JOINTS if name.endswith("wheel")]
 FOLLOWED = 1e-3  # rad
+TERRACE = {
+    "points": [(-1, 0), (0, 0), (0, 0.12), (0.3, 0.12), (0.3, 0.24), (1, 0.24), (1, 0), (2, 0)]
+}
 PLANS = {
     "stair": ("single-stair-036", "a1_wheeled_x", "path"),
     "critical": ("single-stair-030", "a1_wheeled_x", "critical"),
-    "stairs": ("three-stairs-up-down", "a1_wheeled", "path"),
+    "stairs": (TERRACE, "a1_wheeled", "path"),
 }
 
 
@@ -125,6 +128,7 @@ def test_the_plan_is_followed(name, degree) -> None:
     assert distance(pairs, motion[::7]).max() <= FOLLOWED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PLANS)
 def test_wheels_roll_as_far_as_planned(name) -> None:
     plan, rolled = planned(name), integrated(commands(name)["/wheel_trajectory"])
@@ -136,6 +140,7 @@ def test_wheels_roll_as_far_as_planned(name) -> None:
         np.testing.assert_allclose(rolled[-1, columns], turned, atol=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PLANS)
 def test_efforts_hold_the_pose(name) -> None:
     plan, legs = planned(name), commands(name)["/joint_trajectory"]
@@ -191,6 +196,7 @@ def test_the_plan_itself_stays_as_it_is() -> None:
     assert planned("stair").model_dump_json() == before
 
 
+@pytest.mark.slow
 def test_joints_bear_the_robots_own_names() -> None:
     plan = example_plan(count=20)
     names = {"FL_thigh": "front_left/hip_pitch", "RR_wheel": "rear_right/wheel"}

@@ -35,6 +35,7 @@ def topics(content: bytes) -> dict:
     return messages(content)
 
 
+@pytest.mark.slow
 def test_topics(topics) -> None:
     assert set(topics) - {"/joint_trajectory_without_effort", "/wheel_trajectory"} == KEPT | MOVING
     for name in KEPT:
@@ -106,6 +107,7 @@ def test_the_path_is_the_trunks(topics) -> None:
         assert (trunk.x, trunk.y, trunk.z) == (place.x, place.y, place.z)
 
 
+@pytest.mark.slow
 def test_a_plans_states_are_its_commands() -> None:
     """The state at a time is the trajectory's at that time; wheels start at 0."""
     topics = messages(FILES["plan"]())

@@ -49,6 +49,7 @@ def test_messages_keep_to_their_schemas(kind: str) -> None:
     assert seen == (set(KINDS) if kind == "plan" else set(KINDS) - commands)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", FILES)
 def test_schemas_are_those_of_ros(kind: str) -> None:
     """The definitions in the file, parsed alone, hash as ROS 2's own types do."""

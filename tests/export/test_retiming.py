@@ -32,6 +32,7 @@ def polyline(steps: list[tuple[float, float, float]]) -> tuple[np.ndarray, np.nd
     return table[:, 0], table[:, 1:]
 
 
+@pytest.mark.slow
 @given(STEPS, st.sampled_from([10.0, 30.0, 50.0, 100.0, 125.0, 1000.0]))
 @settings(max_examples=150)
 def test_limits_hold_for_any_path(steps, rate) -> None:

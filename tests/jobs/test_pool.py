@@ -79,6 +79,7 @@ def test_the_worker_that_was_at_work_last_is_asked_first() -> None:
     tell(story, workers=2)
 
 
+@pytest.mark.slow
 def test_answers_longer_than_a_socket_holds_come_back_whole() -> None:
     async def story(pool: WorkerPool) -> None:
         content = os.urandom(20 * 2**20)
@@ -204,6 +205,7 @@ def test_memory_is_limited() -> None:
     tell(story, limits=Limits(memory=512))
 
 
+@pytest.mark.slow
 def test_a_sealed_worker_opens_nothing() -> None:
     async def story(pool: WorkerPool) -> None:
         with pytest.raises(OSError, match="Too many open files"):

@@ -27,6 +27,7 @@ def state_and_row(robot, random: np.random.Generator):
     return qpos, random.normal(0.0, 0.5, 18), np.concatenate(row)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", robots())
 def test_native_controller_equals_plain(name: str) -> None:
     robot = load_robot(name)

@@ -82,6 +82,7 @@ def test_the_wheel_path_keeps_one_radius_from_the_ground(steps, radius):
         assert path.project(x, z, 0.0, length) == pytest.approx(s, abs=1e-6)
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(st.integers(1, 4), st.floats(0.1, 1.2), st.randoms(use_true_random=False))
 def test_com_intervals_are_those_of_a_linear_programme(count, friction, random):

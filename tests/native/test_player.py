@@ -42,6 +42,7 @@ def only_damps(command) -> bool:
     return not command[:, [0, 1, 2, 3]].any() and bool((command[:, 4] > 0.0).all())
 
 
+@pytest.mark.slow
 def test_it_drives_to_the_end_and_stands_there(plan):
     player, robot = _core.Player(player_plan(plan)), LowLevelRobot(plan)
     phases = []
@@ -58,6 +59,7 @@ def test_it_drives_to_the_end_and_stands_there(plan):
     assert player.done == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_it_drives_backward(plan):
     """Motors keep their numbers and signs, the IMU its axes: the robot is built as it was."""
     own = plan.robot_description.model_dump(mode="json", by_alias=True)
@@ -161,6 +163,7 @@ def test_a_robot_that_crouches_gets_into_the_plans_first_pose(plan):
     np.testing.assert_allclose(run.data.qpos[7:9], plan.poses[0].q[:2], atol=0.03)
 
 
+@pytest.mark.slow
 def test_a_pause_holds_the_plan_and_the_robot_stands(plan):
     player, robot = _core.Player(player_plan(plan)), LowLevelRobot(plan)
     while player.done < 0.3:

@@ -44,7 +44,7 @@ def program(plan: Plan, tmp_path_factory: pytest.TempPathFactory) -> Path:
     with zipfile.ZipFile(folder / "bundle.zip") as archive:
         archive.extractall(folder)
     top = folder / "stairwright-go2w"
-    options = ("-DSTAIRWRIGHT_PYTHON=OFF", "-DSTAIRWRIGHT_PLAYER=ON")
+    options = ("-DSTAIRWRIGHT_PYTHON=OFF", "-DSTAIRWRIGHT_PLAYER=ON", "-DCMAKE_BUILD_TYPE=Debug")
     build = ("cmake", "-S", top / "native", "-B", top / "build", *options)
     subprocess.run(build, check=True, capture_output=True)
     subprocess.run(["cmake", "--build", top / "build", "-j2"], check=True, capture_output=True)

@@ -55,6 +55,7 @@ def unpack(contacts):
     return points, normals
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(st.lists(contact, min_size=1, max_size=4), st.floats(0.05, 1.5))
 def test_interval_equals_linear_programme(contacts, friction):

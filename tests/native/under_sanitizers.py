@@ -47,7 +47,7 @@ def drawn() -> Iterator[str]:
     """Profiles like those that people draw, and rollouts of what can be rolled out."""
     from tests.planning.drawn import random_profile
 
-    for seed in range(10):
+    for seed in range(6):
         name = ("a1_wheeled", "a1_wheeled_x")[seed % 2]
         plans = planned(random_profile(seed), name, 0.6)
         for plan in plans:
@@ -72,10 +72,11 @@ def robots() -> Iterator[str]:
     from tests.native import hostile
     from tests.robot.random_robots import random_robot
 
-    slope = [(-1.5, 0), (0, 0), (1, 0.3), (2.5, 0.3)]
+    step = {"points": [(-0.8, 0), (0, 0), (0, 0.15), (0.8, 0.15)]}
+    slope = {"points": [(-0.8, 0), (0, 0), (0.5, 0.15), (1.3, 0.15)]}
     unlike = {f"random {seed}": random_robot(seed) for seed in range(4)}
     for k, (name, robot) in enumerate((hostile.robots() | unlike).items()):
-        ground = ("curb-015", {"points": slope})[k % 2]
+        ground = (step, slope)[k % 2]
         plans = planned(ground, robot, 0.6)
         outcomes = [sw.rollout(plan).outcome for plan in plans if plan.executable][:1]
         yield f"{name}: {[plan.status for plan in plans]} {outcomes}"

@@ -13,6 +13,7 @@ FLIGHT = {"points": [[-1.3, 0], [0, 0], [0, 0.12], [0.3, 0.12], [0.3, 0.24], [1.
 WALL = {"points": [[-1.3, 0], [0, 0], [0, 0.7], [1.6, 0.7]]}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("terrain", "robot"),
     [(FLIGHT, "a1_wheeled"), (FLIGHT, "anymal_wheels"), (WALL, "a1_wheeled")],

@@ -42,6 +42,7 @@ def test_it_stands_in_the_document_and_older_documents_have_none():
     assert (older.energy, older.cost_of_transport) == (None, None)
 
 
+@pytest.mark.slow
 def test_poses_too_far_apart_and_ways_that_end_have_none():
     assert sw.plan("single-stair-030", "a1_wheeled_x", method="critical").energy is None
     wall = {"points": [[-2.0, 0.0], [0.0, 0.0], [0.0, 1.2], [2.0, 1.2]]}

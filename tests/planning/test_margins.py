@@ -54,6 +54,7 @@ def margin(points, normals, friction, x):
     return min(x - ends[0], ends[1] - x)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["path", "critical"])
 @pytest.mark.parametrize("robot", A1S)
 def test_stated_com_margins_are_those_of_all_friction_cones(robot, method):

@@ -130,6 +130,7 @@ def test_where_a_search_comes_through_and_no_plan_does_more_grip_is_named(robot)
     assert not sw.plan(flight, robot, friction=0.8 * problem.limit.needed).feasible
 
 
+@pytest.mark.slow
 def test_where_nothing_helps_the_height_that_would_do_is_named():
     points = [(-1.2, 0.0), (0.0, 0.0), (0.0, 2.0), (1.5, 2.0)]
     limit = sw.plan(terrain(points), "a1_wheeled", friction=0.6).problem.limit
@@ -173,6 +174,7 @@ def test_robots_of_other_dimensions(robot, size):
     assert plan.certificate.passed
 
 
+@pytest.mark.slow
 def test_a_spike_without_width_is_an_obstacle():
     tall = terrain([(-1.5, 0.0), (0.0, 0.0), (0.0, 1.2), (0.0, 0.0), (1.5, 0.0)])
     assert not sw.plan(tall, friction=0.6).feasible

@@ -97,6 +97,7 @@ def test_wheels_too_large_for_the_hips_stand_apart():
     assert stance(sw.load_robot(robot)) == pytest.approx(0.11, abs=0.01)
 
 
+@pytest.mark.slow
 def test_a_saw_of_many_teeth_is_planned_on_a_lattice_of_bounded_size():
     """Every tooth has a corner; with samples at all of them one plan took 5.8 GiB."""
     saw = Terrain(points=[(0.0025 * i, 0.05 * (i // 2 % 2)) for i in range(2000)])

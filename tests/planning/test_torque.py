@@ -19,6 +19,7 @@ from stairwright.terrain.generation import StairParameters, generate
 STEP = {"points": [[-2.0, 0.0], [0.0, 0.0], [0.0, 0.1], [2.5, 0.1]]}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("friction", [0.6, 0.9])
 def test_a_heavy_robot_climbs_where_its_legs_are_not_level(friction):
     """A static search by brute force finds postures under 31 Nm here; level ones need 123 Nm."""

@@ -46,7 +46,7 @@ class Site:
         def frame(name: str) -> HTMLResponse:
             source = f"/scene/{name}/?embedded=1"
             return HTMLResponse(
-                f'<iframe src="{source}" style="width:600px;height:420px"></iframe>'
+                f'<iframe src="{source}" style="width:400px;height:280px"></iframe>'
             )
 
         @app.websocket("/scene/{name}")
@@ -92,7 +92,7 @@ def site() -> Iterator[Site]:
 @pytest.fixture
 def visit(browser: Browser, site: Site) -> Iterator[Callable[[str], Page]]:
     with browser.new_context(
-        base_url=f"http://127.0.0.1:{site.port}", viewport={"width": 900, "height": 640}
+        base_url=f"http://127.0.0.1:{site.port}", viewport={"width": 450, "height": 320}
     ) as context:
 
         def go(address: str) -> Page:
@@ -140,8 +140,7 @@ def plan() -> dict:
 def test_embedded_scene_shows_the_robot_and_no_panel(site, visit, plan):
     site.open("a").show(plan=plan)
     page = visit("/scene/a/?embedded=1&websocket=ws://127.0.0.1:1&playbackPath=x")
-    dark = wait_until(page, seen)
-    assert dark[5:40, 5:40].mean() < 60
+    wait_until(page, lambda shot: shot[5:40, 5:40].mean() < 60 and seen(shot))
     expect(page.get_by_text("Tracking")).to_be_hidden()
     assert page.locator(".mantine-Notifications-root:visible").count() == 0
     # Another server's address in the link is neither used nor kept.
@@ -231,10 +230,10 @@ def test_the_camera_cannot_stay_below_the_ground(site, visit, plan):
     (client,) = session._server.get_clients().values()
     height = page.viewport_size["height"]
     middle = page.viewport_size["width"] / 2
-    for _ in range(3):  # turned upwards from below, as far as it goes
+    for _ in range(2):  # turned upwards from below, as far as it goes
         page.mouse.move(middle, height * 0.9)
         page.mouse.down()
-        page.mouse.move(middle, height * 0.1, steps=8)
+        page.mouse.move(middle, height * 0.1, steps=4)
         page.mouse.up()
     page.wait_for_timeout(700)
     assert client.camera.position[2] > 0.0

@@ -63,6 +63,7 @@ def test_states_are_held_beyond_the_ends_and_turns_stay_unit(time):
         np.testing.assert_array_equal(moment.q, motion.q[-1])
 
 
+@pytest.mark.slow
 @given(st.floats(0, 1))
 def test_time_at_progress_inverts_progress_at_time(share):
     plan = example_plan(count=12)

@@ -36,6 +36,7 @@ def test_speed_is_that_of_the_crossing() -> None:
     assert speed_over_faces(stopped, run.terrain, run.robot_description) is None
 
 
+@pytest.mark.slow
 def test_cost_of_transport_on_the_level() -> None:
     run = sw.rollout(sw.plan("flat", "a1_wheeled"))
     assert run.metrics.speed_stairs is None

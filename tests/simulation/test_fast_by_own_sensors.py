@@ -14,6 +14,7 @@ def plan(request: pytest.FixtureRequest) -> sw.Plan:
     return sw.plan(flight, "a1_wheeled", 0.6, timing="fast")
 
 
+@pytest.mark.slow
 def test_wheels_that_hop_off_a_riser_do_not_stop_it(plan: sw.Plan) -> None:
     """Nothing deviates; a wheel that meets a riser at 0.4 m/s is in the air for a moment."""
     run = sw.rollout(plan, controller={"sensing": "robot"})

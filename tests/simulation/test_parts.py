@@ -234,6 +234,7 @@ def test_draws_are_seeded_and_in_range() -> None:
         chosen_ranges({"friction": (0.1, -0.1)})
 
 
+@pytest.mark.slow
 def test_trials_report() -> None:
     plan = sw.plan(FLAT, "a1_wheeled", method="nominal")
     seen: list[float] = []

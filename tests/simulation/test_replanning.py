@@ -1,11 +1,14 @@
 """A robot with its own sensors that finds the world other than its plan believes."""
 
+import pytest
+
 import stairwright as sw
 
 SLIPPERY_REAR = {"friction_rear": -0.3}
 OWN = {"sensing": "robot"}
 
 
+@pytest.mark.slow
 def test_slippery_wheels_are_found_out_and_planned_for() -> None:
     """A plan made for 0.6 asks more of the rear wheels than the 0.3 that they have."""
     plan = sw.plan("single-stair-036", "go2w", friction=0.6)

@@ -33,6 +33,7 @@ def scaled(name: str, legs: float, trunk: float, mass: float) -> dict[str, Any]:
     return robot
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("robot", "points", "friction"),
     [

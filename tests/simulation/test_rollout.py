@@ -96,6 +96,7 @@ def test_document_survives_json(climbed: Rollout) -> None:
     json.dumps(climbed.model_dump(mode="json"))
 
 
+@pytest.mark.slow
 def test_same_question_same_answer(flat: Plan) -> None:
     runs = [rollout(flat, seed=3, disturbance={"noise": 1.0}) for _ in range(2)]
     assert runs[0].id == runs[1].id

@@ -62,6 +62,7 @@ def test_a_wheel_in_a_corner_or_on_an_edge_tips_no_robot(
     assert sw.rollout(plan).outcome == "success"
 
 
+@pytest.mark.slow
 def test_a_ramp_near_its_friction_angle_is_planned():
     """There the CoM has ample room: grip alone may be scarce."""
     run = 1.3

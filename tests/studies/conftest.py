@@ -13,8 +13,8 @@ from tests.conftest import Server, serve
 
 @pytest.fixture(scope="session")
 def cluster() -> Iterator[ClusterEngine]:
-    """An engine over four workers."""
-    engine = ClusterEngine(None, 4)
+    """An engine over two workers."""
+    engine = ClusterEngine(None, 2)
     yield engine
     engine.close()
 

@@ -112,6 +112,7 @@ def _filled(made: Study, rule: Any, path: Path) -> tuple[ResultStore, Rule]:
     return store, engine
 
 
+@pytest.mark.slow
 def test_an_eighth_of_the_cells_is_enough(tmp_path: Path) -> None:
     def rule(calf: float, friction: float, height: float) -> bool:
         return height <= 0.12 + 3 * (calf - 0.2) + 0.2 * np.sqrt(friction - 0.25)
@@ -168,6 +169,7 @@ def _fill_some(store: ResultStore, engine: Rule, limit: int) -> None:
     fill_boundary(store, engine, lambda p: seen.extend(p.new), lambda: len(seen) > limit)
 
 
+@pytest.mark.slow
 def test_stopped_and_gone_on_with_it_is_the_same(tmp_path: Path) -> None:
     def rule(calf: float, friction: float, height: float) -> bool:
         return height <= 0.2 + friction / 10

@@ -108,6 +108,7 @@ def test_a_bug_is_recorded_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> N
     assert record["message"] == "ZeroDivisionError: by zero"
 
 
+@pytest.mark.slow
 def test_fast_plans_take_less_time(tmp_path: Path) -> None:
     low = {"name": "step.height", "values": [0.1]}
     slow, fast = (study(low, timing=timing) for timing in ("steady", "fast"))
@@ -151,6 +152,7 @@ def test_of_fast_plans_the_planner_chooses_the_end_that_leads() -> None:
     assert usual.study.family == either.study.family != forward.study.family
 
 
+@pytest.mark.slow
 def test_rollouts_and_trials(tmp_path: Path) -> None:
     low = {"name": "step.height", "values": [0.04]}
     run = sw.study(study(low, compute="rollout"), workers=1, store=tmp_path / "r.zarr").dataset

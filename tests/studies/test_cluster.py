@@ -32,7 +32,7 @@ from stairwright.studies.worker import evaluate_batch
 from .small import STEP, identical, study
 
 MAP = study(
-    {"name": "stairs.rise", "from": 0.1, "to": 0.9, "count": 5},
+    {"name": "stairs.rise", "from": 0.1, "to": 0.7, "count": 5},
     {"name": "stairs.run", "values": [0.25, 0.32]},
     {"name": "friction", "values": [0.3, 0.7]},
 )

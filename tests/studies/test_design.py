@@ -57,6 +57,7 @@ def rule(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(designing, "choose_engine", lambda *_: Rule())
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("rule")
 def test_the_front_is_found(tmp_path: Path) -> None:
     result = sw.design(_document(), store=tmp_path / "a")
@@ -79,6 +80,7 @@ def test_the_front_is_found(tmp_path: Path) -> None:
     assert sw.DesignResult.model_validate_json((tmp_path / "a.json").read_text()) == result
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("rule")
 def test_an_interrupted_one_is_replayed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = sw.design(_document(), store=tmp_path / "a")
@@ -95,6 +97,7 @@ def test_an_interrupted_one_is_replayed(tmp_path: Path, monkeypatch: pytest.Monk
     assert again.candidates == whole.candidates
 
 
+@pytest.mark.slow
 def test_real_plans(tmp_path: Path) -> None:
     """The smallest motors that still carry the robot over a step."""
     document = _document(

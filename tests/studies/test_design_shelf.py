@@ -24,6 +24,7 @@ def _search(folder: Path, monkeypatch: pytest.MonkeyPatch, **options: Any) -> Pa
     return folder / "studies"
 
 
+@pytest.mark.slow
 def test_a_search_at_work_tells_what_it_has_found(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -41,6 +42,7 @@ def test_a_search_at_work_tells_what_it_has_found(
     assert 0 < only.best <= only.passed < 24
 
 
+@pytest.mark.slow
 def test_what_is_no_result_is_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     studies = _search(tmp_path, monkeypatch)
     for name, content in (("d-1", b"{"), ("d-2", b"[]"), ("d-3", b'{"id": "d-3"}')):

@@ -81,6 +81,7 @@ def test_the_first_study_installs_them(serving: Serving, there: Path, tmp_path: 
     assert there.read_text() == "once\n"
 
 
+@pytest.mark.slow
 def test_why_it_cannot_is_told_and_the_next_study_tries_again(
     serving: Serving, tmp_path: Path
 ) -> None:

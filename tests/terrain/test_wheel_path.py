@@ -26,6 +26,7 @@ def profiles(draw):
     return Terrain(points=points)
 
 
+@pytest.mark.slow
 @settings(max_examples=80, deadline=None)
 @given(profiles())
 def test_centres_keep_the_radius_and_never_turn_back(terrain):

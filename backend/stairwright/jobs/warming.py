@@ -6,6 +6,7 @@ import contextlib
 import logging
 from collections.abc import Iterator
 
+from stairwright.errors import Cancelled
 from stairwright.library import load_robot, robots
 
 from .work import solve
@@ -34,14 +35,20 @@ def rehearse() -> None:
 
 
 def warm_rollouts() -> None:
-    """The same for rollouts, and for the other robots."""
+    """The same for rollouts, and for the other robots, whose rollouts need only begin."""
     with _logged():
         from stairwright.planning.planner import plan
         from stairwright.simulation.rollout import rollout
 
-        for robot in robots():
-            rollout(plan(GENTLE, robot, method="path"))
+        rollout(plan(GENTLE, robots()[0], method="path"))
+        for robot in robots()[1:]:
+            with contextlib.suppress(Cancelled):
+                rollout(plan(GENTLE, robot, method="path"), progress=_give_up)
             plan(GENTLE, robot, method="critical")
+
+
+def _give_up(_done: float) -> None:
+    raise Cancelled
 
 
 @contextlib.contextmanager

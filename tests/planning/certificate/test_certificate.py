@@ -64,6 +64,7 @@ def triples(rays):
                 yield factors.max()
 
 
+@pytest.mark.slow
 def test_equilibrium_equals_reference_and_linear_programme():
     rng = np.random.default_rng(7)
     held = 0

@@ -92,6 +92,7 @@ class WithLine:
         self.line = shapely.linestrings(motion.vertices)
 
 
+@pytest.mark.slow
 def test_links(all_samples):
     spared = unsettled = 0
     for samples in all_samples:
@@ -134,6 +135,7 @@ def test_trunk(all_samples):
     assert sunk
 
 
+@pytest.mark.slow
 def test_rims(all_samples):
     sunk = seen = 0
     for samples in all_samples:
@@ -153,6 +155,7 @@ def test_rims(all_samples):
     assert seen > 1000
 
 
+@pytest.mark.slow
 def test_gap_between_legs(all_samples):
     spared, crossed = 0, 0
     for samples in all_samples:

@@ -29,6 +29,7 @@ def test_a_plan_says_where_its_poses_cannot_be_joined():
     assert not certify_motion(plan).passed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("terrain", "friction", "robot", "kind", "words"),
     [

@@ -135,6 +135,7 @@ def test_the_certificate_of_a_plan_is_that_of_its_document(plan: Plan) -> None:
     assert [c.name for c in certificate.checks][-len(NAMES) :] == list(NAMES.values())
 
 
+@pytest.mark.slow
 def test_more_than_was_planned_for_is_refused(plan: Plan) -> None:
     assert worse(plan, tolerance=Tolerance(height=0.05, place=0.05))
     assert NAMES["com"] in worse(plan, tolerance=Tolerance(friction=0.45))

@@ -25,6 +25,7 @@ def test_both_solvers_find_the_same_poses():
         assert np.allclose([a.x_c, a.z_c, a.pitch], [b.x_c, b.z_c, b.pitch], atol=2e-3)
 
 
+@pytest.mark.slow
 def test_a_cost_term_draws_the_poses():
     plain = sw.plan(STAIR, method="critical", solver="ipopt")
     level = sw.plan(STAIR, method="critical", extra_cost=lambda pose: 50 * pose.pitch**2)
@@ -32,6 +33,7 @@ def test_a_cost_term_draws_the_poses():
     assert tilt[1] < 0.8 * tilt[0]
 
 
+@pytest.mark.slow
 def test_constraints_are_kept():
     plain = sw.plan(STAIR, method="critical", solver="ipopt")
     highest = max(pose.z_c for pose in optimal(plain)[:1])

@@ -158,6 +158,7 @@ def test_time_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
         sw.import_robot(file)
 
 
+@pytest.mark.slow
 def test_memory_is_bounded(tmp_path: Path) -> None:
     big = '<mesh name="big" builtin="supersphere" params="20000 1 1"/>'
     trunk = '<geom class="touch" type="box"'

@@ -99,6 +99,7 @@ def test_nodes_move_a_mesh() -> None:
     np.testing.assert_allclose(inches, 0.0254 * points)
 
 
+@pytest.mark.slow
 def test_broken_meshes_are_as_if_they_were_not_sent() -> None:
     robot = urdf(replace(Design(), wheel_mesh=True))
     for content in (
