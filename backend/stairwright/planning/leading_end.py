@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from .plan import Facing, Plan, PlanTiming, reach
-from .threads import side_thread
 
 CLEARLY_SOONER = 0.9  # of the time forward; less is not worth turning about for
 
@@ -28,8 +27,7 @@ def better_led(led_by: Callable[[Facing], Plan], timing: PlanTiming) -> Plan:
     if timing == "steady":
         forward = led_by("forward")
         return forward if forward.feasible else max(forward, led_by("backward"), key=reach)
-    other = side_thread().submit(led_by, "backward")
-    forward, backward = led_by("forward"), other.result()
+    forward, backward = led_by("forward"), led_by("backward")
     if forward.feasible and backward.feasible:
         sooner = backward.timing.total < CLEARLY_SOONER * forward.timing.total
         return backward if sooner and _room(backward) >= _room(forward) else forward

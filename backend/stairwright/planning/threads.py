@@ -60,11 +60,6 @@ def search_threads() -> Executor:
     return _at_once.get() or _pool(os.getpid())
 
 
-def side_thread() -> Executor:
-    """One thread that lives as long as the process, for work that may wait for `search_threads`."""
-    return _at_once.get() or _side(os.getpid())
-
-
 def in_this_thread() -> Executor:
     """Makes what it is given one after another, in the thread that gives it."""
     return _AtOnce()
@@ -108,8 +103,3 @@ def still_wanted() -> None:
 @lru_cache(maxsize=1)
 def _pool(_process: int) -> Executor:
     return ThreadPoolExecutor(_THREADS, "search")
-
-
-@lru_cache(maxsize=1)
-def _side(_process: int) -> Executor:
-    return ThreadPoolExecutor(1, "plan")
