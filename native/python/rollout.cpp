@@ -93,7 +93,7 @@ void bind_perception(nb::module_& m) {
         .def_rw("tilt", &SensorErrors::tilt);
     using Torques12 = In<double, nb::shape<12>>;
     nb::class_<RobotSensors>(m, "RobotSensors", "What a robot's own sensors say of the true state, see rollout/robot_sensors.hpp.")
-        .def(nb::init<const SensorErrors&, std::uint64_t>(), nb::arg("errors"), nb::arg("seed"))
+        .def(nb::init<const Robot&, const SensorErrors&, std::uint64_t>(), nb::arg("robot"), nb::arg("errors"), nb::arg("seed"))
         .def("read", [](RobotSensors& self, const In<double, nb::shape<19>>& qpos, const In<double, nb::shape<18>>& qvel, const Torques12& torques, double dt) {
             std::array<double, kPositions + kVelocities> numbers;
             std::copy_n(qpos.data(), kPositions, numbers.begin());
@@ -108,7 +108,7 @@ void bind_perception(nb::module_& m) {
         .def("__init__", [](RobotSense* self, const Robot& robot, const WheelPath& path, std::array<double, 2> start, double pitch,
                             const SensorErrors& errors, std::size_t delay_steps, std::uint64_t seed,
                             const estimation::Noise& believed) {
-            new (self) RobotSense({errors, seed}, {robot, path, {{start[0], start[1]}, pitch}, believed}, delay_steps);
+            new (self) RobotSense({robot, errors, seed}, {robot, path, {{start[0], start[1]}, pitch}, believed}, delay_steps);
         }, nb::arg("robot"), nb::arg("path"), nb::arg("start"), nb::arg("pitch"), nb::arg("errors"), nb::arg("delay_steps"),
            nb::arg("seed"), nb::arg("believed") = estimation::Noise{});
 }

@@ -12,7 +12,7 @@ namespace {
 constexpr double kPinched = 1.6;      // weights; wheels that press harder pinch something between them
 constexpr double kNotHeld = 100.0;    // weights; more than any forces that hold the robot
 // Shares of the friction that forces may take without harm, tried in turn.
-constexpr std::array<double, 2> kAmple = {0.75, 0.98};
+constexpr std::array<double, 4> kAmple = {0.75, 0.82, 0.9, 0.98};
 
 WheelLoad load_on_one(const Contact& contact, const ContactForce& f, Vec2 centre, double weight) {
     const Vec2 force = 0.5 * weight * world_force(contact, f), r = contact.point - centre;

@@ -122,7 +122,9 @@ class LowLevelRobot:
         physics = OwnPhysics(*given) if model is None else OriginalPhysics(model, *given)
         self.run = Run(plan, truth, ControllerSettings(), Disturbance(), seed, 100.0, physics)
         self.dt = self.run.dt
-        self._sensors = _core.RobotSensors(_core.SensorErrors(noise), seed)
+        self._sensors = _core.RobotSensors(
+            plan.robot_description.native, _core.SensorErrors(noise), seed
+        )
         self._torques = np.zeros(12)
         self._signs, self._offsets = plan.robot_description.ros_frames
         self._motor_of, self._facing = MOTOR_OF, np.ones(6)

@@ -30,7 +30,12 @@ SensorErrors usual_errors(double scale) {
     return e;
 }
 
-RobotSensors::RobotSensors(const SensorErrors& errors, std::uint64_t seed) : errors_(errors), noise_(seed) {
+RobotSensors::RobotSensors(const Robot& robot, const SensorErrors& errors, std::uint64_t seed) : errors_(errors), noise_(seed) {
+    for (std::size_t j = 0; j < 12; ++j) {
+        const Leg& leg = robot.legs[j / 6];
+        const std::array<const Motor*, 3> motors = {&leg.thigh_motor, &leg.calf_motor, &leg.wheel_motor};
+        torque_[j] = errors.torque * motors[j % 3]->torque;
+    }
     for (int i = 0; i < 3; ++i) gyro_bias_[i] = errors.gyro_offset[i] + errors.gyro_bias * noise_();
     for (int i = 0; i < 3; ++i) force_bias_[i] = errors.force_offset[i] + errors.force_bias * noise_();
 }
@@ -42,7 +47,7 @@ estimation::Readings RobotSensors::read(const control::RobotState& truth, const 
         const bool wheel = j % 3 == 2;
         out.joints[j] = truth.joints[j] + errors_.joint * noise_();
         out.joint_rates[j] = truth.joint_rates[j] * (wheel ? 1.0 + errors_.wheel_scale : 1.0) + errors_.joint_rate * noise_();
-        out.torques[j] = torques[j] + errors_.torque * noise_();
+        out.torques[j] = torques[j] + torque_[j] * noise_();
     }
     // Between the two attitudes.
     std::array<double, 4> middle;
