@@ -1,4 +1,5 @@
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/tuple.h>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -16,7 +17,7 @@ Vec2 vec(const Pair& p) { return {p[0], p[1]}; }
 
 nb::typed<nb::dict, nb::str, nb::object> curve_match(const WheelPath& path, const Pair& centre, const std::array<double, 3>& spread, const Pair& force,
                      double traction, double force_deviation, double last, double window) {
-    const WheelBelief wheel = {vec(centre), {spread[0], spread[1], spread[2]}, {vec(force), traction, true}, force_deviation};
+    const WheelBelief wheel = {vec(centre), {spread[0], spread[1], spread[2]}, vec(force), traction, force_deviation};
     const CurveMatch found = match(path, wheel, last, window);
     nb::dict out;
     out["s"] = found.s, out["corner"] = found.corner, out["cost"] = found.cost, out["beyond"] = found.beyond;
@@ -65,9 +66,10 @@ void bind_estimation(nb::module_& m) {
         const Vec2 hip = Turn::by(pitch) * leg.hip, knee = hip + upper * leg.thigh.end;
         const LegPlaces at = {hip, knee, knee + lower * leg.calf.end, hip + upper * leg.thigh.com, knee + lower * leg.calf.com};
         const WheelForce f = estimation::wheel_force(leg, at, torques[0], torques[1], torques[2]);
-        return std::array<double, 3>{f.force.x, f.force.z, f.traction};
+        return std::tuple(Pair{f.force.x, f.force.z}, f.traction, Pair{f.untold.x, f.untold.z});
     }, nb::arg("robot"), nb::arg("pair"), nb::arg("pitch"), nb::arg("thigh"), nb::arg("calf"), nb::arg("torques"),
-       "Force of the ground on a wheel in x and z, and its traction [N], from the torques of thigh, calf and wheel [Nm].");
+       "What the torques of thigh, calf and wheel [Nm] tell of the ground's force on a wheel, see estimation/wheel_forces.hpp:\n"
+       "the force in x and z, the traction [N], and the direction in which a straight leg tells none.");
 }
 
 }  // namespace stairwright::python

@@ -10,6 +10,7 @@ import pytest
 
 import stairwright as sw
 from stairwright import _core
+from stairwright._core import GRAVITY
 from stairwright.control.settings import parse_settings
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
@@ -100,6 +101,15 @@ def test_wheels_that_stand_at_a_wall_stay_there_on_the_map() -> None:
     assert np.abs(judged[:, 7]).max() < 0.025
 
 
+@pytest.mark.slow
+def test_a_straight_leg_feels_the_wall_that_its_wheel_climbs() -> None:
+    """Rear legs are nearly straight where their wheels leave the corner before the wall."""
+    wall = {"points": [(-1.3, 0), (0, 0), (0, 0.38), (1.4, 0.38)]}
+    run, judged = sensed(sw.plan(wall, "anymal_wheels", 0.6))
+    assert run.outcome == "success", run.reason
+    assert np.abs(judged[:, 14]).max() < 0.003  # the floor is where it was drawn
+
+
 def test_ideal_knowledge_of_a_wrong_place_does_not_climb(plan: Plan) -> None:
     run = rollout(plan, controller={"sensing": "ideal"}, disturbance={"x_offset": 0.03})
     assert run.outcome != "success"
@@ -178,23 +188,29 @@ def test_a_wheel_cannot_be_beyond_a_face_that_it_does_not_feel() -> None:
     assert found["s"] == pytest.approx(1.0 - RADIUS)
 
 
-def test_leg_torques_tell_the_ground_force() -> None:
-    """A robot that stands still in MuJoCo, held by stiff joints."""
-    robot = sw.load_robot("a1_wheeled")
+@pytest.mark.parametrize(
+    ("name", "thigh", "calf"), [("a1_wheeled", 0.7, -1.4), ("anymal_wheels", 0.02, -0.04)]
+)
+def test_leg_torques_tell_the_ground_force(name: str, thigh: float, calf: float) -> None:
+    """A robot stands still in MuJoCo, held by stiff joints; straight legs tell no force along them."""
+    robot = sw.load_robot(name)
     ground = sw.Terrain(points=[(-2, 0), (2, 0)], friction=0.8)
     model = build_model(robot, ground)
     data = mujoco.MjData(model)
-    thigh, calf = 0.7, -1.4
+    stiffness, damping = 10.0 * robot.mass, 0.25 * robot.mass
     data.qpos[2] = robot.nominal_height
     data.qpos[7:] = np.tile([thigh, calf, 0.0], 4)
     goal = data.qpos[7:].copy()
     for _ in range(3000):
-        data.ctrl[:] = 120.0 * (goal - data.qpos[7:]) - 3.0 * data.qvel[6:]
+        data.ctrl[:] = stiffness * (goal - data.qpos[7:]) - damping * data.qvel[6:]
         mujoco.mj_step(model, data)
     w, _, y, _ = data.qpos[3:7]
     pitch = 2 * np.arctan2(y, w)
     for leg in range(4):
         q, torques = data.qpos[7 + 3 * leg :][:2], tuple(data.ctrl[3 * leg :][:3])
-        x, z, _ = _core.wheel_force(robot.native, leg // 2, pitch, q[0], q[1], torques)
-        fx, _, fz = -data.sensordata[4 * leg + 1 : 4 * leg + 4]
-        assert (x, z) == pytest.approx((fx, fz), abs=1.0)
+        told, _, untold = _core.wheel_force(robot.native, leg // 2, pitch, q[0], q[1], torques)
+        assert np.any(untold) == (name == "anymal_wheels")
+        force = -data.sensordata[[4 * leg + 1, 4 * leg + 3]]
+        assert told == pytest.approx(
+            force - np.dot(force, untold) * np.array(untold), abs=0.01 * robot.mass * GRAVITY
+        )

@@ -19,19 +19,17 @@ double squared(double v) { return v * v; }
 
 // Cost of a force on one face: what its tangential part has that the wheel's torque has not, and pull.
 double face_cost(const WheelBelief& w, Vec2 n) {
-    if (!w.force.known) return 0.0;
     const Vec2 t = {n.z, -n.x};
-    const double off = dot(w.force.force, t) - w.force.traction, pull = std::min(0.0, dot(w.force.force, n));
+    const double off = dot(w.force, t) - w.traction, pull = std::min(0.0, dot(w.force, n));
     return std::min((squared(off) + squared(pull)) / squared(w.force_deviation), kMostForceCost);
 }
 
 // The same on both faces of a corner, for the traction all on one of them, whichever fits better.
 double corner_cost(const WheelBelief& w, Vec2 a, Vec2 b) {
-    if (!w.force.known) return 0.0;
     const double det = cross(a, b);
     double best = kMostForceCost;
     for (const Vec2 n : {a, b}) {
-        const Vec2 f = w.force.force - w.force.traction * Vec2{n.z, -n.x};
+        const Vec2 f = w.force - w.traction * Vec2{n.z, -n.x};
         const double on_a = cross(f, b) / det, on_b = cross(a, f) / det;
         best = std::min(best, (squared(std::min(0.0, on_a)) + squared(std::min(0.0, on_b))) / squared(w.force_deviation));
     }

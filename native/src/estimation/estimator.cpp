@@ -99,6 +99,7 @@ void Estimator::see_legs(const Readings& readings, double dt) {
     const Rotation R = rotation();
     const auto world = [&](Vec2 p) { return Vec2{R[0][0] * p.x + R[0][2] * p.z, R[2][0] * p.x + R[2][2] * p.z}; };
     const double share = dt / (kForceTime + dt);
+    std::array<WheelForce, 4> told;
     for (int i = 0; i < 4; ++i) {
         const Leg& leg = robot_.legs[i / 2];
         WheelState& w = wheels_[i];
@@ -113,15 +114,30 @@ void Estimator::see_legs(const Readings& readings, double dt) {
                  world(at_knee + lower * leg.calf.com)};
         // What turns the joint: the motor's torque less what its own friction takes.
         const auto torque = [&](int k, const Motor& motor) { return readings.torques[3 * i + k] - motor.damping * readings.joint_rates[3 * i + k]; };
-        const WheelForce f = wheel_force(leg, w.leg, torque(0, leg.thigh_motor), torque(1, leg.calf_motor), torque(2, leg.wheel_motor));
-        if (f.known) w.felt += share * (f.force - w.felt);
+        told[i] = wheel_force(leg, w.leg, torque(0, leg.thigh_motor), torque(1, leg.calf_motor), torque(2, leg.wheel_motor));
         const double rate = readings.joint_rates[3 * i] + readings.joint_rates[3 * i + 1] + readings.joint_rates[3 * i + 2] + rate_[1];
         w.rolled = leg.wheel.radius * rate * dt;
         // What spins the wheel up does not reach the ground.
         const double spin_up = started_ ? (leg.wheel.inertia + leg.wheel_motor.armature) * (rate - w.rate_now) / dt / leg.wheel.radius : 0.0;
-        w.traction += share * (f.traction - spin_up - w.traction);
+        w.traction += share * (told[i].traction - spin_up - w.traction);
         w.cruise += dt / (kCruiseTime + dt) * (leg.wheel.radius * w.rate_now - w.cruise);
         w.rate_now = rate;
+    }
+    feel_ground(told, readings, share);
+}
+
+// What legs do not tell is what the others lack to the force that the accelerometer feels.
+void Estimator::feel_ground(const std::array<WheelForce, 4>& told, const Readings& readings, double share) {
+    Vec3 force;
+    for (int i = 0; i < 3; ++i) force[i] = robot_.mass() * (readings.specific_force[i] - force_bias_[i]);
+    const Vec3 carried = times(rotation(), force);
+    Vec2 lacking = {carried[0], carried[2]};
+    int untold = 0;
+    for (int i = 0; i < 4; ++i) lacking = lacking - wheels_[i].felt, untold += norm(told[i].untold) > 0.0;
+    for (int i = 0; i < 4; ++i) {
+        const Vec2 along = told[i].untold;
+        Vec2& felt = wheels_[i].felt;
+        felt += share * (told[i].force + dot(felt + (1.0 / std::max(untold, 1)) * lacking, along) * along - felt);
     }
 }
 
@@ -145,7 +161,7 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     }
     const double least = noise_.place * noise_.place;
     belief.spread.xx += least, belief.spread.zz += least;
-    belief.force = {w.felt, w.traction, true};
+    belief.force = w.felt, belief.traction = w.traction;
     // At rest no acceleration mixes with the ground's force.
     const Vec3 spin = cross3(rate_, {w.place.x, side, w.place.z});
     const Vec3 own_speed = times(R, {spin[0] + w.rate.x, spin[1], spin[2] + w.rate.z});

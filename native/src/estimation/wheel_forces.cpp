@@ -20,9 +20,13 @@ WheelForce wheel_force(const Leg& leg, const LegPlaces& at, double thigh_torque,
     const double det = a.z * b.x - a.x * b.z;
     WheelForce out;
     out.traction = wheel_torque / leg.wheel.radius;
-    if (std::abs(det) < kSingular * norm(a) * norm(b)) return out;
+    const double upper = norm(a), lower = norm(b);
+    if (std::abs(det) < kSingular * upper * lower) {
+        out.untold = upper > lower ? (1.0 / upper) * a : (1.0 / lower) * b;
+        out.force = (upper > lower ? m1 / upper : m2 / lower) * Vec2{-out.untold.z, out.untold.x};
+        return out;
+    }
     out.force = {(a.x * m2 - b.x * m1) / det, (a.z * m2 - b.z * m1) / det};
-    out.known = true;
     return out;
 }
 

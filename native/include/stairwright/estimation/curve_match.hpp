@@ -7,7 +7,6 @@
 // What does not fit is the push of a face ahead.
 #pragma once
 
-#include "stairwright/estimation/wheel_forces.hpp"
 #include "stairwright/wheel_path.hpp"
 
 namespace stairwright::estimation {
@@ -36,7 +35,8 @@ struct CurveMatch {
 struct WheelBelief {
     Vec2 centre;        // on the map [m]
     Spread spread;      // its covariance [m^2]
-    WheelForce force;
+    Vec2 force;         // of the ground, world x-z [N]
+    double traction = 0.0;  // see WheelForce [N]
     double force_deviation = 0.0;  // standard deviation of the force's components [N]
 };
 

@@ -24,6 +24,7 @@
 #include "stairwright/estimation/curve_match.hpp"
 #include "stairwright/estimation/error_state.hpp"
 #include "stairwright/estimation/readings.hpp"
+#include "stairwright/estimation/wheel_forces.hpp"
 
 namespace stairwright::estimation {
 
@@ -131,6 +132,7 @@ class Estimator {
     Rotation rotation() const;
     void predict(const Readings& readings, double dt);
     void see_legs(const Readings& readings, double dt);
+    void feel_ground(const std::array<WheelForce, 4>& told, const Readings& readings, double share);
     void measure(int wheel, const Readings& readings, double dt);
     void put_back(int wheel, Vec2 along, double excess, Error& error);
     void compare_with_map(int wheel, const CurveMatch& on, double dt);

@@ -11,9 +11,9 @@ struct LegPlaces {
 };
 
 struct WheelForce {
-    Vec2 force;             // world x-z [N]
+    Vec2 force;             // world x-z [N], but for what is along `untold`
     double traction = 0.0;  // wheel torque over radius: sum of the tangential forces [N]
-    bool known = false;     // a leg that is nearly straight or folded says nothing
+    Vec2 untold;            // direction of a leg that is nearly straight or folded, whose torques tell no force along it; else 0
 };
 
 // Statics of the leg: torques balance the force at the wheel, the wheel's own torque and the weight of the links.
