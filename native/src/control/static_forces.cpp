@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "stairwright/control/balance_qp.hpp"
 
@@ -16,6 +17,7 @@ struct Attempt {
     double friction_share, load_limit;
 };
 constexpr Attempt kAttempts[] = {{0.6, 0.6}, {0.75, 0.6}, {0.9, 0.6}, {1.0, 0.6}, {1.0, 10.0}};
+constexpr double kInCorner = 0.0002;  // m; a plan changes what wheels lean on this near to a corner
 constexpr double kHeld = 0.01;    // of the weight; forces that miss less than this hold it
 constexpr double kWorthMore = 0.85;  // more friction is taken where the forces' squares fall below this share
 constexpr double kMoment = 20.0;  // 1/m^2, weight of the moment against the forces
@@ -67,13 +69,18 @@ void rest(const WheelPath& path, const Pose& pose, const std::array<Lean, 2>& le
     }
 }
 
-// In how many ways a wheel there may lean on the ground.
-int ways(const WheelPath& path, double s) {
+// The ways in which a wheel there may lean on the ground: in a corner on either face or on both, beside it on the face
+// that the planned wheel touches, and elsewhere they are all the same.
+std::span<const Lean> ways(const WheelPath& path, double s) {
+    static constexpr std::array<Lean, 3> kAll = {Lean::both, Lean::after, Lean::before};
+    const std::span<const Lean> all(kAll);
     const auto& corners = path.corners();
     const double near = corner_planned(path);
-    for (std::size_t k = path.corner_from(s - near); k < corners.size() && corners[k] <= s + near; ++k)
-        if (std::abs(s - corners[k]) < near) return 3;
-    return 1;
+    for (std::size_t k = path.corner_from(s - near); k < corners.size() && corners[k] <= s + near; ++k) {
+        const double past = s - corners[k];
+        if (std::abs(past) < near) return std::abs(past) < kInCorner ? all : past > 0.0 ? all.subspan(1, 1) : all.last(1);
+    }
+    return all.first(1);
 }
 
 // The smallest forces of one attempt over all ways of touching the ground.
@@ -84,14 +91,14 @@ struct Resting {
 };
 
 Resting resting(const WheelPath& path, const Pose& pose, double friction, const Attempt& attempt) {
-    const int front = ways(path, pose.places[0]), rear = ways(path, pose.places[1]);
+    const auto front = ways(path, pose.places[0]), rear = ways(path, pose.places[1]);
     Resting out;
     Trial trial;
-    for (int way = 0; way < front * rear; ++way) {
-        const std::array<Lean, 2> lean = {static_cast<Lean>(2 - way % front), static_cast<Lean>(2 - way / front)};
+    for (std::size_t way = 0; way < front.size() * rear.size(); ++way) {
+        const std::array<Lean, 2> lean = {front[way % front.size()], rear[way / front.size()]};
         // What leans on both faces takes no friction: else one of them would do.
         const double usable = attempt.friction_share * friction;
-        rest(path, pose, lean, {lean[0] == Lean::both && front > 1 ? 0.0 : usable, lean[1] == Lean::both && rear > 1 ? 0.0 : usable},
+        rest(path, pose, lean, {lean[0] == Lean::both && front.size() > 1 ? 0.0 : usable, lean[1] == Lean::both && rear.size() > 1 ? 0.0 : usable},
              attempt.load_limit, trial);
         const bool holds = trial.missed < (kHeld * pose.weight) * (kHeld * pose.weight);
         double size = 0.0;
