@@ -37,6 +37,7 @@ void bind_noise(nb::module_& m) {
         .def_rw("scale", &Noise::scale)
         .def_rw("gyro", &Noise::gyro)
         .def_rw("specific_force", &Noise::specific_force)
+        .def_rw("joint_rate", &Noise::joint_rate)
         .def_rw("gyro_bias", &Noise::gyro_bias)
         .def_rw("force_bias", &Noise::force_bias)
         .def_rw("map_along", &Noise::map_along)

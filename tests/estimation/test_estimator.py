@@ -192,7 +192,7 @@ def test_a_wheel_cannot_be_beyond_a_face_that_it_does_not_feel() -> None:
     ("name", "thigh", "calf"), [("a1_wheeled", 0.7, -1.4), ("anymal_wheels", 0.02, -0.04)]
 )
 def test_leg_torques_tell_the_ground_force(name: str, thigh: float, calf: float) -> None:
-    """A robot stands still in MuJoCo, held by stiff joints; straight legs tell no force along them."""
+    """A robot stands still, held by stiff joints; straight legs tell no force along them."""
     robot = sw.load_robot(name)
     ground = sw.Terrain(points=[(-2, 0), (2, 0)], friction=0.8)
     model = build_model(robot, ground)

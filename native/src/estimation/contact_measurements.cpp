@@ -11,7 +11,7 @@ namespace stairwright::estimation {
 
 namespace {
 
-constexpr double kGripUsed = 0.25;     // share of the normal force from which on traction makes slip likely
+constexpr double kGripUsed = 0.4;      // share of the normal force from which on traction makes slip likely
 constexpr double kAtRest = 0.015;      // m/s of rolling
 constexpr double kRound = 3.0;          // of the noise off a face: errors last longer round an edge
 constexpr double kMayEnd = 25.0;       // of the variance of a place on a tread that may end
@@ -104,18 +104,21 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
         return h;
     };
     const double lasts = std::max(1.0, noise_.rolling_lasts / dt);
-    const auto update = [&](const Error& h, double residual, double deviation) {
+    // Noise of joint rates grows with the leg, and lasts for one reading.
+    const Vec2 hip = w.leg.wheel - w.leg.hip, knee = w.leg.wheel - w.leg.knee;
+    const auto update = [&](const Error& h, const Vec3& d, double residual, double deviation) {
+        const double reading = noise_.joint_rate * std::hypot(d[0] * hip.z - d[2] * hip.x, d[0] * knee.z - d[2] * knee.x);
         const Error ph = covariance_.times(h);
-        double spread = deviation * deviation;
+        double spread = deviation * deviation + reading * reading;
         for (std::size_t k = 0; k < kErrors; ++k) spread += h[k] * ph[k];
         if (residual * residual > kGate * spread) return;
-        covariance_.update(h, residual, deviation * deviation * lasts, error);
+        covariance_.update(h, residual, deviation * deviation * lasts + reading * reading, error);
     };
     // Sideways; the axis turns with the trunk.
     Error h = row(axis);
     const Vec3 swing = cross3(axis, rolling);
     for (std::size_t k = 0; k < 3; ++k) h[kAttitude + k] += swing[k];
-    update(h, -dot3(axis, speed), noise_.aside);
+    update(h, axis, -dot3(axis, speed), noise_.aside);
     const double radius = robot_.legs[i / 2].wheel.radius;
     const std::size_t next = path_.corner_from(on.s - kNearCorner);
     const bool near = next < path_.corners().size() && path_.corners()[next] < on.s + kNearCorner;
@@ -123,8 +126,8 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
     if (near || on.corner) {
         // Either face: only a wheel that does not turn says something, that it is at rest.
         if (std::abs(w.cruise) > kAtRest) return;
-        update(row(off), -dot3(off, speed), noise_.rolling);
-        update(row(t), -dot3(t, speed), noise_.rolling);
+        update(row(off), off, -dot3(off, speed), noise_.rolling);
+        update(row(t), t, -dot3(t, speed), noise_.rolling);
         return;
     }
     // Round an edge a face is only as well known as the place on it.
@@ -142,14 +145,14 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
     // The nearer to its grip, the less a wheel's turning says.
     const double used = std::abs(w.traction) / std::max(dot(w.felt, n), 0.02 * weight_) / kGripUsed;
     const double crept = noise_.creep * w.traction / (0.25 * weight_);
-    update(h, (1.0 + scale_) * rolled - crept - dot3(t, speed), std::hypot(noise_.rolling * std::max(1.0, used * used), askew));
+    update(h, t, (1.0 + scale_) * rolled - crept - dot3(t, speed), std::hypot(noise_.rolling * std::max(1.0, used * used), askew));
     h = row(off);
     const bool round = path_.on_arc(on.s);
     if (round) {  // where it goes says how far round the edge it is: dn/ds = t / radius
         const double turning = w.cruise / radius;
         for (std::size_t k = 0; k < kErrors; ++k) h[k] += turning * (n.z * along_x[k] - n.x * along_z[k]);
     }
-    update(h, -dot3(off, speed), round ? kRound * noise_.off_face : std::hypot(noise_.off_face, askew));
+    update(h, off, -dot3(off, speed), round ? kRound * noise_.off_face : std::hypot(noise_.off_face, askew));
 }
 
 }  // namespace stairwright::estimation

@@ -34,7 +34,7 @@ struct Noise {
     double start_place = 0.03, start_height = 0.003, start_tilt = 0.02, start_heading = 0.04;
     double start_gyro_bias = 0.01, start_force_bias = 0.2, scale = 0.01;
     // Of the sensors, a reading.
-    double gyro = 0.02, specific_force = 0.5;
+    double gyro = 0.02, specific_force = 0.5, joint_rate = 0.05;
     // Growth in the square root of a second.
     double gyro_bias = 2e-4, force_bias = 5e-3;
     // Growth of the map's error in the square root of a metre rolled, and of measurements.
