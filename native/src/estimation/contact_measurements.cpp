@@ -11,7 +11,7 @@ namespace stairwright::estimation {
 
 namespace {
 
-constexpr double kGripUsed = 0.4;      // share of the normal force from which on traction makes slip likely
+constexpr double kGripUsed = 0.25;     // share of the normal force from which on traction makes slip likely
 constexpr double kAtRest = 0.015;      // m/s of rolling
 constexpr double kRound = 3.0;          // of the noise off a face: errors last longer round an edge
 constexpr double kMayEnd = 25.0;       // of the variance of a place on a tread that may end
