@@ -23,5 +23,5 @@ def test_noise_neither_tips_the_attitude_nor_moves_the_place() -> None:
     assert result.outcome == "success", result.reason
     assert run.native is not None
     errors = np.asarray(run.native.judged)
-    assert np.abs(errors[:, ATTITUDE]).max() < 0.012
-    assert np.linalg.norm(errors[:, PLACE], axis=1).max() < 0.05
+    assert np.abs(errors[:, ATTITUDE]).max() < 0.008
+    assert np.linalg.norm(errors[:, PLACE], axis=1).max() < 0.02

@@ -21,6 +21,8 @@ constexpr double kLevel = 0.95;        // cosine of the slope of a face on which
 constexpr double kMissed = 0.004;       // m put back: the face is not where the map has it
 constexpr double kSearchNoise = 0.01;   // m^2 of variance for a metre that a face is farther on
 constexpr double kSame = 1e-6;          // m
+constexpr double kBounce = 0.1;          // s after a wheel has met a face in which its tyre gives way and comes back
+constexpr double kGivesWay = 4.0;       // of the variance of a place meanwhile: some millimetres
 constexpr double kGate = 9.0;           // of a normalised innovation squared
 
 double dot_of(const Error& a, const Error& b) {
@@ -37,7 +39,7 @@ bool Estimator::before_drop(const CurveMatch& on) const {
 }
 
 void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error) {
-    const double doubt = before_drop(on) ? kMayEnd : 1.0;
+    const double doubt = before_drop(on) ? kMayEnd : wheels_[i].landed < kBounce ? kGivesWay : 1.0;
     const double variance = doubt * noise_.place * noise_.place * std::max(1.0, noise_.place_lasts / dt);
     const Vec2 off = on.point.centre - centre;
     const auto row = [&](Vec2 d) {
@@ -146,6 +148,7 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
     const double used = std::abs(w.traction) / std::max(dot(w.felt, n), 0.02 * weight_) / kGripUsed;
     const double crept = noise_.creep * w.traction / (0.25 * weight_);
     update(h, t, (1.0 + scale_) * rolled - crept - dot3(t, speed), std::hypot(noise_.rolling * std::max(1.0, used * used), askew));
+    if (w.landed < kBounce) return;  // always the same way: what was given way before it was felt comes back
     h = row(off);
     const bool round = path_.on_arc(on.s);
     if (round) {  // where it goes says how far round the edge it is: dn/ds = t / radius

@@ -181,6 +181,7 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     // The other wheel of the pair is where it was: one alone must not be called back.
     w.s = unsure && std::abs(on.s - before) > kNearCorner ? before + w.rolled : on.s;
     w.aloft = touching ? 0.0 : w.aloft + dt;
+    w.landed = touching ? w.landed + dt : 0.0;
     if (!touching && on.s > before) {  // in the air no wheel gets past a corner, unless that is sure
         const std::size_t passed = path_.corner_from(before - kNearCorner);
         // What counts is how far it seems to be along the face after the corner.
@@ -214,7 +215,7 @@ void Estimator::enter_face(int i, const CurveMatch& on) {
     if (on.corner || on.piece == w.face || path_.pieces()[on.piece].arc) return;
     const bool tread = on.point.normal.z > kTread, was_tread = path_.pieces()[w.face].at(0.0, path_.radius()).normal.z > kTread;
     const bool known = on.piece == w.face_before;  // it comes back to it
-    w.face_before = w.face, w.face = on.piece, w.put_back = 0.0;
+    w.face_before = w.face, w.face = on.piece, w.put_back = w.landed = 0.0;
     if (known || (tread && was_tread)) return;
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
     const double error = tread ? noise_.face_place : noise_.tread_height;
