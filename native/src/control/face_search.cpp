@@ -9,13 +9,17 @@ namespace {
 constexpr double kSpeed = 0.04;     // m/s
 constexpr double kMostLead = 0.12;  // m ahead of the wheels, which makes them push
 constexpr double kLeadTime = 2.0;   // s until it is reached
+constexpr double kLetGo = 4.0;      // times as fast it goes once they move
 
 }  // namespace
 
-Reference FaceSearch::step(const Reference& planned, const Ahead& ahead, const std::array<double, 4>& places, double dt) {
+Reference FaceSearch::step(const Reference& planned, const Ahead& ahead, const std::array<double, 4>& places, bool stalled, double dt) {
+    pushed_ = stalled ? std::min(pushed_ + dt, kLeadTime) : std::max(0.0, pushed_ - kLetGo * dt);
     if (!ahead.any()) {
         waited_ = std::max(0.0, waited_ - dt);
-        return planned;
+        Reference out = planned;
+        for (double& wheels : out.value.wheels) wheels += kMostLead * pushed_ / kLeadTime;
+        return out;
     }
     waited_ = std::min(waited_ + dt, kLeadTime);
     Reference out = planned;

@@ -10,6 +10,7 @@ namespace stairwright::execution {
 namespace {
 
 constexpr double kCarries = 0.1;  // of the weight, on a pair of wheels that is to be on the ground
+constexpr double kStalled = 0.5;  // s without progress, from which on wheels push
 constexpr double kSamePlace = 0.15;  // m; an error of the map that was let pass is not told again so near
 
 }  // namespace
@@ -50,7 +51,7 @@ const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool 
     const control::Reference held = early_face_.step(adapted_, seen.ahead.found, *seen.places, dt);
     const std::array<Vec2, 2> ground = early_face_.ground(controller_.path(), adapted_, seen.ground);
     leg_fit_.follow({0.5 * (seen.ahead.found[0] + seen.ahead.found[1]), 0.0});
-    adapted_ = face_search_.step(leg_fit_.fit(held, ground, dt), searching ? seen.ahead : control::Ahead{}, *seen.places, dt);
+    adapted_ = face_search_.step(leg_fit_.fit(held, ground, dt), searching ? seen.ahead : control::Ahead{}, *seen.places, safe_stop_.waited() > kStalled, dt);
     const control::Reference& next = adapted_;
     const auto [w, x, y, z] = seen.state.quaternion;
     const double pitch = std::atan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y));

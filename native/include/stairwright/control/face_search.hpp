@@ -1,4 +1,5 @@
-// Finding a face that is not yet where the map has it: the plan waits before it while the wheels roll on.
+// Finding a face that is not where the map has it: farther on, the plan waits before it while the wheels roll on; nearer,
+// wheels that have met it unnoticed, and so do not follow the plan, push until it is felt.
 #pragma once
 
 #include "stairwright/control/controller.hpp"
@@ -19,11 +20,11 @@ class FaceSearch {
   public:
     // `planned` is the plan's set point, which waits during a search; `places` of the wheels on the wheel-centre curve
     // [m]. The pairs that can roll on do so slowly, the body with them, and push the more the longer nothing moves;
-    // the weight stays on the treads.
-    Reference step(const Reference& planned, const Ahead& ahead, const std::array<double, 4>& places, double dt);
+    // the weight stays on the treads. `stalled`: the plan has waited for the wheels for a while.
+    Reference step(const Reference& planned, const Ahead& ahead, const std::array<double, 4>& places, bool stalled, double dt);
 
   private:
-    double waited_ = 0.0;  // s
+    double waited_ = 0.0, pushed_ = 0.0;  // s
 };
 
 }  // namespace stairwright::control

@@ -18,6 +18,7 @@ class SafeStop {
     Stop watch(double position, bool advancing, double pitch_error, double roll, double dt);
 
     Stop why() const { return why_; }
+    double waited() const { return waited_; }  // for progress, until now [s]
 
   private:
     Stop why_ = Stop::none;
