@@ -113,9 +113,7 @@ double trunk_clearance(const Terrain& terrain, const RobotModel& robot, const Bo
 
 namespace {
 
-double link_clearance(const Terrain& terrain, const RobotModel& robot, const Posture& posture, int pair, int link, double query_radius) {
-    const Leg& leg = robot.legs[pair].leg;
-    const LegPoints& p = posture.legs[pair];
+double link_clearance(const Terrain& terrain, const Leg& leg, const LegPoints& p, int link, double query_radius) {
     double least = query_radius;
     const auto visit = [&](const Capsule& c) { least = std::min(least, terrain.link_clearance(c.a, c.b, c.radius, query_radius)); };
     if (link == 0)
@@ -137,10 +135,14 @@ LinkClearances link_clearances(const Terrain& terrain, const RobotModel& robot, 
     for (const int link : {1, 0})  // calves are near to the ground
         for (const int pair : {kFront, kRear}) {
             const double within = std::min(query_radius, std::max(least, 0.0) + kNearlyNearest);
-            out[pair][link] = link_clearance(terrain, robot, posture, pair, link, within);
+            out[pair][link] = link_clearance(terrain, robot.legs[pair].leg, posture.legs[pair], link, within);
             least = std::min(least, out[pair][link]);
         }
     return out;
+}
+
+double leg_clearance(const Terrain& terrain, const Leg& leg, const LegPoints& at, double query_radius) {
+    return std::min(link_clearance(terrain, leg, at, 0, query_radius), link_clearance(terrain, leg, at, 1, query_radius));
 }
 
 double links_clearance(const Terrain& terrain, const RobotModel& robot, const Posture& posture, double query_radius,
@@ -149,7 +151,7 @@ double links_clearance(const Terrain& terrain, const RobotModel& robot, const Po
     double least = query_radius;
     for (const int pair : {kFront, kRear})
         for (const int link : {0, 1})
-            if (before[pair][link] <= near) least = std::min(least, link_clearance(terrain, robot, posture, pair, link, query_radius));
+            if (before[pair][link] <= near) least = std::min(least, link_clearance(terrain, robot.legs[pair].leg, posture.legs[pair], link, query_radius));
     return least;
 }
 

@@ -57,6 +57,8 @@ using LinkClearances = std::array<std::array<double, 2>, 2>;
 inline constexpr double kNearlyNearest = 1e-3;  // m
 // Of each link, exact for those that are nearly as near as the nearest; of others no more than that they are not.
 LinkClearances link_clearances(const Terrain& terrain, const RobotModel& robot, const Posture& posture, double query_radius);
+// Of one leg.
+double leg_clearance(const Terrain& terrain, const Leg& leg, const LegPoints& at, double query_radius);
 // Least clearance after a tiny motion from where the clearances were `before`.
 double links_clearance(const Terrain& terrain, const RobotModel& robot, const Posture& posture, double query_radius,
                        const LinkClearances& before);

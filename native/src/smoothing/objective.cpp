@@ -57,6 +57,7 @@ Objective objective(const RefineProblem& problem, const NodeSpacing& spacing, do
     o.reach = MarginTerm{0.006 * size, 150.0 * root, 0.0005}.with(more.reach);
     const double room = kRoomWeight * root * std::sqrt(w.clearance);
     o.trunk_room = MarginTerm{kTrunkClearance * size, room}.with(more.trunk);
+    o.early = {kClearance, kComWeight * root};
     o.links_room = {calf_end_clearance(problem.robot), room};
     o.torque_weight = kTorqueWeight * root * std::sqrt(w.torque);
     o.torque_room = {0.2, 8.0 * root, kFirmTorque};
@@ -84,12 +85,13 @@ PathCost path_cost(const RefineProblem& problem, std::span<const Node> path) {
     const auto [wheels, contacts, slopes, bodies] = geometry_along(problem.path, nodes);
     const double share = u.back() / static_cast<double>(count - 1) / kUsualSpacing;
     const Objective o = objective(problem, spacing, share);
-    const SmoothingProblem at{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, {}, {}, o};
+    const std::vector<std::array<double, 2>> early = early_faces(problem.path, nodes);
+    const SmoothingProblem at{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, {}, early, {}, o};
     std::vector<Residuals> rows;
     PathCost out;
     for (std::size_t k = 0; k < count; ++k) {
         const PoseGeometry geometry = pose_geometry(problem.terrain, problem.robot, bodies[k], wheels[k], query_radii(o));
-        rows.push_back(residuals(at, k, bodies[k], geometry));
+        rows.push_back(residuals(at, k, bodies[k], geometry, early_clearance(at, k, bodies[k], geometry.posture)));
         for (const double r : rows.back()) out.total += r * r;
     }
     std::vector<double> gradient(3 * count);

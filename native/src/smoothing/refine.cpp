@@ -105,7 +105,8 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
     std::vector<std::vector<WheelLoads>> loads;
     if (problem.torques)
         loads = loads_along(problem.path, nodes, changes, problem.friction, problem.lag, problem.robot.mass * kGravity);
-    const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, loads, fixed,
+    const std::vector<std::array<double, 2>> early = early_faces(problem.path, nodes);
+    const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, loads, early, fixed,
                                      objective(problem, spacing, hop / kUsualSpacing)};
     smooth(smoothing, bodies, kIterations);
     for (std::size_t k = 0; k < n; ++k) nodes[k].body = bodies[k];

@@ -76,7 +76,20 @@ QueryRadii query_radii(const Objective& o) {
             std::max(o.legs.target, o.legs.least)};
 }
 
-Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry) {
+double early_clearance(const SmoothingProblem& problem, std::size_t node, const Body& body, const Posture& posture) {
+    double least = problem.objective.early.target;
+    for (const int pair : {kFront, kRear}) {
+        const Vec2 nearer = {problem.early[node][pair], 0.0};
+        if (nearer.x == 0.0) continue;
+        const auto& [hip, knee, wheel] = posture.legs[pair];
+        const LegPoints leg = {hip + nearer, knee + nearer, wheel + nearer};
+        least = std::min(least, leg_clearance(problem.terrain, problem.robot.legs[pair].leg, leg, least));
+        least = std::min(least, trunk_clearance(problem.terrain, problem.robot, {body.x + nearer.x, body.z, body.pitch}, least));
+    }
+    return least;
+}
+
+Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry, double early) {
     const Objective& o = problem.objective;
     const NodeIntervals& interval = problem.intervals[node];
     const double x = geometry.posture.com.x;
@@ -91,6 +104,7 @@ Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Bod
     r[kReach] = hinge(geometry.posture.reach_slack, o.reach, o.hard);
     r[kTrunkRoom] = shortfall(geometry.trunk, o.trunk_room);
     r[kLinksRoom] = shortfall(geometry.links, o.links_room);
+    r[kEarlyFace] = shortfall(early, o.early);
     const auto& [front, rear] = problem.wheels[node];
     r[kPitch] = (body.pitch + o.slope_share * problem.slopes[node]) * o.pitch_weight;
     r[kHeight] = (body.z - 0.5 * (front.z + rear.z) - o.height) * o.height_weight;
@@ -118,7 +132,8 @@ NodeJacobian differentiate(const SmoothingProblem& problem, std::size_t node, co
         if (at[kLinks] > 0.0 || at[kLinksRoom] > 0.0) 
             moved.links = links_clearance(problem.terrain, problem.robot, moved.posture, radii.links, geometry.by_link);
         if (at[kLegs] > 0.0) moved.legs = legs_distance(problem.robot, moved.posture.legs);
-        const Residuals r = residuals(problem, node, x, moved);
+        const double early = at[kEarlyFace] > 0.0 ? early_clearance(problem, node, x, moved.posture) : problem.objective.early.target;
+        const Residuals r = residuals(problem, node, x, moved, early);
         for (int m = 0; m < kResiduals; ++m) out[a][m] = (r[m] - at[m]) * (1.0 / kStep);
     }
     return out;

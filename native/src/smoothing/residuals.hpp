@@ -8,7 +8,7 @@ namespace stairwright::smoothing {
 // Order of a node's residuals; the first ones, up to kHinges, are never negative.
 enum Residual {
     kComLow, kComHigh, kReserveLow, kReserveHigh, kLaggedLow, kLaggedHigh,
-    kTrunk, kLinks, kLegs, kJoints, kReach, kTrunkRoom, kLinksRoom,
+    kTrunk, kLinks, kLegs, kJoints, kReach, kTrunkRoom, kLinksRoom, kEarlyFace,
     kFrontThighLimit, kFrontCalfLimit, kFrontWheelLimit, kRearThighLimit, kRearCalfLimit, kRearWheelLimit,
     kPitch, kHeight, kFrontThigh, kFrontCalf, kRearThigh, kRearCalf, kResiduals,
 };
@@ -19,7 +19,10 @@ using NodeJacobian = std::array<Residuals, 3>;  // by x, z, pitch
 
 QueryRadii query_radii(const Objective& objective);  // nothing farther away pulls [m]
 
-Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry);
+// Least clearance of trunk and leg if the next face of their wheels is nearer than drawn; no more than is wanted [m].
+double early_clearance(const SmoothingProblem& problem, std::size_t node, const Body& body, const Posture& posture);
+// `early` is that clearance.
+Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry, double early);
 NodeJacobian differentiate(const SmoothingProblem& problem, std::size_t node, const Body& body,
                            const PoseGeometry& geometry, const Residuals& at);
 // Residuals of a node that has moved a little from where `at` and `jacobian` were computed.

@@ -15,6 +15,9 @@ struct NodeGeometry {
     std::vector<double> slopes;  // of the lines from the rear to the front wheels [rad]
     std::vector<Body> bodies;
 };
+// By node and pair: how much nearer than drawn the next face may be, which the wheels have not met yet [m].
+std::vector<std::array<double, 2>> early_faces(const WheelPath& path, std::span<const Node> nodes);
+
 NodeGeometry geometry_along(const WheelPath& path, std::span<const Node> nodes);
 
 // Where contacts change between nodes, as fractional node numbers.
