@@ -14,7 +14,7 @@ constexpr double kLetGo = 4.0;      // times as fast it goes once they move
 }  // namespace
 
 Reference FaceSearch::step(const Reference& planned, const Ahead& ahead, const std::array<double, 4>& places, bool stalled, double dt) {
-    pushed_ = stalled ? std::min(pushed_ + dt, kLeadTime) : std::max(0.0, pushed_ - kLetGo * dt);
+    pushed_ = stalled && (ahead.nearing[0] || ahead.nearing[1]) ? std::min(pushed_ + dt, kLeadTime) : std::max(0.0, pushed_ - kLetGo * dt);
     if (!ahead.any()) {
         waited_ = std::max(0.0, waited_ - dt);
         Reference out = planned;

@@ -195,7 +195,8 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     if (touching) enter_face(i, on);
     const std::size_t next = path_.corner_from(on.s);
     const double room = next < path_.corners().size() ? path_.corners()[next] - on.s : kRoom;
-    estimate_.on_tread[i / 2] = !on.corner && on.point.normal.z > kTread && room >= kRoom;
+    const bool tread = !on.corner && on.point.normal.z > kTread;
+    estimate_.on_tread[i / 2] = tread && room >= kRoom, estimate_.nearing[i / 2] = tread && room < kRoom;
 
     compare_with_map(i, on, dt);
     estimate_.touching[i] = touching;

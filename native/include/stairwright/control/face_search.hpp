@@ -10,6 +10,7 @@ namespace stairwright::control {
 struct Ahead {
     std::array<bool, 2> searching{};  // a face should be here, and is not felt
     std::array<bool, 2> on_tread{};   // can roll on
+    std::array<bool, 2> nearing{};    // are on a tread, near to the next face
     std::array<bool, 2> hanging{};    // hang in the air before a face
     std::array<double, 2> found{};    // how much farther on they are at this step, for a wheel met a face [m]
 

@@ -74,6 +74,7 @@ struct Estimate {
     // How much farther ahead and higher each pair's ground lies than drawn, against their mean [m].
     std::array<Vec2, 2> ground{};
     std::array<bool, 2> on_tread{};   // of each pair: it can roll on for a while
+    std::array<bool, 2> nearing{};    // of each pair: on a tread, near to the next face
     std::array<double, 4> used_grip{};  // tangential force over normal force of each wheel, as the legs feel them
     std::array<bool, 2> hanging{};    // a wheel of the pair stays in the air where the map has it pass a corner
     std::optional<MapError> map_error;
