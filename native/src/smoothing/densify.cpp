@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMiss = 0.0006;  // m; largest distance of an interpolated wheel from its curve
 constexpr int kPasses = 10;
-constexpr double kEarlyFace = 0.05;  // m before its place that a face may come
+constexpr double kEarlyFace = 0.06;  // m before its place that a face may come
 constexpr double kLevel = 0.99, kSteep = 0.7;  // cosine of a tread's slope at least, sine of a face's
 
 // The node at a fractional node number.

@@ -18,6 +18,7 @@ constexpr double kTrunkClearance = 0.06;   // m of trunk clearance beyond which 
 // Of the cost terms at a user's weight of 1, per node.
 constexpr double kComWeight = 15.0;     // 1/m
 constexpr double kRoomWeight = 2.0;     // 1/m, of trunk and links
+constexpr double kEarlyWeight = 45.0;   // 1/m, of clearance where faces come early; nobody weighs that
 constexpr double kTorqueWeight = 0.3;
 constexpr double kPitchWeight = 0.05;   // 1/rad
 constexpr double kRateWeight = 20.0;    // 1/m^2, of the squared step from node to node
@@ -57,7 +58,7 @@ Objective objective(const RefineProblem& problem, const NodeSpacing& spacing, do
     o.reach = MarginTerm{0.006 * size, 150.0 * root, 0.0005}.with(more.reach);
     const double room = kRoomWeight * root * std::sqrt(w.clearance);
     o.trunk_room = MarginTerm{kTrunkClearance * size, room}.with(more.trunk);
-    o.early = {kClearance, kComWeight * root};
+    o.early = {kClearance, kEarlyWeight * root};
     o.links_room = {calf_end_clearance(problem.robot), room};
     o.torque_weight = kTorqueWeight * root * std::sqrt(w.torque);
     o.torque_room = {0.2, 8.0 * root, kFirmTorque};
