@@ -11,7 +11,7 @@ from schemathesis.checks import CHECKS, load_all_checks
 
 from tests.conftest import Server
 
-EXAMPLES = 6  # of each kind, valid and invalid, for each of some fifty operations
+EXAMPLES = 4  # of each kind, valid and invalid, for each of some fifty operations
 
 
 def ask(operation: Any, mode: schemathesis.GenerationMode, checks: list[Any]) -> None:

@@ -31,7 +31,7 @@ from stairwright.terrain.wheel_path import wheel_path
 A1S = ("a1_wheeled", "a1_wheeled_x")
 
 FLAT = {"name": "short-flat", "points": [[-0.6, 0.0], [0.6, 0.0]], "friction": 0.6}
-SHORTEST = {"points": [[-0.4, 0.0], [0.4, 0.0]], "friction": 0.6}
+SHORTEST = {"points": [[-0.35, 0.0], [0.35, 0.0]], "friction": 0.6}
 WEIGHT = 11.84 * 9.81
 
 
