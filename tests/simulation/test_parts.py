@@ -263,8 +263,7 @@ def test_workers_change_nothing(solver: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("form", ["contact", "paper"])
-@pytest.mark.parametrize("name", A1S)
+@pytest.mark.parametrize(("name", "form"), list(zip(A1S, ("contact", "paper"), strict=True)))
 def test_drive_tracks_speed_and_yaw_rate(name: str, form: str) -> None:
     robot = sw.load_robot(name)
 

@@ -96,6 +96,7 @@ def test_results_of_before_there_was_a_variable_are_read(tmp_path: Path) -> None
     assert np.isnan(old.speed).all()
 
 
+@pytest.mark.slow
 def test_an_extended_axis_computes_only_new_cells(tmp_path: Path) -> None:
     path = tmp_path / "a.zarr"
     _asked(_heights(0.05, 0.1), path)
