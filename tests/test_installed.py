@@ -31,7 +31,7 @@ def _run(*command: str | Path, cwd: Path = ROOT) -> None:
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
 
 
-def _installer(python: Path) -> Callable[..., None]:
+def installer(python: Path) -> Callable[..., None]:
     """Installs what is locked; from uv's cache if everything is there."""
     own = ROOT / ".dev" / "uv" / "bin" / "uv"
     found = shutil.which("uv") or (str(own) if own.is_file() else None)
@@ -68,7 +68,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     _run(*hatchling, "--directory", folder)
     (wheel,) = folder.glob("*.whl")
     _run(sys.executable, "-m", "venv", "--without-pip", folder / "venv")
-    install = _installer(folder / PYTHON)
+    install = installer(folder / PYTHON)
     lock = folder / "requirements.lock"
     lock.write_text(_without_build_tools())
     install("--require-hashes", "-r", lock)

@@ -1,4 +1,7 @@
-"""A start on a full disk, in a read-only folder, over a damaged database: what can be read is."""
+"""A start on a full disk, in a read-only folder, over a damaged database, with a wrong clock.
+
+What can be read is.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ import contextlib
 import os
 import shutil
 import subprocess
+import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -30,15 +34,23 @@ exec "$@"
 """
 # Root obeys permissions too without these.
 MORTAL = ("setpriv", "--bounding-set=-dac_override,-dac_read_search")
+# Imported by every Python process before anything else. No namespace of Linux shifts this clock.
+AHEAD = "import time\nright = time.time\ntime.time = lambda: right() + {} * 86400.0\n"
+JUMPING = """
+import pathlib, time
+right, later = time.time, pathlib.Path({!r})
+time.time = lambda: right() + 5 * 86400.0 * later.exists()
+"""
 
 
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
-    """The folder that a server left, and the plan in it; its terrain is saved as `kept`."""
+    """The folder that a server left, and the plan in it; it and its terrain are called `kept`."""
     folder = tmp_path_factory.mktemp("stored") / "data"
     with serve(folder) as server, httpx.Client(base_url=f"{server.url}/api/v1") as api:
         assert api.put("/terrains/kept", json=STAIR).status_code == 201
         made: dict[str, Any] = api.post("/plans", json={"terrain": "kept"}, timeout=120).json()
+        assert api.patch(f"/plans/{made['id']}", json={"name": "kept"}).status_code == 200
     return folder, made
 
 
@@ -100,25 +112,34 @@ def mortal() -> Sequence[str]:
     return MORTAL if os.geteuid() == 0 else ()
 
 
-@pytest.mark.parametrize("killed", [False, True])
-def test_a_read_only_folder(
-    start_server: Start, plan: dict[str, Any], tmp_path: Path, killed: bool
-) -> None:
-    if killed:  # what was saved last is in SQLite's log only
-        with start_server() as server, httpx.Client(base_url=f"{server.url}/api/v1") as api:
-            api.put("/terrains/late", json=STAIR)
-            server.process.kill()
-        assert (tmp_path / "data" / "stairwright.sqlite-wal").stat().st_size > 0
+def test_a_read_only_folder(start_server: Start, plan: dict[str, Any], tmp_path: Path) -> None:
     permissions(tmp_path / "data", "a-w")
     try:
         with start_server(prefix=mortal()) as server, read_only(server) as api:
             assert api.get(f"/plans/{plan['id']}").json() == plan
             assert "make it writable" in api.get("/healthz").json()["read_only"]
-            assert api.get("/terrains/late").status_code == (200 if killed else 404)
     finally:
         permissions(tmp_path / "data", "u+w")
-    with start_server() as server:
-        assert httpx.get(f"{server.url}/api/v1/healthz").json()["read_only"] is None
+
+
+def test_a_read_only_folder_of_a_server_that_was_killed(
+    start_server: Start, plan: dict[str, Any], tmp_path: Path
+) -> None:
+    with start_server() as server, httpx.Client(base_url=f"{server.url}/api/v1") as api:
+        api.put("/terrains/late", json=STAIR)
+        server.process.kill()  # what was saved last is in SQLite's log only
+    assert (tmp_path / "data" / "stairwright.sqlite-wal").stat().st_size > 0
+    permissions(tmp_path / "data", "a-w")
+    try:
+        with start_server(prefix=mortal()) as server, read_only(server) as api:
+            assert api.get("/terrains/late").status_code == 200
+    finally:
+        permissions(tmp_path / "data", "u+w")
+    with start_server() as server, httpx.Client(base_url=f"{server.url}/api/v1") as api:
+        assert api.get("/healthz").json()["read_only"] is None
+        # Names survive restarts and the same question.
+        assert api.post("/plans", json={"terrain": "kept"}, timeout=120).json() == plan
+        assert [each["name"] for each in api.get("/plans").json()] == ["kept"]
 
 
 def test_a_damaged_database_on_a_full_disk(
@@ -175,7 +196,45 @@ def test_a_damaged_database_is_set_aside(
         assert "restore a backup" in log
     assert database.with_name("stairwright.sqlite.damaged-1").read_bytes() == harmed
     assert list(data.glob("artefacts/??/*"))  # results of the old one stay for it
-    with start_server() as server:
-        answer = httpx.get(f"{server.url}/api/v1/terrains/new")
-        assert answer.status_code == 200
-    assert len(list(data.glob("*.damaged-*"))) == 1
+    if how == "end":
+        with start_server() as server:
+            answer = httpx.get(f"{server.url}/api/v1/terrains/new")
+            assert answer.status_code == 200
+        assert len(list(data.glob("*.damaged-*"))) == 1
+
+
+def with_clock(folder: Path, module: str) -> dict[str, str]:
+    """Variables with which every Python process has the clock of `module`."""
+    (folder / "sitecustomize.py").write_text(module)
+    return {"PYTHONPATH": os.pathsep.join([str(folder), os.environ.get("PYTHONPATH", "")])}
+
+
+def test_a_clock_100_days_ahead_deletes_nothing(
+    start_server: Start, plan: dict[str, Any], tmp_path: Path
+) -> None:
+    with start_server(**with_clock(tmp_path, AHEAD.format(100))) as server:
+        with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api:
+            assert api.get(f"/plans/{plan['id']}").json() == plan
+            assert api.get("/terrains/kept").status_code == 200
+            later = api.post("/plans", json={"terrain": STAIR, "friction": 0.5}).json()["id"]
+        log = server.log.read_text()
+        assert "last used 100 days ago" in log
+        assert "removed" not in log.replace("nothing is removed", "")
+    with start_server() as server, httpx.Client(base_url=f"{server.url}/api/v1") as api:
+        assert api.get(f"/plans/{plan['id']}").json() == plan
+        assert api.get(f"/plans/{later}").status_code == 200
+
+
+def test_a_clock_that_jumps_meanwhile_is_told(start_server: Start, tmp_path: Path) -> None:
+    later = tmp_path / "later"
+    with start_server(**with_clock(tmp_path, JUMPING.format(str(later)))) as server:
+        for change in (later.touch, later.unlink):
+            before = server.log.read_text().count("the clock was set")
+            change()
+            give_up = time.monotonic() + 60
+            while server.log.read_text().count("the clock was set") == before:
+                assert time.monotonic() < give_up
+                time.sleep(0.2)
+        log = server.log.read_text()
+        assert "the clock was set forward by 5 days" in log
+        assert "the clock was set back by 5 days" in log

@@ -13,7 +13,7 @@ from typing import Any
 import httpx
 import pytest
 
-from tests.conftest import Server
+from tests.conftest import Server, serve
 
 Start = Callable[..., contextlib.AbstractContextManager[Server]]
 
@@ -119,13 +119,17 @@ def test_plans_do_not_wait_behind_rollouts(api: httpx.Client) -> None:
         api.delete(f"/jobs/{job}")
 
 
-@pytest.mark.slow
-def test_a_full_queue_says_when_to_come_back(start_server: Start) -> None:
+@pytest.fixture(scope="module")
+def narrow(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A server that carries out one job at a time and lets two wait."""
     variables = {"STAIRWRIGHT_QUEUE_LIMIT": "2", "STAIRWRIGHT_ROLLOUT_WORKERS": "1"}
-    with (
-        start_server(**variables) as server,
-        httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api,
-    ):
+    with serve(tmp_path_factory.mktemp("narrow") / "data", **variables) as server:
+        yield server
+
+
+@pytest.mark.slow
+def test_a_full_queue_says_when_to_come_back(narrow: Server) -> None:
+    with httpx.Client(base_url=f"{narrow.url}/api/v1", timeout=120) as api:
         jobs = [long_rollout(api, k) for k in range(3)]
         body = {"terrain": LONG, "method": "nominal", "seed": 99}
         refused = api.post("/rollouts", json=body)
@@ -133,7 +137,21 @@ def test_a_full_queue_says_when_to_come_back(start_server: Start) -> None:
         assert int(refused.headers["retry-after"]) >= 1
         assert refused.json()["type"].endswith("queue-full")
         api.delete(f"/jobs/{jobs[1]}")
-        assert api.post("/rollouts", json=body).status_code == 202
+        taken = api.post("/rollouts", json=body)
+        assert taken.status_code == 202
+        for job in (jobs[0], jobs[2], taken.json()["id"]):
+            api.delete(f"/jobs/{job}")
+
+
+@pytest.mark.slow
+def test_a_second_server_on_the_same_folder_is_refused(narrow: Server) -> None:
+    with httpx.Client(base_url=f"{narrow.url}/api/v1", timeout=120) as api:
+        job = long_rollout(api, 1)
+        wait_for(api, job, "running")
+        with pytest.raises(pytest.fail.Exception, match="uses the data folder"), serve(narrow.data):
+            pass
+        assert api.get(f"/jobs/{job}").json()["state"] == "running"
+        api.delete(f"/jobs/{job}")
 
 
 @pytest.mark.slow
@@ -148,7 +166,15 @@ def test_a_deadline_fails_the_job(start_server: Start) -> None:
 
 @pytest.mark.slow
 def test_a_server_killed_outright_keeps_what_it_acknowledged(start_server: Start) -> None:
-    with start_server() as server:
+    """What is stored, and what is accepted: queued and running. A repeated key finds its job."""
+
+    def ask(api: httpx.Client, seed: int) -> str:
+        body, key = {"terrain": STAIR, "seed": seed}, {"idempotency-key": f"k{seed}"}
+        answer = api.post("/rollouts", json=body, headers=key)
+        assert answer.status_code == 202
+        return str(answer.json()["id"])
+
+    with start_server(STAIRWRIGHT_ROLLOUT_WORKERS="1") as server:
         with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api:
             api.put("/terrains/kept", json=STAIR)
             plan = api.post("/plans", json={"terrain": "kept"}).json()
@@ -157,6 +183,7 @@ def test_a_server_killed_outright_keeps_what_it_acknowledged(start_server: Start
             run = api.get(result.removeprefix("/api/v1")).json()
             lost = long_rollout(api, 1)
             wait_for(api, lost, "running")
+            jobs = [ask(api, seed) for seed in range(1, 4)]
         children = set(workers(server))
         server.process.kill()
         server.process.wait()
@@ -164,58 +191,26 @@ def test_a_server_killed_outright_keeps_what_it_acknowledged(start_server: Start
         while any(Path(f"/proc/{pid}").exists() for pid in children):
             assert time.monotonic() < give_up, "workers outlive the server"
             time.sleep(0.05)
-    with start_server() as server, httpx.Client(base_url=f"{server.url}/api/v1") as api:
+    with (
+        start_server(STAIRWRIGHT_ROLLOUT_WORKERS="1") as server,
+        httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api,
+    ):
         assert api.get("/terrains/kept").json()["points"] == STAIR["points"]
         assert api.get(f"/plans/{plan['id']}").json() == plan
         assert api.get(result.removeprefix("/api/v1")).json() == run
         assert api.get(f"/jobs/{quick['id']}").json()["state"] == "done"
         assert wait_for(api, lost, "running", "failed")["state"] == "running"  # it goes on
+        assert [ask(api, seed) for seed in range(1, 4)] == jobs
         api.delete(f"/jobs/{lost}")
-
-
-@pytest.mark.slow
-def test_accepted_work_is_done_after_a_server_was_killed(start_server: Start) -> None:
-    """Queued and running, a repeated key finds its job, and a second server waits outside."""
-    with start_server(STAIRWRIGHT_ROLLOUT_WORKERS="1") as server:
-        with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api:
-            jobs = []
-            for seed in range(4):
-                body = {"terrain": STAIR, "seed": seed}
-                answer = api.post("/rollouts", json=body, headers={"idempotency-key": f"k{seed}"})
-                assert answer.status_code == 202
-                jobs.append(answer.json()["id"])
-        server.process.kill()
-        server.process.wait()
-    with (
-        start_server(STAIRWRIGHT_ROLLOUT_WORKERS="1") as server,
-        httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api,
-    ):
-        for seed, job in enumerate(jobs):
+        for job in jobs:
             assert wait_for(api, job, "done", "failed")["state"] == "done"
-            body = {"terrain": STAIR, "seed": seed}
-            answer = api.post("/rollouts", json=body, headers={"idempotency-key": f"k{seed}"})
-            assert answer.json()["id"] == job
+        assert [ask(api, seed) for seed in range(1, 4)] == jobs
         listed = api.get("/jobs", params={"state": "done", "limit": 3})
         assert len(listed.json()) == 3
         rollout = api.get(f"/jobs/{jobs[0]}").json()["result"].rpartition("/")[2]
         assert api.delete(f"/rollouts/{rollout}").status_code == 204
         assert api.get(f"/rollouts/{rollout}").status_code == 404
         # The key of a job whose result is gone starts it anew.
-        body = {"terrain": STAIR, "seed": 0}
-        answer = api.post("/rollouts", json=body, headers={"idempotency-key": "k0"})
-        assert wait_for(api, answer.json()["id"], "done", "failed")["state"] == "done"
-        assert answer.json()["id"] != jobs[0]
-
-
-@pytest.mark.slow
-def test_a_second_server_on_the_same_folder_is_refused(start_server: Start) -> None:
-    with (
-        start_server() as server,
-        httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api,
-    ):
-        job = long_rollout(api, 1)
-        wait_for(api, job, "running")
-        with pytest.raises(pytest.fail.Exception, match="uses the data folder"), start_server():
-            pass
-        assert api.get(f"/jobs/{job}").json()["state"] == "running"
-        api.delete(f"/jobs/{job}")
+        anew = ask(api, 1)
+        assert wait_for(api, anew, "done", "failed")["state"] == "done"
+        assert anew != jobs[0]

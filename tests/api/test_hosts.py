@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import socket
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
@@ -24,8 +22,6 @@ from tests.in_process import served
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
-
-Start = Callable[..., contextlib.AbstractContextManager[Server]]
 
 
 def raw(server: Server, head: str) -> tuple[int, bytes]:
@@ -103,24 +99,6 @@ def test_websockets_too(server: Server) -> None:
         assert asyncio.run(status(path, "localhost")) == 101, address
         assert asyncio.run(status(path, "evil.example")) == 421
     httpx.delete(f"{server.url}/api/v1/sessions/{session}")
-
-
-@pytest.mark.slow
-def test_further_names_can_be_set(start_server: Start) -> None:
-    with start_server(STAIRWRIGHT_HOSTS="stairs.example [fd00::7]") as server:
-        for host, status in (
-            ("stairs.example", 200),
-            ("Stairs.Example:443", 200),
-            ("[fd00::7]:80", 200),
-            ("localhost", 200),
-            ("other.example", 421),
-        ):
-            answer = httpx.get(f"{server.url}/healthz", headers={"host": host})
-            assert answer.status_code == status, host
-        # Its own page, behind a proxy that speaks TLS.
-        own = {"host": "stairs.example", "origin": "https://stairs.example"}
-        answer = httpx.delete(f"{server.url}/api/v1/jobs/j-0", headers=own)
-        assert answer.status_code == 404
 
 
 @pytest.mark.parametrize("hosts", ["https://a.example", "a.example:80", "*", "a..b", "-a", "a/b"])

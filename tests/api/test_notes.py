@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
@@ -100,19 +99,6 @@ def test_bad_changes_name_the_field(
 @pytest.mark.parametrize("path", ["/plans/p-none", "/rollouts/r-none", "/trials/t-none"])
 def test_what_is_not_there_cannot_be_noted(api: httpx.Client, path: str) -> None:
     assert api.patch(path, json={"pinned": True}).status_code == 404
-
-
-@pytest.mark.slow
-def test_names_survive_a_restart_and_the_same_question(
-    start_server: Callable[..., AbstractContextManager[Server]],
-) -> None:
-    with start_server() as server:
-        plan = httpx.post(f"{server.url}/api/v1/plans", json={"terrain": CURB}, timeout=60).json()
-        path = f"/api/v1/plans/{plan['id']}"
-        assert httpx.patch(server.url + path, json={"name": "kept"}).status_code == 200
-    with start_server() as server:
-        httpx.post(f"{server.url}/api/v1/plans", json={"terrain": CURB}, timeout=60)
-        assert [each["name"] for each in httpx.get(f"{server.url}/api/v1/plans").json()] == ["kept"]
 
 
 def test_pinned_results_stay_when_room_is_made(tmp_path: Path) -> None:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
-import schemathesis
 from hypothesis import HealthCheck, Phase, given, settings
-from schemathesis.checks import CHECKS, load_all_checks
 
 from tests.conftest import Server
 
-EXAMPLES = 6  # of each kind, valid and invalid, for each of some fifty operations
+if TYPE_CHECKING:
+    import schemathesis
+
+EXAMPLES = 4  # of each kind, valid and invalid, for each of some fifty operations
 
 
 def ask(operation: Any, mode: schemathesis.GenerationMode, checks: list[Any]) -> None:
@@ -34,6 +35,9 @@ def ask(operation: Any, mode: schemathesis.GenerationMode, checks: list[Any]) ->
 
 @pytest.mark.slow
 def test_every_operation_with_good_and_bad_requests(server: Server) -> None:
+    import schemathesis
+    from schemathesis.checks import CHECKS, load_all_checks
+
     load_all_checks()
     # Values that are fine one by one may be refused together: an unknown name, a goal before the
     # start, two sources of a plan.

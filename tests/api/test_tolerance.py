@@ -17,6 +17,7 @@ from stairwright.simulation.robust_margins import DELAYS, FRICTIONS
 from tests.conftest import Server
 
 CURB = {"name": "curb", "points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]], "friction": 0.4}
+LEVEL = {"name": "level", "points": [[-0.5, 0], [0.5, 0]], "friction": 0.2}
 ASKED = {"height": 0.01, "friction": 0.1}
 
 
@@ -65,7 +66,7 @@ def test_settings_tell_what_can_be_asked(api: httpx.Client) -> None:
 def test_margins_are_those_of_python(server: Server, api: httpx.Client) -> None:
     told: list[float] = []
     with sw.Client(server.url) as service:
-        plan = service.plan(CURB)
+        plan = service.plan(LEVEL)
         found = service.margins(plan.id, seed=2, progress=told.append)
     assert found.plan_id == plan.id
     assert found.delay is not None

@@ -105,7 +105,7 @@ def test_the_original_is_rolled_out(tmp_path: Path) -> None:
     model, robot = tmp_path / "maker.xml", tmp_path / "robot.yaml"
     model.write_text(mjcf(Design()))
     curb = tmp_path / "curb.json"
-    curb.write_text('{"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}')
+    curb.write_text('{"points": [[-0.5, 0], [0, 0], [0, 0.05], [0.5, 0.05]]}')
     run("robot", "import", model, "-o", robot)
     assert "maker.xml" in run("rollout", curb, "--robot", robot, "--model", model)
     run("rollout", curb, "--robot", "a1_wheeled", "--model", model, status=2)

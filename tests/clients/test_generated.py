@@ -17,6 +17,7 @@ import pytest
 import trimesh
 
 from tests.conftest import Server
+from tests.test_installed import installer
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
@@ -50,9 +51,8 @@ def python_tools() -> Path:
     tools = folder / "bin"
     if not complete:
         shutil.rmtree(folder, ignore_errors=True)
-        run(sys.executable, "-m", "venv", folder, cwd=ROOT)
-        options = ("--quiet", "--require-hashes", "--no-deps", "-r", PYTHON_LOCK)
-        run(tools / "python", "-m", "pip", "install", *options, cwd=ROOT)
+        run(sys.executable, "-m", "venv", "--without-pip", folder, cwd=ROOT)
+        installer(tools / "python")("--require-hashes", "-r", PYTHON_LOCK)
         (folder / "complete").touch()
     return tools
 

@@ -154,7 +154,7 @@ def test_efforts_hold_the_pose(name) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rate", [10.0, 30.0, 50.0, 250.0])
+@pytest.mark.parametrize("rate", [10.0, 250.0])
 def test_the_rate_is_ones_choice(rate) -> None:
     legs = commands("stair", rate)["/joint_trajectory"]
     np.testing.assert_allclose(np.diff(times(legs)), 1 / rate, atol=2e-9)

@@ -43,6 +43,7 @@ def test_topics(topics) -> None:
         assert at == 0.0
 
 
+@pytest.mark.slow
 def test_late_subscribers_get_what_does_not_change(content, tmp_path) -> None:
     (tmp_path / "file.mcap").write_bytes(content)
     with AnyReader([tmp_path / "file.mcap"]) as reader:
@@ -97,6 +98,7 @@ def test_wheels_stand_on_the_terrain_that_is_shown(topics) -> None:
             assert min(gaps) == pytest.approx(radius, abs=0.005)
 
 
+@pytest.mark.slow
 def test_the_path_is_the_trunks(topics) -> None:
     ((_, path),), states = topics["/path"], topics["/tf"]
     assert path.header.frame_id == "world"
@@ -132,6 +134,7 @@ def test_a_plan_that_does_not_move_has_its_scene() -> None:
     assert set(messages(PLAN_FORMATS["mcap"].write(still))) == KEPT - {"/path"}
 
 
+@pytest.mark.slow
 def test_long_plans_are_shown_with_fewer_states(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(mcap_file, "MOST_STATES", 300)
     topics = messages(PLAN_FORMATS["mcap"].write(PLAN))

@@ -30,6 +30,7 @@ from stairwright.jobs.questions import (
     TrialsQuestion,
 )
 from stairwright.jobs.run import Run
+from stairwright.simulation import robust_margins
 from stairwright.simulation.rollout import rollout
 from stairwright.storage.artefacts import Artefacts
 from tests.conftest import Server
@@ -52,6 +53,20 @@ def dask_cluster() -> Iterator[LocalCluster]:
         ) as cluster,
     ):  # fmt: skip
         yield cluster
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def _in_process(port: int) -> LocalCluster:
+    """One worker that is a thread of this process."""
+    return LocalCluster(
+        n_workers=1, processes=False, threads_per_worker=1, host="127.0.0.1",
+        scheduler_port=port, dashboard_address=None, silence_logs=50,
+    )  # fmt: skip
 
 
 def tell(address: str, folder: Path, story: Callable[[DaskSimulators], Awaitable[None]]) -> None:
@@ -108,7 +123,10 @@ def test_documents_are_those_of_this_process(dask_cluster: LocalCluster, tmp_pat
     tell(dask_cluster.scheduler_address, tmp_path, story)
 
 
-def test_margins_are_found_there_too(dask_cluster: LocalCluster, tmp_path: Path) -> None:
+def test_margins_are_found_there_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With fewer values to try than there are, which workers of this process share."""
+    monkeypatch.setattr(robust_margins, "DELAYS", (0.004, 0.03))
+    monkeypatch.setattr(robust_margins, "FRICTIONS", (0.1,))
     plan = sw.plan(CURB)
     kept = Artefacts(tmp_path)
     digest = kept.put(plan.model_dump_json().encode())
@@ -120,7 +138,8 @@ def test_margins_are_found_there_too(dask_cluster: LocalCluster, tmp_path: Path)
         assert product.id == expected.id
         assert sw.RobustMargins.model_validate_json(kept.content(product.digest)) == expected
 
-    tell(dask_cluster.scheduler_address, tmp_path, story)
+    with _in_process(_free_port()) as cluster:
+        tell(cluster.scheduler_address, tmp_path, story)
 
 
 def test_who_cancels_stops_the_workers(dask_cluster: LocalCluster, tmp_path: Path) -> None:
@@ -206,15 +225,7 @@ async def _nothing(_: DaskSimulators) -> None:
 
 def test_a_scheduler_that_goes_away(tmp_path: Path) -> None:
     """Who was waiting may ask again; the next scheduler at the address is used."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-
-    def cluster() -> LocalCluster:
-        return LocalCluster(
-            n_workers=1, processes=False, threads_per_worker=1, host="127.0.0.1",
-            scheduler_port=port, dashboard_address=None, silence_logs=50,
-        )  # fmt: skip
+    port = _free_port()
 
     async def story(found: DaskSimulators) -> None:
         run = Run(TrialsQuestion(_ask(CURB), 0.6, {}, 5, count=500), "me")
@@ -225,12 +236,12 @@ def test_a_scheduler_that_goes_away(tmp_path: Path) -> None:
             await asyncio.to_thread(first.close)
             with pytest.raises(WorkerDied):
                 await work
-            with await asyncio.to_thread(cluster):
+            with await asyncio.to_thread(_in_process, port):
                 await found.ready()
                 product = await found.carry_out(Run(RolloutQuestion(_ask(CURB), 0.6, {}, 0), "me"))
         assert product.summary["outcome"] == "success"
 
-    first = cluster()
+    first = _in_process(port)
     tell(first.scheduler_address, tmp_path, story)
 
 

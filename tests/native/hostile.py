@@ -27,8 +27,8 @@ def terrains() -> dict[str, Points]:
         "one millimetre": [(0.0, 0.0), (1e-3, 0.0)],
         "shorter than the robot": [(0.0, 0.0), (0.3, 0.0)],
         "far away": [(95.0, 99.9), (97.0, 99.9), (97.0, 100.0), (100.0, 100.0)],
-        "cliff of 200 m": [(-2.0, 100.0), (0.0, 100.0), (0.0, -100.0), (2.0, -100.0)],
-        "wall of 200 m": [(-2.0, -100.0), (0.0, -100.0), (0.0, 100.0), (2.0, 100.0)],
+        "cliff of 200 m": [(-1.0, 100.0), (0.0, 100.0), (0.0, -100.0), (1.0, -100.0)],
+        "wall of 200 m": [(-1.0, -100.0), (0.0, -100.0), (0.0, 100.0), (1.0, 100.0)],
         "fine saw": saw(2000, 0.001, 0.001),
         "coarse saw": saw(60, 0.05, 0.04),
         "deep saw": saw(400, 0.01, -90.0),
@@ -36,7 +36,7 @@ def terrains() -> dict[str, Points]:
         "slit": [(-2, 0), (0, 0), (1e-8, -90.0), (2e-8, 0), (2, 0)],
         "least numbers": [(-1.5, 0), (0, 5e-324), (1e-300, -5e-324), (1.5, 1e-310)],
         "rubble": [(-1.5, 0.0), *zip(rubble, random.uniform(0, 0.03, 100), strict=True), (2.5, 0)],
-        "pit as wide as a wheel": [(-2, 0), (0, 0), (0, -1), (0.1, -1), (0.1, 0), (2, 0)],
+        "pit as wide as a wheel": [(-1, 0), (0, 0), (0, -1), (0.1, -1), (0.1, 0), (1, 0)],
     }
 
 
@@ -74,7 +74,7 @@ def robots() -> dict[str, dict[str, Any]]:
         "of 3 mm": _scaled(0.01),
         "of 400 m": _scaled(1000.0),
         "flat trunk": robot(trunk__size=(1e-6, 1e-6, 1e-6)),
-        "wheels larger than itself": robot(wheel__radius=0.3, nominal_height=0.62),
+        "wheels larger than itself": robot(wheel__radius=0.2, nominal_height=0.5),
         "tiny wheels": robot(wheel__radius=1e-9),
         "thick links": robot(thigh__radius=1000.0),
         "no joint range": robot(joints={"front": narrow, "rear": narrow}),

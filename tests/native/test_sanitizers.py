@@ -50,8 +50,12 @@ def without_python() -> Path:
 
 @pytest.fixture(scope="module")
 def sanitized(without_python: Path) -> Path:
-    """The same with the Python module, for which only the bindings are left to compile."""
-    return _build("-DSTAIRWRIGHT_PYTHON=ON", f"-DPython_EXECUTABLE={sys.executable}")
+    """The same with the Python module, whose bindings are those of the core that is installed."""
+    bindings = ROOT / ".dev" / "native"
+    if not (bindings / "libnanobind-static.a").is_file():
+        pytest.fail(f"no objects of the native core in {bindings}: run ./dev build")
+    options = (f"-DSTAIRWRIGHT_BINDINGS={bindings}", f"-DPython_EXECUTABLE={sys.executable}")
+    return _build("-DSTAIRWRIGHT_PYTHON=ON", *options)
 
 
 def _under_sanitizers(core: Path, part: str) -> subprocess.CompletedProcess[str]:

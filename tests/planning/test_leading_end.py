@@ -19,6 +19,7 @@ def backward() -> Plan:
     return sw.plan(DROP, timing="fast")
 
 
+@pytest.mark.slow
 def test_a1_wheeled_goes_down_with_its_rear_in_front(backward: Plan) -> None:
     ways: tuple[Facing, ...] = ("forward", "backward")
     forward, asked = (sw.plan(DROP, timing="fast", facing=way) for way in ways)

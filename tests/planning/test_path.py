@@ -113,7 +113,7 @@ def stairs(rise, run, count):
 def test_wet_stairs_are_climbed(robot):
     """Wheels come close to each other there, and lean on treads and risers at once."""
     for friction in (0.25, 0.35):
-        plan = sw.plan(stairs(0.18, 0.28, 5), robot, friction)
+        plan = sw.plan(stairs(0.18, 0.28, 3), robot, friction)
         assert plan.feasible
         assert sw.rollout(plan).outcome == "success"
 

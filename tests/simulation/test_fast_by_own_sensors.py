@@ -23,6 +23,7 @@ def test_wheels_that_hop_off_a_riser_do_not_stop_it(plan: sw.Plan) -> None:
     assert run.metrics.speed_stairs > 0.9 * ideal.metrics.speed_stairs
 
 
+@pytest.mark.slow
 def test_steps_that_are_off_do_not_stop_it_in_the_middle(plan: sw.Plan) -> None:
     """It finds treads 6 to 15 mm off and goes on, for a plan in motion cannot stand anywhere."""
     deviation = draw(BUNDLES["laboratory"], 1, 2)[0]

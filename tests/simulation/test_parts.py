@@ -31,6 +31,7 @@ from stairwright.terrain.wheel_path import wheel_path
 A1S = ("a1_wheeled", "a1_wheeled_x")
 
 FLAT = {"name": "short-flat", "points": [[-0.6, 0.0], [0.6, 0.0]], "friction": 0.6}
+SHORTEST = {"points": [[-0.35, 0.0], [0.35, 0.0]], "friction": 0.6}
 WEIGHT = 11.84 * 9.81
 
 
@@ -255,15 +256,14 @@ def test_trials_report() -> None:
     ids=["threads", "processes"],
 )
 def test_workers_change_nothing(solver: str) -> None:
-    plan = sw.plan(FLAT, "a1_wheeled", method="nominal")
-    settings = {"solver": solver, "speed": 0.3}
+    plan = sw.plan(SHORTEST, "a1_wheeled", method="nominal")
+    settings = {"solver": solver, "speed": 1.0}
     alone, shared = (trials(plan, 2, seed=1, workers=w, controller=settings) for w in (1, 2))
     assert alone.trials == shared.trials
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("form", ["contact", "paper"])
-@pytest.mark.parametrize("name", A1S)
+@pytest.mark.parametrize(("name", "form"), list(zip(A1S, ("contact", "paper"), strict=True)))
 def test_drive_tracks_speed_and_yaw_rate(name: str, form: str) -> None:
     robot = sw.load_robot(name)
 

@@ -51,6 +51,7 @@ def twice_as_large(name: str) -> sw.Robot:
     return sw.Robot.model_validate(data)
 
 
+@pytest.mark.slow
 def test_weak_motors_and_noise_on_long_legs_are_no_lack_of_grip() -> None:
     """The test before the start asks for 0.54, more than its calves can push."""
     curb = {"points": [(-2.5, 0.0), (0.0, 0.0), (0.0, 0.15), (4.0, 0.15)]}

@@ -138,6 +138,7 @@ def test_an_eighth_of_the_cells_is_enough(tmp_path: Path) -> None:
     assert is_complete(store)
 
 
+@pytest.mark.slow
 def test_an_outcome_that_changes_more_than_once_is_found_out(tmp_path: Path) -> None:
     """Resonance of tread and wheel: a band of heights that fails below the border."""
 

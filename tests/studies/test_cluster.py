@@ -125,7 +125,7 @@ def test_a_cluster_of_ones_own_with_keys(
     dask = [sys.executable, "-m", "dask"]
     port = address.rpartition(":")[2]
     listening = ["--protocol", "tls", "--host", "127.0.0.1", "--port", port, "--no-dashboard"]
-    working = [address, "--nthreads", "1", "--nworkers", "2", "--no-dashboard"]
+    working = [address, "--nthreads", "1", "--nworkers", "1", "--no-dashboard"]
     options: dict[str, Any] = {"env": os.environ | settings, "stderr": subprocess.DEVNULL}
     commands = ([*dask, "scheduler", *listening], [*dask, "worker", *working])
     programs = [subprocess.Popen(each, **options) for each in commands]

@@ -96,6 +96,7 @@ def test_results_of_before_there_was_a_variable_are_read(tmp_path: Path) -> None
     assert np.isnan(old.speed).all()
 
 
+@pytest.mark.slow
 def test_an_extended_axis_computes_only_new_cells(tmp_path: Path) -> None:
     path = tmp_path / "a.zarr"
     _asked(_heights(0.05, 0.1), path)
@@ -240,7 +241,7 @@ def test_a_killed_client_loses_at_most_a_batch(truth: ResultStore, tmp_path: Pat
     known, midway = 0, False
     for _ in range(20):
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-        if not _dies_at(process, path, known + random.randint(1, 40)):
+        if not _dies_at(process, path, known + random.randint(15, 45)):
             assert process.returncode == 0
             break
         done = _done(path)

@@ -16,7 +16,9 @@ from stairwright.robot.mujoco_model import build_spec
 Floats = NDArray[np.float64]
 
 
-@pytest.fixture(scope="module", params=["a1_wheeled_x", "go2w"])
+@pytest.fixture(
+    scope="module", params=["a1_wheeled_x", pytest.param("go2w", marks=pytest.mark.slow)]
+)
 def fast(request: pytest.FixtureRequest) -> Plan:
     return sw.plan("three-stairs-up", request.param, timing="fast")
 

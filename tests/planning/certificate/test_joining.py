@@ -56,7 +56,7 @@ def test_motion_that_would_fail_in_a_rollout_is_named(terrain, friction, robot, 
 def test_motion_without_objection_succeeds():
     """Random stairs up and down; most have no objection, and of these every rollout succeeds."""
     rng, driven = np.random.default_rng(3), 0
-    for k in range(24):
+    for k in range(12):
         count = int(rng.integers(1, 5))
         height = rng.uniform(0.08, 0.38 if count == 1 else 0.2)
         terrain = stair(height, rng.uniform(0.25, 0.4), count, direction=("up", "down")[k % 2])
@@ -67,4 +67,4 @@ def test_motion_without_objection_succeeds():
             run = sw.rollout(plan)
             assert run.outcome == "success", (terrain.name, robot, friction, run.reason)
             driven += 1
-    assert driven >= 12
+    assert driven >= 6

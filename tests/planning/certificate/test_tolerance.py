@@ -128,6 +128,7 @@ def worse(plan: Plan, **change: Any) -> set[str]:
     return {c.name for c in certificate.checks if not c.passed} & set(NAMES.values())
 
 
+@pytest.mark.slow
 def test_the_certificate_of_a_plan_is_that_of_its_document(plan: Plan) -> None:
     certificate = sw.certify(plan)
     assert certificate.passed
@@ -141,6 +142,7 @@ def test_more_than_was_planned_for_is_refused(plan: Plan) -> None:
     assert NAMES["com"] in worse(plan, tolerance=Tolerance(friction=0.45))
 
 
+@pytest.mark.slow
 def test_a_pose_that_uses_up_the_room_is_refused(plan: Plan) -> None:
     # Where legs have least to spare the trunk is raised: drawn ground it stands, other ground not.
     robot, poses = plan.robot_description, list(plan.poses)
