@@ -55,8 +55,11 @@ std::vector<double> contact_marks(const WheelPath& path) {
 
 }  // namespace
 
-std::vector<std::array<double, 2>> early_faces(const WheelPath& path, std::span<const Node> nodes) {
+std::vector<std::array<double, 2>> early_faces(const WheelPath& path, std::span<const Node> nodes, std::span<const NodeIntervals> intervals,
+                                               double confined) {
     std::vector<std::array<double, 2>> out;
+    for (const NodeIntervals& of : intervals)
+        if (of.full.upper - of.full.lower < confined) return std::vector<std::array<double, 2>>(nodes.size());
     for (const Node& node : nodes) {
         std::array<double, 2> nearer{};
         for (const int pair : {kFront, kRear}) {

@@ -18,7 +18,7 @@ constexpr double kTrunkClearance = 0.06;   // m of trunk clearance beyond which 
 // Of the cost terms at a user's weight of 1, per node.
 constexpr double kComWeight = 15.0;     // 1/m
 constexpr double kRoomWeight = 2.0;     // 1/m, of trunk and links
-constexpr double kEarlyWeight = 45.0;   // 1/m, of clearance where faces come early; nobody weighs that
+constexpr double kEarlyWeight = 30.0;   // 1/m, of clearance where faces come early; nobody weighs that
 constexpr double kTorqueWeight = 0.3;
 constexpr double kPitchWeight = 0.05;   // 1/rad
 constexpr double kRateWeight = 20.0;    // 1/m^2, of the squared step from node to node
@@ -86,7 +86,7 @@ PathCost path_cost(const RefineProblem& problem, std::span<const Node> path) {
     const auto [wheels, contacts, slopes, bodies] = geometry_along(problem.path, nodes);
     const double share = u.back() / static_cast<double>(count - 1) / kUsualSpacing;
     const Objective o = objective(problem, spacing, share);
-    const std::vector<std::array<double, 2>> early = early_faces(problem.path, nodes);
+    const std::vector<std::array<double, 2>> early = early_faces(problem.path, nodes, intervals, kConfined * problem.robot.scale());
     const SmoothingProblem at{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, {}, early, {}, o};
     std::vector<Residuals> rows;
     PathCost out;

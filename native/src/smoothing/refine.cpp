@@ -105,7 +105,7 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
     std::vector<std::vector<WheelLoads>> loads;
     if (problem.torques)
         loads = loads_along(problem.path, nodes, changes, problem.friction, problem.lag, problem.robot.mass * kGravity);
-    const std::vector<std::array<double, 2>> early = early_faces(problem.path, nodes);
+    const std::vector<std::array<double, 2>> early = early_faces(problem.path, nodes, intervals, kConfined * size);
     const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, loads, early, fixed,
                                      objective(problem, spacing, hop / kUsualSpacing)};
     smooth(smoothing, bodies, kIterations);
