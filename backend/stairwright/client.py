@@ -9,17 +9,12 @@ A service that is busy (429, 503) says when to come back; the client does so by 
 
 from __future__ import annotations
 
-import secrets
-import time
-from collections.abc import Callable, Mapping
-from functools import partial
+from collections.abc import Mapping
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
-import httpx
-
-from stairwright.answers import JobState, ServiceError, ask
+from stairwright.answers import JobState, ServiceError
+from stairwright.connection import Connection, Progress, quoted
 from stairwright.documents import Model, parse
 from stairwright.planning.plan import FacingChoice, Method, Plan, PlanTiming
 from stairwright.robot.description import Robot
@@ -32,43 +27,12 @@ if TYPE_CHECKING:
     from stairwright.simulation.trials_result import Trials
 
 M = TypeVar("M", bound=Model)
-Progress = Callable[[float], object]
-PREFIX = "/api/v1"
 
 __all__ = ["Client", "JobState", "ServiceError"]
 
 
-class Client:
-    """Talks to one service. Methods raise `ServiceError` for an answer that says no.
-
-    Args:
-        url: Of the service, without a path.
-        token: Where it asks for one.
-        timeout: Of one request [s].
-        patience: How long a request is repeated that finds the service busy [s]; 0 for not at all.
-    """
-
-    def __init__(
-        self, url: str, token: str | None = None, timeout: float = 120.0, patience: float = 60.0
-    ) -> None:
-        headers = {"authorization": f"Bearer {token}"} if token else {}
-        self._http = httpx.Client(base_url=url, headers=headers, timeout=timeout)
-        self._patience = patience
-
-    def __enter__(self) -> Client:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Close the connections."""
-        self._http.close()
+class Client(Connection):
+    """One service, and its documents; methods raise `ServiceError` for an answer that says no."""
 
     # ------------------------------------------------------------------ terrains and robots
 
@@ -78,16 +42,16 @@ class Client:
 
     def robot(self, name: str) -> Robot:
         """One robot."""
-        return _saved(Robot, self._json("GET", f"/robots/{_quoted(name)}"))
+        return _saved(Robot, self._json("GET", f"/robots/{quoted(name)}"))
 
     def save_robot(self, robot: Robot) -> Robot:
         """Save a robot under its name."""
         body = robot.model_dump(mode="json")
-        return _saved(Robot, self._json("PUT", f"/robots/{_quoted(robot.name)}", json=body))
+        return _saved(Robot, self._json("PUT", f"/robots/{quoted(robot.name)}", json=body))
 
     def delete_robot(self, name: str) -> None:
         """Remove a saved robot."""
-        self._send("DELETE", f"/robots/{_quoted(name)}")
+        self._send("DELETE", f"/robots/{quoted(name)}")
 
     def import_robot(self, path: str | Path, **fields: Any) -> Imported:
         """The robot in a URDF or MJCF file, or in a zip of one with its meshes."""
@@ -105,16 +69,16 @@ class Client:
 
     def terrain(self, name: str) -> Terrain:
         """One terrain."""
-        return _saved(Terrain, self._json("GET", f"/terrains/{_quoted(name)}"))
+        return _saved(Terrain, self._json("GET", f"/terrains/{quoted(name)}"))
 
     def save_terrain(self, terrain: Terrain) -> Terrain:
         """Save a terrain under its name."""
         body = terrain.model_dump(mode="json")
-        return _saved(Terrain, self._json("PUT", f"/terrains/{_quoted(terrain.name)}", json=body))
+        return _saved(Terrain, self._json("PUT", f"/terrains/{quoted(terrain.name)}", json=body))
 
     def delete_terrain(self, name: str) -> None:
         """Remove a saved terrain."""
-        self._send("DELETE", f"/terrains/{_quoted(name)}")
+        self._send("DELETE", f"/terrains/{quoted(name)}")
 
     def generate_terrain(self, kind: Literal["stair", "ramp", "flat"], **measures: Any) -> Terrain:
         """A terrain from a few measures."""
@@ -155,7 +119,7 @@ class Client:
 
     def get_plan(self, plan_id: str) -> Plan:
         """A stored plan."""
-        return parse(Plan, self._json("GET", f"/plans/{_quoted(plan_id)}"))
+        return parse(Plan, self._json("GET", f"/plans/{quoted(plan_id)}"))
 
     def export_plan(self, plan_id: str, file_format: str, rate: float | None = None) -> bytes:
         """A stored plan as a file; `rate` is that of the joint commands in mcap [Hz]."""
@@ -248,46 +212,6 @@ class Client:
         job = self.wait(self._start("/margins", body).id, progress=progress, timeout=timeout)
         return parse(RobustMargins, self._json("GET", f"/margins/{_result_of(job)}"))
 
-    def _start(self, path: str, body: Mapping[str, Any]) -> JobState:
-        headers = {"idempotency-key": secrets.token_hex(16)}
-        for attempt in (1, 2, 3):
-            try:
-                return JobState.told(self._json("POST", path, json=body, headers=headers))
-            except httpx.TransportError:
-                if attempt == 3:
-                    raise
-                time.sleep(0.2 * attempt)
-        raise AssertionError("unreachable")
-
-    def job(self, job_id: str) -> JobState:
-        """A job's state."""
-        return JobState.told(self._json("GET", f"/jobs/{_quoted(job_id)}"))
-
-    def cancel(self, job_id: str) -> JobState:
-        """Cancel a job."""
-        return JobState.told(self._json("DELETE", f"/jobs/{_quoted(job_id)}"))
-
-    def wait(
-        self, job_id: str, *, progress: Progress | None = None, timeout: float = 900.0
-    ) -> JobState:
-        """Follow a job to its end.
-
-        Raises:
-            TimeoutError: After `timeout` [s]; the job is cancelled then.
-        """
-        give_up, pause = time.monotonic() + timeout, 0.02
-        while True:
-            job = self.job(job_id)
-            if progress is not None:
-                progress(job.progress)
-            if job.finished:
-                return job
-            if time.monotonic() > give_up:
-                self.cancel(job_id)
-                raise TimeoutError(f"the job took longer than {timeout:g} s")
-            time.sleep(pause)
-            pause = min(1.0, 1.3 * pause)
-
     def result(self, job: JobState) -> Rollout:
         """What a job that is done led to.
 
@@ -300,33 +224,11 @@ class Client:
         """A stored rollout."""
         from stairwright.simulation.result import Rollout
 
-        return parse(Rollout, self._json("GET", f"/rollouts/{_quoted(rollout_id)}"))
+        return parse(Rollout, self._json("GET", f"/rollouts/{quoted(rollout_id)}"))
 
     def export_rollout(self, rollout_id: str, file_format: str) -> bytes:
         """A stored rollout as a file."""
         return self._export("rollouts", rollout_id, file_format)
-
-    # ------------------------------------------------------------------
-
-    def _export(self, kind: str, name: str, file_format: str, rate: float | None = None) -> bytes:
-        path = f"/{kind}/{_quoted(name)}/export"
-        params = {"format": file_format} | ({} if rate is None else {"rate": str(rate)})
-        return self._send("GET", path, params=params).content
-
-    def _json(self, method: str, path: str, **options: Any) -> Any:
-        return self._send(method, path, **options).json()
-
-    def _send(self, method: str, path: str, **options: Any) -> httpx.Response:
-        # Repeating is harmless: a plan is the same plan, a rollout has its idempotency key.
-        request = partial(self._http.request, method, PREFIX + path, **options)
-        response = ask(request, self._patience)
-        if response.is_error:
-            try:
-                problem = response.json()
-            except ValueError:
-                problem = {"detail": response.text[:200], "status": response.status_code}
-            raise ServiceError(problem)
-        return response
 
 
 def _question(
@@ -357,9 +259,3 @@ def _plain(source: str | Model | Mapping[str, Any]) -> Any:
 def _saved(model: type[M], data: Mapping[str, Any]) -> M:
     """A document without what GET adds to it."""
     return parse(model, {k: value for k, value in data.items() if k not in ("readonly", "version")})
-
-
-def _quoted(name: str) -> str:
-    from urllib.parse import quote
-
-    return quote(name, safe="")

@@ -11,8 +11,6 @@ namespace {
 
 constexpr double kMiss = 0.0006;  // m; largest distance of an interpolated wheel from its curve
 constexpr int kPasses = 10;
-constexpr double kEarlyFace = 0.06;  // m before its place that a face may come
-constexpr double kLevel = 0.99, kSteep = 0.7;  // cosine of a tread's slope at least, sine of a face's
 
 // The node at a fractional node number.
 Node interpolate(std::span<const Node> nodes, double at) {
@@ -54,24 +52,6 @@ std::vector<double> contact_marks(const WheelPath& path) {
 }
 
 }  // namespace
-
-std::vector<std::array<double, 2>> early_faces(const WheelPath& path, std::span<const Node> nodes, std::span<const NodeIntervals> intervals,
-                                               double confined) {
-    std::vector<std::array<double, 2>> out;
-    for (const NodeIntervals& of : intervals)
-        if (of.full.upper - of.full.lower < confined) return std::vector<std::array<double, 2>>(nodes.size());
-    for (const Node& node : nodes) {
-        std::array<double, 2> nearer{};
-        for (const int pair : {kFront, kRear}) {
-            const double s = node.s[pair];
-            const std::size_t k = path.corner_from(s);
-            if (k == path.corners().size() || path.normal(s).z < kLevel || path.normal(path.corners()[k] + kBeside).x > -kSteep) continue;
-            nearer[pair] = std::min(path.centre(path.corners()[k]).x - path.centre(s).x, kEarlyFace);
-        }
-        out.push_back(nearer);
-    }
-    return out;
-}
 
 NodeGeometry geometry_along(const WheelPath& path, std::span<const Node> nodes) {
     NodeGeometry out;

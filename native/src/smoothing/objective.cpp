@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "early_faces.hpp"
 #include "residuals.hpp"
 #include "stairwright/smoothing/densify.hpp"
 #include "stairwright/smoothing/resample.hpp"
@@ -86,7 +87,7 @@ PathCost path_cost(const RefineProblem& problem, std::span<const Node> path) {
     const auto [wheels, contacts, slopes, bodies] = geometry_along(problem.path, nodes);
     const double share = u.back() / static_cast<double>(count - 1) / kUsualSpacing;
     const Objective o = objective(problem, spacing, share);
-    const std::vector<std::array<double, 2>> early = early_faces(problem.path, nodes, intervals, kConfined * problem.robot.scale());
+    const std::vector<std::array<double, 2>> early = early_faces(problem, nodes, intervals);
     const SmoothingProblem at{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, {}, early, {}, o};
     std::vector<Residuals> rows;
     PathCost out;

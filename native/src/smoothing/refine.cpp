@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "early_faces.hpp"
 #include "stairwright/smoothing/densify.hpp"
 #include "stairwright/smoothing/objective.hpp"
 #include "stairwright/smoothing/resample.hpp"
@@ -105,7 +106,7 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
     std::vector<std::vector<WheelLoads>> loads;
     if (problem.torques)
         loads = loads_along(problem.path, nodes, changes, problem.friction, problem.lag, problem.robot.mass * kGravity);
-    const std::vector<std::array<double, 2>> early = early_faces(problem.path, nodes, intervals, kConfined * size);
+    const std::vector<std::array<double, 2>> early = early_faces(problem, nodes, intervals);
     const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, loads, early, fixed,
                                      objective(problem, spacing, hop / kUsualSpacing)};
     smooth(smoothing, bodies, kIterations);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "early_faces.hpp"
+
 namespace stairwright::smoothing {
 
 namespace {
@@ -74,19 +76,6 @@ void torque_limit_residuals(const SmoothingProblem& problem, std::size_t node, c
 QueryRadii query_radii(const Objective& o) {
     return {std::max(o.trunk.target, o.trunk_room.target), std::max(o.links.target, o.links_room.target),
             std::max(o.legs.target, o.legs.least)};
-}
-
-double early_clearance(const SmoothingProblem& problem, std::size_t node, const Body& body, const Posture& posture) {
-    double least = problem.objective.early.target;
-    for (const int pair : {kFront, kRear}) {
-        const Vec2 nearer = {problem.early[node][pair], 0.0};
-        if (nearer.x == 0.0) continue;
-        const auto& [hip, knee, wheel] = posture.legs[pair];
-        const LegPoints leg = {hip + nearer, knee + nearer, wheel + nearer};
-        least = std::min(least, leg_clearance(problem.terrain, problem.robot.legs[pair].leg, leg, least));
-        least = std::min(least, trunk_clearance(problem.terrain, problem.robot, {body.x + nearer.x, body.z, body.pitch}, least));
-    }
-    return least;
 }
 
 Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry, double early) {

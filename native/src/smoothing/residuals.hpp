@@ -19,9 +19,7 @@ using NodeJacobian = std::array<Residuals, 3>;  // by x, z, pitch
 
 QueryRadii query_radii(const Objective& objective);  // nothing farther away pulls [m]
 
-// Least clearance of trunk and leg if the next face of their wheels is nearer than drawn; no more than is wanted [m].
-double early_clearance(const SmoothingProblem& problem, std::size_t node, const Body& body, const Posture& posture);
-// `early` is that clearance.
+// `early` is the node's early_clearance.
 Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry, double early);
 NodeJacobian differentiate(const SmoothingProblem& problem, std::size_t node, const Body& body,
                            const PoseGeometry& geometry, const Residuals& at);

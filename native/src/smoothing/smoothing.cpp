@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "early_faces.hpp"
 #include "residuals.hpp"
 
 namespace stairwright::smoothing {

@@ -15,10 +15,6 @@ struct NodeGeometry {
     std::vector<double> slopes;  // of the lines from the rear to the front wheels [rad]
     std::vector<Body> bodies;
 };
-// By node and pair: how much nearer than drawn the next face may be, which the wheels have not met yet [m]. None where the
-// CoM is confined to less than `confined` somewhere [m]: its place is what matters there.
-std::vector<std::array<double, 2>> early_faces(const WheelPath& path, std::span<const Node> nodes, std::span<const NodeIntervals> intervals,
-                                               double confined);
 
 NodeGeometry geometry_along(const WheelPath& path, std::span<const Node> nodes);
 

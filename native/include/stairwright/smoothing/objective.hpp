@@ -41,7 +41,6 @@ struct NodeSpacing {
 // `share` is the nodes' spacing over kUsualSpacing: weights of a sum over nodes scale with it.
 Objective objective(const RefineProblem& problem, const NodeSpacing& spacing, double share);
 
-inline constexpr double kConfined = 0.02;      // m, of the CoM of a robot with legs of 0.4 m
 inline constexpr double kUsualSpacing = 0.015;  // m; of nodes that the weights were chosen with
 
 // The quantity that each weight makes small: root mean squares along the path.

@@ -50,7 +50,7 @@ struct SmoothingProblem {
     std::span<const double> slopes;          // of the lines from the rear to the front wheels [rad]
     std::span<const NodeIntervals> intervals;
     std::span<const std::vector<WheelLoads>> loads;  // by node, see loads_along, where motors are weak; else empty
-    std::span<const std::array<double, 2>> early;  // by node, see early_faces [m]
+    std::span<const std::array<double, 2>> early;     // by node, see early_faces [m]
     std::vector<bool> fixed;  // nodes that must not move
     Objective objective;
 };
