@@ -3,7 +3,7 @@
 Form ``contact`` (default): forces act at the contact points, each in its own wheel's frame; the QP
 is pulled to the plan's static forces; the wheel motors get the QP's tangential force fed forward
 plus feedback on the absolute wheel rate; the legs' own weight and inertia are carried by
-feed-forward.
+feed-forward; forces keep within what the motors can give.
 
 Form ``paper``: forces act at the wheel centres, the traction comes from the rolling control alone
 and enters the QP as a known wrench (eq 10); the body is the trunk's point with the whole mass; a
@@ -13,6 +13,7 @@ wheel's frame is that of the terrain under it.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from . import balance, qp, rigid_body, rolling, tracking
 from .contact import locate, support, wheel_traction
 from .inertial_loads import inertial_loads
 from .measurement import Measurement, measure
+from .motor_limits import MotorTorques, solve_within_motors
 from .setpoint import PITCH, Setpoint
 from .settings import ControllerSettings
 
@@ -91,10 +93,11 @@ class Controller:
         """Joint torques (12,) [Nm] before the motors' limits."""
         state = measure(self.robot, qpos, qvel)
         self.locate(state)
-        form = self._paper if self.settings.form == "paper" else self._contact
-        return form(state, target)
+        if self.settings.form == "paper":
+            return self._paper(state, target)
+        return self._contact(state, target, qvel[6:])
 
-    def _contact(self, state: Measurement, target: Setpoint) -> Floats:
+    def _contact(self, state: Measurement, target: Setpoint, joint_rates: Floats) -> Floats:
         robot, settings, radius = self.robot, self.settings, self.path.radius
         planned = target.wheel_progress[LEG_PAIR]
         usable = max(settings.friction_share, target.friction_share) * self.friction
@@ -122,17 +125,24 @@ class Controller:
         )
         resting = np.einsum("nji,nj->ni", frames, (target.forces / 2)[LEG_PAIR]).ravel()
         uneven = balance.roll_forces(robot, settings, state, target)
-        self._solve(A, desired, resting, friction, balance.EVEN, uneven)
+        moving = moving[LEG_PAIR]
+        rest = np.column_stack(
+            [balance.leg_weight_torques(robot, state) + moving[:, :2], moving[:, 2]]
+        )
+        motors = MotorTorques.of(state, frames, points, held[:, 3], rest)
+        H, g = balance.force_cost(settings, A, desired, resting, self.forces, balance.EVEN, uneven)
+        self.forces = solve_within_motors(
+            partial(self._solved, friction=friction), H, g, motors, robot, joint_rates,
+            settings.force_weight,
+        )  # fmt: skip
         forces = np.einsum("nij,nj->ni", frames, self.forces.reshape(4, 2))
-        torques = balance.force_torques(state, points, forces)
-        torques += balance.leg_weight_torques(robot, state) + moving[LEG_PAIR, :2]
         speeds = target.wheel_speed[LEG_PAIR] + settings.wheel_sync * (planned - self.places)
         rates = rolling.wheel_rates(speeds, radius) + self._yaw(state, target)
         driven = np.array([wheel_traction(row, *f) for row, f in zip(held, forces, strict=True)])
         wheel = radius * driven + rolling.wheel_torques(
             self.gains.wheel_damping, rates, state.rolling_rates
         )
-        return self._joined(state, target, torques, wheel + moving[LEG_PAIR, 2])
+        return self._joined(state, target, motors.at(self.forces)[:, :2], wheel + moving[:, 2])
 
     def _paper(self, state: Measurement, target: Setpoint) -> Floats:
         robot, radius = self.robot, self.path.radius
@@ -155,22 +165,16 @@ class Controller:
             state.inertia * float(target.accelerations[PITCH]),
         )
         usable = np.full(4, self.settings.friction_share * self.friction)
-        self._solve(
-            to_centres, desired - to_contacts @ driven, np.zeros(8), usable, 0.0, np.zeros(2)
-        )
+        desired -= to_contacts @ driven
+        H, g = balance.force_cost(self.settings, to_centres, desired, np.zeros(8), self.forces)
+        self.forces = self._solved(H, g, usable)
         forces = np.einsum("nij,nj->ni", frames, self.forces.reshape(4, 2))
         torques = balance.force_torques(state, state.wheels, forces)
         return self._joined(state, target, torques, wheel)
 
-    def _solve(
-        self, force_map: Floats, desired: Floats, resting: Floats, friction: Floats, even: float,
-        uneven: Floats,
-    ) -> None:  # fmt: skip
-        H, g = balance.force_cost(
-            self.settings, force_map, desired, resting, self.forces, even, uneven
-        )
+    def _solved(self, H: Floats, g: Floats, friction: Floats) -> Floats:
         C, d = balance.force_limits(self.gains.force_limit, friction)
-        self.forces = qp.solve(self.settings.solver, H, g, C, d, self.forces)
+        return qp.solve(self.settings.solver, H, g, C, d, self.forces)
 
     def _yaw(self, state: Measurement, target: Setpoint) -> Floats:
         settings = self.settings

@@ -19,6 +19,7 @@ from stairwright.planning.standing import NoStandingPose
 from stairwright.planning.strategy import solve
 from stairwright.planning.threads import search_threads
 from stairwright.planning.timing.fast import hastened
+from stairwright.planning.timing.steady import slowed_where_strained
 from stairwright.planning.tolerance import Tolerance
 from stairwright.planning.tolerant import Fallen, tolerance_problem, within_tolerance
 from stairwright.planning.weights import PathWeights
@@ -83,7 +84,7 @@ def plan_path(
         plan = document(robot, poses=planner.poses(found.nodes))
         plan = plan.model_copy(update={"certificate": found.certificate})
         if timing == "steady":
-            return plan
+            return slowed_where_strained(plan, found.nodes.margins.torque_shares("leg"))
         moving = hastened(plan, weights.aggressiveness)
         return moving.model_copy(update={"certificate": with_dynamics(found.certificate, moving)})
     # They plan again, so they import us.

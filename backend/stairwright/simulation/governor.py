@@ -35,10 +35,10 @@ from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
 from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.poses.pose_reference import Reference
-from stairwright.planning.smoothing.path_timing import retimed
 from stairwright.planning.timing.limits import WHEEL_SPEED_SHARE
 from stairwright.planning.timing.moving_robot import REACH
 from stairwright.planning.timing.path_position import even_grid, path_positions, slopes
+from stairwright.planning.timing.steady import retimed
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
 

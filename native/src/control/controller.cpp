@@ -6,6 +6,7 @@
 
 #include "inertial_loads.hpp"
 #include "measurement.hpp"
+#include "motor_limits.hpp"
 #include "stairwright/control/static_forces.hpp"
 
 #include "stairwright/whole.hpp"
@@ -95,19 +96,6 @@ BalanceQp balance_qp(const Gains& gains, const std::array<Wrench, 8>& A, const W
     return qp;
 }
 
-struct LegTorques {
-    double thigh, calf;
-};
-
-// Torques that put `force` on the body at `point` (J' F of eq 13) and carry the leg's own weight.
-LegTorques force_torques(const Leg& leg, const MeasuredLeg& at, Vec2 point, Vec2 force) {
-    const auto moment = [&](Vec2 joint) { return (point.x - joint.x) * force.z - (point.z - joint.z) * force.x; };
-    const double below_hip = leg.thigh.mass * (at.thigh_com.x - at.hip.x) + leg.calf.mass * (at.calf_com.x - at.hip.x) +
-                             leg.wheel.mass * (at.wheel.x - at.hip.x);
-    const double below_knee = leg.calf.mass * (at.calf_com.x - at.knee.x) + leg.wheel.mass * (at.wheel.x - at.knee.x);
-    return {moment(at.hip) - kGravity * below_hip, moment(at.knee) - kGravity * below_knee};
-}
-
 }  // namespace
 
 Controller::Controller(Robot robot, WheelPath path, double friction, const Gains& gains)
@@ -144,7 +132,14 @@ Command Controller::command(const RobotState& state, const Reference& target, do
     const InertialLoads inertial = inertial_loads(robot_, target);
     const Wrench wanted = desired_wrench(g, mass_, m, target, inertial.moment, pitch_integral_);
     const double uneven = uneven_share(g, mass_, robot_, m, target, path_.radius());
-    solve(balance_qp(g, force_map(m, supports), wanted, supports, target, forces_, uneven), forces_);
+    std::array<LegMotors, 4> motors;
+    for (int i = 0; i < 4; ++i) {
+        motors[i] = leg_torques(robot_.legs[i / 2], m.legs[i], supports[i]);
+        const LegLoads& moving = inertial.legs[i / 2];
+        motors[i].thigh.rest += moving.thigh, motors[i].calf.rest += moving.calf, motors[i].wheel.rest += moving.wheel;
+    }
+    const BalanceQp qp = balance_qp(g, force_map(m, supports), wanted, supports, target, forces_, uneven);
+    solve_within_motors(qp, motors, robot_, state.joint_rates, g.force_weight, forces_);
 
     // Torques: forces, weight and inertia, tracking (eq 27), rolling (eqs 14-16) with the traction fed forward.
     const double turn = yaw_rate - g.heading_stiffness * m.heading;
@@ -155,11 +150,7 @@ Command Controller::command(const RobotState& state, const Reference& target, do
         const Leg& leg = robot_.legs[pair];
         const WheelSupport& s = supports[i];
         const double t = forces_[2 * i], n = forces_[2 * i + 1];
-        const Vec2 force = {t * s.normal.z + n * s.normal.x, n * s.normal.z - t * s.normal.x};
-        const Vec2 point = m.legs[i].wheel - s.reach * s.normal;
-        const LegTorques carrying = force_torques(leg, m.legs[i], point, force);
-        const LegLoads& moving = inertial.legs[pair];
-        out.torques[j] = carrying.thigh + moving.thigh, out.torques[j + 1] = carrying.calf + moving.calf;
+        out.torques[j] = motors[i].thigh.at(t, n), out.torques[j + 1] = motors[i].calf.at(t, n);
         for (int k = 0; k < 2; ++k) {
             out.joints[j + k] = target.value.joints[2 * pair + k], out.rates[j + k] = target.rate.joints[2 * pair + k];
             out.stiffness[j + k] = g.joint_stiffness, out.damping[j + k] = g.joint_damping;
@@ -167,7 +158,8 @@ Command Controller::command(const RobotState& state, const Reference& target, do
         const double speed = target.rate.wheels[pair] + g.wheel_sync * (target.value.wheels[pair] - places_[i]);
         const double rate = speed / leg.wheel.radius + (i % 2 == 0 ? -difference : difference);
         // A wheel turns against its calf.
-        out.torques[j + 2] = leg.wheel.radius * s.traction(force) + moving.wheel, out.damping[j + 2] = g.wheel_damping;
+        out.torques[j + 2] = leg.wheel.radius * s.traction(t * s.tangent() + n * s.normal) + motors[i].wheel.rest;
+        out.damping[j + 2] = g.wheel_damping;
         out.rates[j + 2] = rate - state.joint_rates[j] - state.joint_rates[j + 1] - m.pitch_rate;
     }
     return out;

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stairwright._core import GRAVITY
-from stairwright.arrays import Flags, Floats
+from stairwright.arrays import Flags, Floats, Ints
 from stairwright.planning.certificate.equilibrium import TOUCH, WHEEL_GAP, touching
 from stairwright.planning.plan import Check, Plan
 from stairwright.robot import kinematics as kin
@@ -71,12 +71,19 @@ class Dynamics:
         ]  # fmt: skip
 
 
-def dynamics_of(plan: Plan, time: Floats | None = None) -> Dynamics:
-    """Dynamics along the poses of a plan at its times, or at others (n,) [s]; they must rise."""
+def dynamics_of(plan: Plan, time: Floats | None = None, at: Ints | None = None) -> Dynamics:
+    """Dynamics along the poses of a plan.
+
+    Args:
+        plan: Of method ``path``.
+        time: (n,) of its poses, rising [s]; those of the plan if not given.
+        at: Numbers of the poses that are looked at; all if not given.
+    """
     progress, planned = np.array([(pose.progress, pose.time) for pose in plan.poses]).T
     time = planned if time is None else time
-    share, missed = _forces(plan, _Motion.of(plan, time))
-    return Dynamics(progress, time, share, missed)
+    at = np.arange(len(time)) if at is None else at
+    share, missed = _forces(plan, _Motion.of(plan, time).part(at))
+    return Dynamics(progress[at], time[at], share, missed)
 
 
 @dataclass(frozen=True)
@@ -184,6 +191,12 @@ class _Motion:
         columns = (np.column_stack(each) for each in (torques, lowest, highest))
         return cls(frames, com, loads, *columns)
 
+    def part(self, at: Ints) -> _Motion:
+        """At some of the poses."""
+        frames = kin.Frames(self.frames.hips[at], self.frames.knees[at], self.frames.wheels[at])
+        columns = (self.com, self.loads, self.torques, self.lowest, self.highest)
+        return _Motion(frames, *(column[at] for column in columns))
+
 
 def _forces(plan: Plan, motion: _Motion) -> tuple[Floats, Floats]:
     """Least share of the motors (n,), and by how much the wrench is missed (n,) in weights."""
@@ -192,7 +205,7 @@ def _forces(plan: Plan, motion: _Motion) -> tuple[Floats, Floats]:
     from scipy.sparse import block_diag
 
     robot = plan.robot_description
-    n, weight = len(plan.poses), robot.mass * GRAVITY
+    n, weight = len(motion.com), robot.mass * GRAVITY
     centres = motion.frames.wheels.reshape(-1, 2)
     radius = robot.wheel.radius
     points, normals, found = touching(

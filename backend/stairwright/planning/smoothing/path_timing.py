@@ -10,7 +10,6 @@ from stairwright.planning.plan import Plan
 from stairwright.planning.wheel_samples import rolled
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
-from stairwright.terrain.wheel_path import wheel_path
 
 JOINT_RATE = 1.5  # rad/s; faster legs swing more than a controller can follow
 _PITCH_RATE = 0.8  # rad/s
@@ -86,23 +85,6 @@ def standing_effort(plan: Plan) -> Floats:
     return effort
 
 
-def retimed(plan: Plan, speed: float) -> Plan:
-    """A path plan's poses at the times that it would have with another wished `speed` [m/s]."""
-    s = np.array([pose.wheel_progress for pose in plan.poses])
-    body = np.array([(pose.x_c, pose.z_c, pose.pitch) for pose in plan.poses])
-    q = np.array([pose.q for pose in plan.poses])
-    com_x = np.array([pose.com[0] for pose in plan.poses])
-    path = wheel_path(plan.terrain, plan.robot_description.wheel.radius)
-    margin = _core.firm_com_margins(path.native, s, com_x, plan.friction)
-    robot = plan.robot_description
-    times = pose_times(robot, s, body, q, margin, standing_effort(plan), speed).tolist()
-    poses = [
-        pose.model_copy(update={"time": time}) for pose, time in zip(plan.poses, times, strict=True)
-    ]
-    timing = plan.timing.model_copy(update={"total": times[-1]})
-    return plan.model_copy(update={"poses": poses, "timing": timing})
-
-
 def _calmed(robot: Robot, times: Floats, body: Floats, q: Floats, margin: Floats) -> Floats:
     """Times (n,) [s] stretched where accelerations of the CoM would eat up its margin.
 
@@ -115,27 +97,42 @@ def _calmed(robot: Robot, times: Floats, body: Floats, q: Floats, margin: Floats
     com = kinematics.com(robot, x, z, pitch, frames)
     height = com[:, 1] - frames.wheels[..., 1].min(axis=1) + robot.wheel.radius
     allowed = np.maximum(_SWAY * margin, _LEAST_SWAY)
-    reach = int(4 * _WINDOW / _TICK)
-    window = np.exp(-0.5 * (np.arange(-reach, reach + 1) * _TICK / _WINDOW) ** 2)
+    reach, window = _window()
     for _ in range(_ROUNDS):
-        even = np.arange(0.0, times[-1] + _TICK, _TICK)
+        even = even_times(times)
         if len(even) < 2 * reach + 3:
             break
         x = np.interp(even, times, com[:, 0])
         padded = np.pad(x, reach, mode="edge")
-        smooth = np.convolve(padded, window / window.sum(), "valid")
+        smooth = np.convolve(padded, window, "valid")
         sway = np.abs(np.gradient(np.gradient(smooth, _TICK), _TICK))
         sway *= np.interp(even, times, height) / _core.GRAVITY
         excess = sway / np.interp(even, times, allowed)
         if excess.max() < 1.05:
             break
-        factor = np.sqrt(np.maximum(excess, 1.0))
-        around = np.lib.stride_tricks.sliding_window_view(
-            np.pad(factor, reach, mode="edge"), 2 * reach + 1
-        )
-        factor = np.convolve(np.pad(around.max(axis=1), reach, mode="edge"), window, "valid")
-        factor /= window.sum()
-        middle = 0.5 * (times[:-1] + times[1:])
-        steps = np.diff(times) * np.interp(middle, even, factor)
-        times = np.concatenate([[0.0], np.cumsum(steps)])
+        times = stretched(times, even, np.sqrt(np.maximum(excess, 1.0)))
     return times
+
+
+def even_times(times: Floats) -> Floats:
+    """Times (m,) [s] at which accelerations are looked at."""
+    even: Floats = np.arange(0.0, times[-1] + _TICK, _TICK)
+    return even
+
+
+def stretched(times: Floats, even: Floats, factor: Floats) -> Floats:
+    """Times (n,) [s] slower by `factor` (m,) at `even` times (m,), and smoothly so around them."""
+    reach, window = _window()
+    most = np.pad(factor, reach, mode="edge")
+    most = np.lib.stride_tricks.sliding_window_view(most, 2 * reach + 1).max(axis=1)
+    smooth = np.convolve(np.pad(most, reach, mode="edge"), window, "valid")
+    middle = 0.5 * (times[:-1] + times[1:])
+    steps = np.diff(times) * np.interp(middle, even, smooth)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def _window() -> tuple[int, Floats]:
+    """Half the width of the window of averages in ticks, and its weights."""
+    reach = int(4 * _WINDOW / _TICK)
+    window = np.exp(-0.5 * (np.arange(-reach, reach + 1) * _TICK / _WINDOW) ** 2)
+    return reach, window / window.sum()

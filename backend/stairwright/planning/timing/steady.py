@@ -1,0 +1,76 @@
+"""Steady plans: with another speed, and where motors have little to spare.
+
+Poses are held with up to nine tenths of the motors' torque. What is left moves the robot, and where
+wheels press on opposite faces a small horizontal force takes much of it: there the plan slows down.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stairwright import _core
+from stairwright.arrays import Floats
+from stairwright.planning.certificate.dynamics import dynamics_of
+from stairwright.planning.plan import Plan
+from stairwright.planning.smoothing.path_timing import (
+    even_times,
+    pose_times,
+    standing_effort,
+    stretched,
+)
+from stairwright.terrain.wheel_path import wheel_path
+
+STRAINED = 0.8  # of a motor's torque for standing, from which on moving is looked at
+_MOST = 0.98  # of the torque that standing and moving may take
+_SLOWEST = 3.0  # times slower, at most, in one round
+_ROUNDS = 3
+
+
+def retimed(plan: Plan, speed: float) -> Plan:
+    """A path plan's poses at the times that it would have with another wished `speed` [m/s]."""
+    s = np.array([pose.wheel_progress for pose in plan.poses])
+    body = np.array([(pose.x_c, pose.z_c, pose.pitch) for pose in plan.poses])
+    q = np.array([pose.q for pose in plan.poses])
+    com_x = np.array([pose.com[0] for pose in plan.poses])
+    path = wheel_path(plan.terrain, plan.robot_description.wheel.radius)
+    margin = _core.firm_com_margins(path.native, s, com_x, plan.friction)
+    robot = plan.robot_description
+    effort = standing_effort(plan)
+    times = pose_times(robot, s, body, q, margin, effort, speed)
+    return slowed_where_strained(_timed(plan, times), effort)
+
+
+def slowed_where_strained(plan: Plan, effort: Floats) -> Plan:
+    """The same poses, later where their motion would overload motors.
+
+    Args:
+        plan: A feasible plan of method ``path``.
+        effort: (n,) largest share of a motor's torque that standing takes at its poses.
+    """
+    strained = np.flatnonzero(effort > STRAINED)
+    if not len(strained):
+        return plan
+    times = np.array([pose.time for pose in plan.poses])
+    for _ in range(_ROUNDS):
+        found = dynamics_of(plan, times, strained)
+        # What motion takes falls with the square of the speed.
+        spare = np.maximum(_MOST - effort[strained], 1e-3)
+        slower = np.sqrt(np.maximum((found.share - effort[strained]) / spare, 1.0))
+        if slower.max() == 1.0:
+            break
+        even = even_times(times)
+        factor = np.ones(len(even))
+        places = np.searchsorted(even, found.time).clip(0, len(even) - 1)
+        np.maximum.at(factor, places, np.minimum(slower, _SLOWEST))
+        times = stretched(times, even, factor)
+    return _timed(plan, times)
+
+
+def _timed(plan: Plan, times: Floats) -> Plan:
+    """The plan with its poses at other times (n,) [s]."""
+    poses = [
+        pose.model_copy(update={"time": time})
+        for pose, time in zip(plan.poses, times.tolist(), strict=True)
+    ]
+    timing = plan.timing.model_copy(update={"total": float(times[-1])})
+    return plan.model_copy(update={"poses": poses, "timing": timing})
