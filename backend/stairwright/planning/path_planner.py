@@ -28,7 +28,7 @@ from stairwright.planning.lattice.search import Place
 from stairwright.planning.lattice.windows import Searches, find_path
 from stairwright.planning.path_problem import PathProblem
 from stairwright.planning.plan import Certificate
-from stairwright.planning.smoothing.node_margins import BEYOND_REPAIR, Motor
+from stairwright.planning.smoothing.node_margins import BEYOND_REPAIR, FIRM_TORQUE, Motor
 from stairwright.planning.smoothing.path_document import PathPoses, make_plan
 from stairwright.planning.smoothing.path_timing import path_parameter
 from stairwright.planning.smoothing.refine import Refined, refine
@@ -219,13 +219,19 @@ class PathPlanner(PathProblem):
     def repairing_all(self) -> PathPlanner:
         """The same problem, which also repairs what overloads motors; to be asked after this one.
 
-        What came of other attempts is as it was.
+        What came of other attempts is as it was, and of those that are beyond repair.
         """
         other = replace(self, thorough=True)
         for how, end in self.tried.items():
-            if isinstance(end, Solved) or end.weak is None:
+            if isinstance(end, Solved) or end.weak is None or self._beyond_repair(end):
                 other.tried[how] = end
         return other
+
+    def _beyond_repair(self, end: Blocked) -> bool:
+        """Whether thorough repair would leave a path as it is. Of several paths that an attempt has
+        made the others are not known.
+        """
+        return end.share > FIRM_TORQUE + BEYOND_REPAIR and self.unweighted is None
 
     @cached_property
     def regardless(self) -> PathPlanner:

@@ -31,7 +31,6 @@ from stairwright.planning.infeasibility.relaxation import (
     candidates_of,
     large_changes,
     leads_past,
-    motor_torque,
 )
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
@@ -66,13 +65,13 @@ def _cause(
     planner: PathPlanner, blocked: Blocked, pool: Executor, meanwhile: Callable[[], object]
 ) -> Cause | None:
     """The single change that opens the way, if one does."""
+    candidates = candidates_of(planner)
     if blocked.weak and blocked.opened:
         # A search came through: a little more torque is what its path most likely lacks.
-        motors = motor_torque(planner.robot, blocked.weak)
+        motors = next(one for one in candidates if one.quantity == f"{blocked.weak} torque")
         cause = strengthened(planner, motors, blocked.share, pool)
         if cause is not None:
             return cause
-    candidates = candidates_of(planner)
     places = list(blocked.stops)
     if not _whole(planner, places) and leads_past(planner, places):
         places.clear()  # some poses there lead on, but no way leads to them
