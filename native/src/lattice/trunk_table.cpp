@@ -25,11 +25,11 @@ Balls balls(const Trunk& trunk) {
     return out;
 }
 
-// Places that the window of some pair of wheels covers. Every window lies round the mean of its two wheels; what lies
-// between windows of one front wheel counts too.
+// Places that the window of some pair of wheels covers, and at which pitches. Every window lies round the mean of its two
+// wheels; what lies between windows of one front wheel counts too.
 struct Covered {
     int x0 = 0, z0 = 0, columns = 0, rows = 0;
-    std::vector<std::uint8_t> used;  // (rows, columns)
+    std::vector<PitchRange> pitches;  // (rows, columns), empty where no window is
 };
 
 Covered covered(const WindowShape& shape, const std::vector<Vec2>& centres, const std::vector<SamplePair>& pairs) {
@@ -46,7 +46,8 @@ Covered covered(const WindowShape& shape, const std::vector<Vec2>& centres, cons
     out.z0 = static_cast<int>(std::floor(steps(low.z))) + shape.low - 2;
     out.columns = static_cast<int>(std::ceil(steps(high.x))) + half - out.x0 + 1;
     out.rows = static_cast<int>(std::ceil(steps(high.z))) + shape.low + lattice.nz + 2 - out.z0 + 1;
-    out.used.assign(static_cast<std::size_t>(out.rows) * out.columns, 0);
+    out.pitches.assign(static_cast<std::size_t>(out.rows) * out.columns, {lattice.pitches, 0});
+    const std::vector<PitchRange> of_front = pitch_ranges(centres, pairs, shape)[kFront];
     for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
         const Vec2 front = centres[pairs[begin].front];
         double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
@@ -60,8 +61,12 @@ Covered covered(const WindowShape& shape, const std::vector<Vec2>& centres, cons
         const int b = std::min(out.columns - 1, column(pairs[end - 1].rear) + half - out.x0);
         const int d = std::max(0, row(lowest) + shape.low - 2 - out.z0);
         const int e = std::min(out.rows - 1, row(highest) + shape.low + lattice.nz + 2 - out.z0);
+        const PitchRange looked_at = of_front[pairs[begin].front];
         for (int j = d; j <= e; ++j)
-            for (int i = a; i <= b; ++i) out.used[static_cast<std::size_t>(j) * out.columns + i] = 1;
+            for (int i = a; i <= b; ++i) {
+                PitchRange& there = out.pitches[static_cast<std::size_t>(j) * out.columns + i];
+                there = {std::min(there.first, looked_at.first), std::max(there.last, looked_at.last)};
+            }
     }
     return out;
 }
@@ -90,12 +95,13 @@ TrunkTableData trunk_table(const Terrain& terrain, const RobotModel& robot, cons
     for (int t = 0; t < lattice.pitches; ++t) turns.push_back(Turn::by((t - lattice.pitches / 2) * lattice.turn));
     for (int j = 0; j < out.rows; ++j) {
         for (int i = 0; i < out.columns; ++i) {
-            if (!places.used[static_cast<std::size_t>(j) * out.columns + i]) continue;
+            const PitchRange looked_at = places.pitches[static_cast<std::size_t>(j) * out.columns + i];
+            if (looked_at.first >= looked_at.last) continue;
             const Vec2 at = {(places.x0 + i) * lattice.step, (places.z0 + j) * lattice.step};
             // One look at the trunk's point settles most places for all pitches.
             const double around = terrain.link_clearance(at, at, 0.0, ball.outer + soft);
             if (around < ball.inner + least_clearance) continue;
-            for (int t = 0; t < lattice.pitches; ++t) {
+            for (int t = looked_at.first; t < looked_at.last; ++t) {
                 const double c = around < ball.outer + soft ? clearance(terrain, trunk, at, turns[t], soft) : soft;
                 if (c < least_clearance) continue;
                 const double e = std::max(0.0, soft - c) / soft;
