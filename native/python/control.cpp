@@ -5,6 +5,8 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "stairwright/control/controller.hpp"
+#include "stairwright/control/leg_fit.hpp"
+#include "stairwright/control/safe_stop.hpp"
 #include "stairwright/control/static_forces.hpp"
 
 namespace stairwright::python {
@@ -90,6 +92,24 @@ void bind_gains(nb::module_& m) {
         .def_rw("force_limit", &Gains::force_limit);
 }
 
+// What a robot that senses by itself does beside balancing, for tests.
+void bind_own_senses(nb::module_& m) {
+    nb::class_<LegFit>(m, "LegFit", "Legs that fit the ground as it is found to be, see control/leg_fit.hpp.")
+        .def(nb::init<Robot>(), nb::arg("robot"))
+        .def("fit", [](LegFit& self, const Fixed<kReferenceWidth>& planned, const Fixed<2, 2>& ground, double dt) {
+            const auto row = std::bit_cast<std::array<double, kReferenceWidth>>(
+                self.fit(reference(planned), {Vec2{ground(0, 0), ground(0, 1)}, Vec2{ground(1, 0), ground(1, 1)}}, dt));
+            return numbers(row);
+        }, nb::arg("planned"), nb::arg("ground"), nb::arg("dt"), nb::rv_policy::automatic,
+           "A set point's row for front and rear ground (2, 2) off its planned place [m], after another time step [s].");
+    nb::class_<SafeStop>(m, "SafeStop", "When to give up, see control/safe_stop.hpp.")
+        .def(nb::init<>())
+        .def("watch", [](SafeStop& self, double position, bool advancing, double dt) {
+            return static_cast<int>(self.watch(position, advancing, 0.0, 0.0, dt));
+        }, nb::arg("position"), nb::arg("advancing"), nb::arg("dt"), "Why to stop: 0 not at all, 1 no progress.")
+        .def_prop_ro("waited", &SafeStop::waited, "For 5 mm of progress [s].");
+}
+
 }  // namespace
 
 void bind_control(nb::module_& m) {
@@ -101,6 +121,7 @@ void bind_control(nb::module_& m) {
           "Rows (n, 7): smallest forces of front and rear pair (x, z) at rest [N], share of the friction that they keep\n"
           "to, and what front and rear wheels lean on in a corner; for places and mass centres (n, 2) [m].");
     bind_gains(m);
+    bind_own_senses(m);
     nb::class_<Controller>(m, "Controller", "The balance controller, form contact; keeps forces and places.")
         .def(nb::init<Robot, WheelPath, double, const Gains&>(), nb::arg("robot"), nb::arg("path"), nb::arg("friction"), nb::arg("gains"))
         .def("step", [](Controller& self, const Fixed<19>& qpos, const Fixed<18>& qvel, const Fixed<kReferenceWidth>& target, double yaw_rate) {

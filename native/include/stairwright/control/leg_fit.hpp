@@ -4,12 +4,13 @@
 #pragma once
 
 #include "stairwright/control/controller.hpp"
+#include "stairwright/kinematics.hpp"
 
 namespace stairwright::control {
 
 class LegFit {
   public:
-    explicit LegFit(Robot robot) : robot_(std::move(robot)) {}
+    explicit LegFit(Robot robot);
 
     // `planned` with the joints that put each pair's wheels `ground` [m] off their planned place. What is asked
     // for follows a change of the ground within some tenths of a second.
@@ -21,7 +22,12 @@ class LegFit {
     void reset() { off_ = {}; }
 
   private:
+    // The trunk's `shift` [m], changed as little as makes both legs reach their wheels, which from the hips are planned at
+    // `reach` [m]: by projections in turn onto what each leg allows.
+    Vec2 give_way(const std::array<Vec2, 2>& reach, Vec2 shift) const;
+
     Robot robot_;
+    std::array<ReachRange, 2> range_;  // of the legs
     std::array<Vec2, 2> off_{};
 };
 
