@@ -1,25 +1,37 @@
 #include "stairwright/control/safe_stop.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace stairwright::control {
 
 namespace {
 
 constexpr double kProgress = 0.005;   // m
-constexpr double kPatience = 3.0;     // s without that much progress
 constexpr double kMostPitch = 0.15;   // rad off the plan
 constexpr double kMostRoll = 0.20;    // rad
 
 }  // namespace
 
+SafeStop::SafeStop() { reached_.fill(-std::numeric_limits<double>::infinity()); }
+
 Stop SafeStop::watch(double position, bool advancing, double pitch_error, double roll, double dt) {
     if (why_ != Stop::none) return why_;
-    waited_ = advancing ? waited_ + dt : 0.0;
-    if (position > best_ + kProgress) best_ = position, waited_ = 0.0;
-    if (waited_ > kPatience) why_ = Stop::no_progress;
+    best_ = std::max(best_, position);
+    if (advancing) since_ += dt;
+    if (since_ >= kEvery) {
+        std::shift_left(reached_.begin(), reached_.end(), 1);
+        reached_.back() = best_, since_ -= kEvery;
+    }
+    if (best_ - reached_.front() < kProgress) why_ = Stop::no_progress;
     if (std::abs(pitch_error) > kMostPitch || std::abs(roll) > kMostRoll) why_ = Stop::tilted;
     return why_;
+}
+
+double SafeStop::waited() const {
+    const auto slow = std::find_if(reached_.begin(), reached_.end(), [&](double at) { return best_ - at < kProgress; });
+    return kEvery * static_cast<double>(reached_.end() - slow) + since_;
 }
 
 }  // namespace stairwright::control

@@ -1,6 +1,9 @@
 // When to give up: a robot that cannot go on shall stand where it is and say why, rather than fall.
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "stairwright/control/controller.hpp"
 
 namespace stairwright::control {
@@ -13,16 +16,22 @@ enum class Stop {
 
 class SafeStop {
   public:
+    SafeStop();
+
     // One control step: the plan's path position [m] and whether it is to advance, pitch against the plan's and roll
-    // [rad]. Returns why to stop; once given, an answer stays.
+    // [rad]. Returns why to stop; once given, an answer stays. Time in which the plan is to wait does not count.
     Stop watch(double position, bool advancing, double pitch_error, double roll, double dt);
 
     Stop why() const { return why_; }
-    double waited() const { return waited_; }  // for progress, until now [s]
+    double waited() const;  // for 5 mm of progress, until now [s]
 
   private:
+    static constexpr double kEvery = 0.1;          // s
+    static constexpr std::size_t kInstants = 31;   // 3 s, and now
+
     Stop why_ = Stop::none;
-    double best_ = -1e9, waited_ = 0.0;
+    double best_ = -1e9, since_ = 0.0;
+    std::array<double, kInstants> reached_;  // the farthest position until each of the last instants, the oldest first
 };
 
 }  // namespace stairwright::control
