@@ -96,18 +96,18 @@ void bind_gains(nb::module_& m) {
 void bind_own_senses(nb::module_& m) {
     nb::class_<LegFit>(m, "LegFit", "Legs that fit the ground as it is found to be, see control/leg_fit.hpp.")
         .def(nb::init<Robot>(), nb::arg("robot"))
-        .def("fit", [](LegFit& self, const Fixed<kReferenceWidth>& planned, const Fixed<2, 2>& ground, double dt) {
+        .def("fit", [](LegFit& self, const Fixed<kReferenceWidth>& planned, const Fixed<2, 2>& ground, const WheelPath& path, double friction, double dt) {
             const auto row = std::bit_cast<std::array<double, kReferenceWidth>>(
-                self.fit(reference(planned), {Vec2{ground(0, 0), ground(0, 1)}, Vec2{ground(1, 0), ground(1, 1)}}, dt));
+                self.fit(reference(planned), {Vec2{ground(0, 0), ground(0, 1)}, Vec2{ground(1, 0), ground(1, 1)}}, path, friction, dt));
             return numbers(row);
-        }, nb::arg("planned"), nb::arg("ground"), nb::arg("dt"), nb::rv_policy::automatic,
+        }, nb::arg("planned"), nb::arg("ground"), nb::arg("path"), nb::arg("friction"), nb::arg("dt"), nb::rv_policy::automatic,
            "A set point's row for front and rear ground (2, 2) off its planned place [m], after another time step [s].");
     nb::class_<SafeStop>(m, "SafeStop", "When to give up, see control/safe_stop.hpp.")
         .def(nb::init<>())
         .def("watch", [](SafeStop& self, double position, bool advancing, double dt) {
             return static_cast<int>(self.watch(position, advancing, 0.0, 0.0, dt));
-        }, nb::arg("position"), nb::arg("advancing"), nb::arg("dt"), "Why to stop: 0 not at all, 1 no progress.")
-        .def_prop_ro("waited", &SafeStop::waited, "For 5 mm of progress [s].");
+        }, nb::arg("position"), nb::arg("advancing"), nb::arg("dt"), "Why to stop: 0 not at all, 1 no progress.");
+
 }
 
 }  // namespace

@@ -92,8 +92,10 @@ WheelContacts wheel_contacts(const WheelPath& path, double s, double friction) {
     return out;
 }
 
-Interval pair_interval(const WheelPath& path, WheelPlaces s, double friction, double ray_limit) {
-    const WheelContacts front = wheel_contacts(path, s.front, friction), rear = wheel_contacts(path, s.rear, friction);
+Interval pair_interval(const WheelPath& path, WheelPlaces s, double friction, double ray_limit, const std::array<Vec2, 2>& off) {
+    WheelContacts front = wheel_contacts(path, s.front, friction), rear = wheel_contacts(path, s.rear, friction);
+    for (Contact& contact : front.at) contact.point += off[kFront];
+    for (Contact& contact : rear.at) contact.point += off[kRear];
     Interval out;
     for (int i = 0; i < leans(front); ++i) {
         for (int j = 0; j < leans(rear); ++j) {

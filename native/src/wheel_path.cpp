@@ -149,12 +149,7 @@ double Piece::parameter(Vec2 p, double radius) const {
 }
 
 WheelPath::WheelPath(const std::vector<Vec2>& vertices, double radius)
-    : WheelPath(trim(offset_pieces(vertices, radius), Terrain(vertices), radius), {}, radius) {
-    corners_ = concave_corners(pieces_, radius_);
-}
-
-WheelPath::WheelPath(std::vector<Piece> pieces, std::vector<double> corners, double radius)
-    : pieces_(std::move(pieces)), corners_(std::move(corners)), radius_(radius) {
+    : terrain_(vertices), pieces_(trim(offset_pieces(vertices, radius), terrain_, radius)), corners_(concave_corners(pieces_, radius)), radius_(radius) {
     if (pieces_.empty()) throw std::invalid_argument("the profile is too short for the wheel");
     for (const Piece& piece : pieces_) starts_.push_back(piece.s);
 }

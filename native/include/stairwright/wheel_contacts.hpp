@@ -34,8 +34,9 @@ WheelContacts wheel_contacts(const WheelPath& path, double s, double friction);
 
 // CoM interval with the wheels at `s`. A wheel between two faces pushes on either with friction, or on both without.
 // Friction on both could hold more: a motor that drives the wheel against the face ahead lifts the robot's nose. But
-// it takes all the grip of both at once, and robots whose plans counted on it tipped.
-Interval pair_interval(const WheelPath& path, WheelPlaces s, double friction, double ray_limit = kRayLimit);
+// it takes all the grip of both at once, and robots whose plans counted on it tipped. `off`: where the pairs' ground
+// is against the drawn one [m].
+Interval pair_interval(const WheelPath& path, WheelPlaces s, double friction, double ray_limit = kRayLimit, const std::array<Vec2, 2>& off = {});
 
 // The same with friction on both faces of a corner, as plans state their margins.
 Interval stated_interval(const WheelPath& path, WheelPlaces s, double friction);

@@ -42,8 +42,8 @@ class WheelPath {
   public:
     // Throws std::invalid_argument if the profile is too short to hold a wheel.
     WheelPath(const std::vector<Vec2>& vertices, double radius);
-    WheelPath(std::vector<Piece> pieces, std::vector<double> corners, double radius);
 
+    const Terrain& terrain() const { return terrain_; }
     double radius() const { return radius_; }
     const std::vector<Piece>& pieces() const { return pieces_; }
     // Arc lengths of concave corners, where the wheel touches two faces [m].
@@ -75,6 +75,7 @@ class WheelPath {
   private:
     std::size_t piece(double s) const;
 
+    Terrain terrain_;
     std::vector<Piece> pieces_;
     std::vector<double> starts_;  // of the pieces, for the search
     std::vector<double> corners_;

@@ -18,6 +18,8 @@ SafeStop::SafeStop() { reached_.fill(-std::numeric_limits<double>::infinity()); 
 
 Stop SafeStop::watch(double position, bool advancing, double pitch_error, double roll, double dt) {
     if (why_ != Stop::none) return why_;
+    waited_ = advancing ? waited_ + dt : 0.0;
+    if (position > mark_ + kProgress) mark_ = position, waited_ = 0.0;
     best_ = std::max(best_, position);
     if (advancing) since_ += dt;
     if (since_ >= kEvery) {
@@ -27,11 +29,6 @@ Stop SafeStop::watch(double position, bool advancing, double pitch_error, double
     if (best_ - reached_.front() < kProgress) why_ = Stop::no_progress;
     if (std::abs(pitch_error) > kMostPitch || std::abs(roll) > kMostRoll) why_ = Stop::tilted;
     return why_;
-}
-
-double SafeStop::waited() const {
-    const auto slow = std::find_if(reached_.begin(), reached_.end(), [&](double at) { return best_ - at < kProgress; });
-    return kEvery * static_cast<double>(reached_.end() - slow) + since_;
 }
 
 }  // namespace stairwright::control

@@ -99,6 +99,7 @@ class Controller {
     void believe(WheelPath path) { path_ = std::move(path); }
 
     const Robot& robot() const { return robot_; }
+    double friction() const { return friction_; }
     const WheelPath& path() const { return path_; }
     const Forces& forces() const { return forces_; }
     // Arc length of each wheel on the wheel-centre curve, NaN before the first step [m].

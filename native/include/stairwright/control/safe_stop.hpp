@@ -23,14 +23,16 @@ class SafeStop {
     Stop watch(double position, bool advancing, double pitch_error, double roll, double dt);
 
     Stop why() const { return why_; }
-    double waited() const;  // for 5 mm of progress, until now [s]
+    // Since it was 5 mm farther than when this began anew, or was to wait [s].
+    double waited() const { return waited_; }
 
   private:
     static constexpr double kEvery = 0.1;          // s
     static constexpr std::size_t kInstants = 31;   // 3 s, and now
 
     Stop why_ = Stop::none;
-    double best_ = -1e9, since_ = 0.0;
+    double best_ = -1e9, mark_ = -1e9, waited_ = 0.0;
+    double since_ = 0.0;  // the last of these instants [s]
     std::array<double, kInstants> reached_;  // the farthest position until each of the last instants, the oldest first
 };
 
