@@ -20,7 +20,8 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))  # tests.planning.drawn
 
 import stairwright as sw  # noqa: E402
-from stairwright.planning.path_planner import Solved, path_planner  # noqa: E402
+from stairwright.planning.attempt import Solved  # noqa: E402
+from stairwright.planning.path_planner import path_planner  # noqa: E402
 from stairwright.planning.standing import NoStandingPose  # noqa: E402
 from stairwright.planning.strategy import solve  # noqa: E402
 from stairwright.planning.threads import search_threads  # noqa: E402

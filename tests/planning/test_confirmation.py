@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from stairwright.planning.attempt import Blocked, Solved
 from stairwright.planning.infeasibility.bracket import Bracket
 from stairwright.planning.infeasibility.confirmation import _settled, alone
-from stairwright.planning.path_planner import Blocked, Solved
 from stairwright.planning.strategy import AT_ONCE, FINER, solve
 from stairwright.planning.threads import in_this_thread
 

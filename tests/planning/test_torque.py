@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 import stairwright as sw
-from stairwright.planning.path_planner import Blocked, Solved, path_planner
-from stairwright.planning.smoothing.node_margins import FIRM_TORQUE
+from stairwright.planning.attempt import Blocked, Solved
+from stairwright.planning.infeasibility.relaxation import motor_torque
+from stairwright.planning.path_planner import PathPlanner, path_planner
+from stairwright.planning.smoothing.node_margins import BEYOND_REPAIR, FIRM_TORQUE
 from stairwright.planning.static_torques import static_torques
 from stairwright.planning.strategy import AT_ONCE, HEAVY, solve
 from stairwright.planning.threads import in_this_thread
@@ -100,3 +102,21 @@ def test_what_overloads_motors_is_repaired_where_no_path_within_torques_is_found
     assert isinstance(found, Solved)
     assert found.certificate.passed
     assert HEAVY < found.torque_share <= FIRM_TORQUE
+
+
+def weakened(name: str, share: float) -> PathPlanner:
+    """The question of `STEP` for a robot with a share of its legs' torque."""
+    planner = path_planner(sw.load_terrain(STEP), sw.load_robot(name), 0.6, PathWeights())
+    motors = motor_torque(planner.robot, "leg")
+    return motors.change(planner, motors.available * share)
+
+
+def test_what_is_beyond_repair_is_not_looked_at_again_and_would_stay_as_it_is():
+    planner = weakened("a1_wheeled", 0.2)
+    end = planner.attempt(AT_ONCE)
+    assert isinstance(end, Blocked)
+    assert end.share > FIRM_TORQUE + BEYOND_REPAIR
+    assert planner.repairing_all.attempt(AT_ONCE) is end
+    anew = replace(planner, thorough=True).attempt(AT_ONCE)
+    assert isinstance(anew, Blocked)
+    assert (anew.reached, anew.share) == (end.reached, end.share)

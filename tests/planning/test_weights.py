@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import stairwright as sw
-from stairwright.planning.path_planner import Solved, path_planner
+from stairwright.planning.attempt import Solved
+from stairwright.planning.path_planner import path_planner
 from stairwright.planning.standing import NoStandingPose
 from stairwright.planning.strategy import solve
 from stairwright.planning.threads import search_threads

@@ -9,10 +9,11 @@ from functools import partial
 import numpy as np
 
 from stairwright.errors import InputError
+from stairwright.planning.attempt import Blocked, Solved
 from stairwright.planning.certificate.certify import with_dynamics
 from stairwright.planning.courses import courses
 from stairwright.planning.infeasibility.diagnosis import no_standing_pose
-from stairwright.planning.path_planner import THIN, Blocked, PathPlanner, Solved
+from stairwright.planning.path_planner import THIN, PathPlanner
 from stairwright.planning.plan import Plan, PlanTiming, Problem
 from stairwright.planning.smoothing.path_document import make_plan
 from stairwright.planning.standing import NoStandingPose

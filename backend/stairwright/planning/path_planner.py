@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from stairwright import _core
-from stairwright.arrays import Ints
+from stairwright.planning.attempt import Attempt, Blocked, Outcomes, Solved
 from stairwright.planning.certificate.certify import judge
 from stairwright.planning.certificate.motion import Motion
 from stairwright.planning.extra_margins import IN_SEARCH, ExtraMargins
@@ -27,8 +27,7 @@ from stairwright.planning.lattice.pieces import Piece, passes
 from stairwright.planning.lattice.search import Place
 from stairwright.planning.lattice.windows import Searches, find_path
 from stairwright.planning.path_problem import PathProblem
-from stairwright.planning.plan import Certificate
-from stairwright.planning.smoothing.node_margins import BEYOND_REPAIR, FIRM_TORQUE, Motor
+from stairwright.planning.smoothing.node_margins import BEYOND_REPAIR, FIRM_TORQUE
 from stairwright.planning.smoothing.path_document import PathPoses, make_plan
 from stairwright.planning.smoothing.path_timing import path_parameter
 from stairwright.planning.smoothing.refine import Refined, refine
@@ -44,76 +43,6 @@ from stairwright.terrain.wheel_path import wheel_path
 THIN = 0.01  # m; CoM margin of a path that is compared with others
 THIN_IF_FAST = 0.015  # m; of one that is to be driven fast, for inertia takes some of it
 STRAIGHTER = 3.4  # times the weight of smoothness
-
-
-@dataclass(frozen=True)
-class Attempt:
-    """One attempt at a path.
-
-    Attributes:
-        fine: Lattice refinement; above 1 coarser. At 2 a search costs a tenth of one at 1, and the
-            smoothing makes as good a path from it.
-        bounds: What lattice poses keep.
-        roll_back: Whether wheels may roll back.
-        probe: Only ask whether a search comes through.
-    """
-
-    fine: float
-    bounds: Bounds
-    roll_back: bool = False
-    probe: bool = False
-
-
-@dataclass(frozen=True)
-class Solved:
-    """A path and its certificate, which has passed unless the path is still to be repaired."""
-
-    nodes: Refined
-    certificate: Certificate
-
-    @property
-    def margin(self) -> float:
-        """Thinnest margin of the CoM [m]."""
-        return float(self.nodes.margins.firm_com_margin.min())
-
-    @property
-    def torque_share(self) -> float:
-        """Largest static torque of any motor, over its limit."""
-        return self.nodes.margins.torque_share
-
-    @property
-    def bad(self) -> Ints:
-        """Nodes at which a check of the certificate is violated most."""
-        progress = path_parameter(self.nodes.s, self.nodes.body)
-        places = {
-            int(np.abs(progress - check.progress).argmin())
-            for check in self.certificate.checks
-            if not check.passed and check.progress is not None
-        }
-        return np.array(sorted(places), np.int64)
-
-
-@dataclass(frozen=True)
-class Blocked:
-    """No certified path.
-
-    Attributes:
-        reached: Arc lengths where the path ends, or where a found path breaks a bound worst.
-        stops: Where loose searches end: the place from the start, and others farther on.
-        opened: Whether a search came through at all.
-        weak: Motors whose torque a found path exceeded.
-        share: What that path takes of a motor's torque, at most.
-    """
-
-    reached: Place | None
-    opened: bool
-    weak: Motor | None = None
-    stops: tuple[Place, ...] = ()
-    share: float = math.inf
-
-
-# What came of attempts, by them and whether they were made within torques.
-Outcomes = dict[tuple[Attempt, bool], Solved | Blocked]
 
 
 def path_planner(

@@ -20,10 +20,11 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 
+from .attempt import Attempt, Blocked, Solved
 from .lattice.body_lattice import LOOSE, LOOSER, LOOSEST, STRICT
 from .lattice.pieces import Piece, pieces, stops
 from .lattice.search import Place
-from .path_planner import Attempt, Blocked, PathPlanner, Solved
+from .path_planner import PathPlanner
 from .threads import race
 
 HEAVY = 0.85  # of a motor's torque; a path that takes more is compared with one that spares motors

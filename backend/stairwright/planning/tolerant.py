@@ -12,10 +12,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from stairwright.planning.attempt import Blocked, Solved
 from stairwright.planning.certificate.certify import tolerated
 from stairwright.planning.certificate.tolerance.checks import NAMES
 from stairwright.planning.extra_margins import NO_EXTRA, ExtraMargins
-from stairwright.planning.path_planner import Blocked, PathPlanner, Solved
+from stairwright.planning.path_planner import PathPlanner
 from stairwright.planning.plan import Check, Limit, Problem, ProblemKind
 from stairwright.planning.strategy import keeping_extra_margins
 from stairwright.planning.tolerance import Tolerance

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from stairwright.library import load_robot
+from stairwright.planning.attempt import Attempt, Solved
 from stairwright.planning.lattice.body_lattice import LOOSE
-from stairwright.planning.path_planner import Attempt, PathPlanner, Solved, path_planner
+from stairwright.planning.path_planner import PathPlanner, path_planner
 from stairwright.planning.planner import plan
 from stairwright.planning.smoothing import repair as repairs
 from stairwright.planning.smoothing.refine import Refined, refine

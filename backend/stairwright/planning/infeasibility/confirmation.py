@@ -13,12 +13,13 @@ import math
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
+from stairwright.planning.attempt import Blocked, Solved
 from stairwright.planning.infeasibility.bracket import Bracket
 from stairwright.planning.infeasibility.relaxation import Candidate
 from stairwright.planning.lattice.body_lattice import EXACT
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
-from stairwright.planning.path_planner import Blocked, PathPlanner, Solved
+from stairwright.planning.path_planner import PathPlanner
 from stairwright.planning.smoothing.node_margins import FIRM_TORQUE
 from stairwright.planning.threads import race
 

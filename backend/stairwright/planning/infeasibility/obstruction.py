@@ -15,6 +15,7 @@ from functools import cache, partial
 
 import numpy as np
 
+from stairwright.planning.attempt import Blocked
 from stairwright.planning.infeasibility.confirmation import (
     Beyond,
     Cause,
@@ -34,7 +35,7 @@ from stairwright.planning.infeasibility.relaxation import (
 )
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
-from stairwright.planning.path_planner import Blocked, PathPlanner
+from stairwright.planning.path_planner import PathPlanner
 from stairwright.planning.plan import Limit, Problem
 from stairwright.planning.smoothing.path_document import PathPoses
 from stairwright.planning.threads import race, search_threads

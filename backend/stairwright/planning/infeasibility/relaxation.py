@@ -8,16 +8,11 @@ from typing import Any, Literal
 
 import numpy as np
 
+from stairwright.planning.attempt import Blocked, Outcomes, Solved
 from stairwright.planning.lattice.body_lattice import LOOSE, Bounds
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
-from stairwright.planning.path_planner import (
-    Blocked,
-    Outcomes,
-    PathPlanner,
-    Solved,
-    path_planner,
-)
+from stairwright.planning.path_planner import PathPlanner, path_planner
 from stairwright.planning.smoothing.node_margins import JOINTS, Motor
 from stairwright.planning.standing import NoStandingPose
 from stairwright.planning.strategy import AT_ONCE, quick, solve
