@@ -147,12 +147,12 @@ void bind_rollout(nb::module_& m) {
         .def("adopt", [](Rollout& r, const PlanFollower& follower, double friction) { r.executor().adopt(follower, friction); },
              nb::arg("follower"), nb::arg("friction"), "Another plan from now on, made for `friction`.")
         .def("correct_map", &Rollout::correct_map, nb::arg("path"), "A map on which `map_error` is mended; another plan has to follow.")
-        .def_prop_ro("map_error", [](const Rollout& r) -> std::optional<std::tuple<bool, double, double, double>> {
+        .def_prop_ro("map_error", [](const Rollout& r) -> std::optional<std::tuple<bool, double, double, double, bool>> {
             const auto& found = r.executor().map_error();
             if (!found) return {};
-            return std::tuple(found->face, found->s, found->off.x, found->off.z);
+            return std::tuple(found->face, found->s, found->off.x, found->off.z, found->both);
         }, "What the front wheels found elsewhere than on the map, while the robot waits: whether it is a face, its place on the\n"
-           "wheel-centre curve, and by how much the map is off along and up [m].")
+           "wheel-centre curve, by how much the map is off along and up [m], and whether the rear wheels know of it.")
         .def_prop_ro("places", [](const Rollout& r) { return r.executor().controller().places(); }, "Of the wheels on the wheel-centre curve [m].")
         .def_prop_ro("slipped", [](const Rollout& r) -> std::optional<std::pair<double, bool>> {
             const auto& slipped = r.executor().slipped();

@@ -93,6 +93,14 @@ def test_rear_wheels_know_what_front_wheels_found() -> None:
 
 
 @pytest.mark.slow
+def test_an_edge_that_is_met_higher_than_drawn_is_pushed_over() -> None:
+    """A kerb of 5 cm instead of 3: wheels at its edge do not follow the plan, which waits."""
+    kerb = {"points": [(-1.3, 0), (0, 0), (0, 0.03), (1.5, 0.03)]}
+    run, _ = sensed(sw.plan(kerb, "b2w", 0.6), step_height_error=[0.02])
+    assert run.outcome == "success", run.reason
+
+
+@pytest.mark.slow
 def test_wheels_that_stand_at_a_wall_stay_there_on_the_map() -> None:
     """Rear wheels lean on the riser with a push that is hardly felt, while the front ones roll."""
     ledge = {"points": [(-1.3, 0), (0, 0), (0, 0.17), (0.1, 0.17), (0.1, 0), (1.4, 0)]}

@@ -1,4 +1,4 @@
-"""Risers that come earlier than the robot's map has them."""
+"""Risers that are not where the robot's map has them."""
 
 from __future__ import annotations
 
@@ -11,6 +11,10 @@ import stairwright as sw
 EARLY = {"x_offset": -0.05}
 # The second riser comes 6 cm earlier, against the first one.
 NEAR = {"face_place_error": [0.03, -0.03, 0.03, 0.03]}
+# The fourth one does, and a front knee leads its wheel over the edge.
+FOURTH = {"face_place_error": [0.03, 0.03, 0.03, -0.03, 0.03]}
+# The second riser is 6 cm farther from the first one than legs reach as planned.
+APART = {"face_place_error": [-0.03, 0.03, 0.03]}
 
 
 @pytest.mark.slow
@@ -20,9 +24,11 @@ NEAR = {"face_place_error": [0.03, -0.03, 0.03, 0.03]}
         pytest.param("single-stair-036", "a1_wheeled_x", EARLY, id="thigh"),
         pytest.param("single-stair-036", "go2w", EARLY, id="trunk"),
         pytest.param("stairs-industrial", "b2w", NEAR, id="unnoticed"),
+        pytest.param("stairs-us-7-11", "a1_wheeled_x", FOURTH, id="calf"),
+        pytest.param("three-stairs-up", "a1_wheeled_x", APART, id="out of reach"),
     ],
 )
-def test_wheels_meet_it_first_and_it_is_noticed(
+def test_no_leg_meets_it_before_the_wheels_do(
     terrain: str, robot: str, deviation: dict[str, Any]
 ) -> None:
     plan = sw.plan(sw.load_terrain(terrain), robot, friction=0.6)

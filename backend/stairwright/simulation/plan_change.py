@@ -13,8 +13,6 @@ from .governor import Track, follower, lead_of, plan_track
 from .map_correction import corrected, nearest_row
 from .replanning import after_slip, needed_friction, plan_anew
 
-SAME_GROUND = 1e-3  # m between wheels that are on one face or tread
-
 
 class PlanChange:
     """Decides how the native loop goes on where it waits.
@@ -56,14 +54,12 @@ class PlanChange:
             self._follow(decision.plan)
         return decision.why
 
-    def _mend_map(self, face: bool, s: float, along: float, up: float) -> None:
+    def _mend_map(self, face: bool, s: float, along: float, up: float, both: bool) -> None:
         """Go on with a plan on the map as it was found, or with the old one if there is none."""
         loop = self._loop
         off = np.array([along, 0.0] if face else [0.0, up])
         front, rear = np.reshape(loop.places, (2, 2)).mean(axis=1)
         centres = self._path.centres(np.array([front, rear]))
-        across = 0 if face else 1
-        both = abs(np.diff(centres[:, across])[0]) < SAME_GROUND
         centres -= [off, off if both else np.zeros(2)]
         known = corrected(self._known, self._path, s, face=face, off=off)
         plan = plan_anew(self.followed, known, self.followed.friction)

@@ -196,7 +196,8 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const std::size_t next = path_.corner_from(on.s);
     const double room = next < path_.corners().size() ? path_.corners()[next] - on.s : kRoom;
     const bool tread = !on.corner && on.point.normal.z > kTread;
-    estimate_.on_tread[i / 2] = tread && room >= kRoom, estimate_.nearing[i / 2] = tread && room < kRoom;
+    const bool round_it = path_.pieces()[on.piece].arc && on.point.normal.x < 0.0;  // an edge that leads up
+    estimate_.on_tread[i / 2] = tread && room >= kRoom, estimate_.nearing[i / 2] = (tread && room < kRoom) || round_it;
 
     compare_with_map(i, on, dt);
     estimate_.touching[i] = touching;
@@ -213,10 +214,13 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
 // Every face lies and every tread is as high as the map says only more or less: what is ahead is anew unsure.
 void Estimator::enter_face(int i, const CurveMatch& on) {
     WheelState& w = wheels_[i];
-    if (on.corner || on.piece == w.face || path_.pieces()[on.piece].arc) return;
-    const bool tread = on.point.normal.z > kTread, was_tread = path_.pieces()[w.face].at(0.0, path_.radius()).normal.z > kTread;
-    const bool known = on.piece == w.face_before;  // it comes back to it
-    w.face_before = w.face, w.face = on.piece, w.put_back = w.landed = 0.0;
+    if (on.corner || path_.pieces()[on.piece].arc) return;
+    if (on.piece != w.face) w.face = on.piece, w.put_back = w.landed = 0.0;
+    // In a corner a wheel goes to and fro between two faces, and measures both: what is unsure is so once it has left it.
+    if (on.piece == w.clear || std::abs(nearest_corner(on.s) - on.s) < kNearCorner) return;
+    const bool tread = on.point.normal.z > kTread, was_tread = path_.pieces()[w.clear].at(0.0, path_.radius()).normal.z > kTread;
+    const bool known = on.piece == w.clear_before;  // it comes back to it
+    w.clear_before = w.clear, w.clear = on.piece;
     if (known || (tread && was_tread)) return;
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
     const double error = tread ? noise_.face_place : noise_.tread_height;

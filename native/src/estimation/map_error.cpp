@@ -39,7 +39,16 @@ void Estimator::find_map_error() {
     remember(s, left.on_face, off);
     const double least = path_.on_arc(left.s) ? kLeastEdge : left.on_face ? kLeastFace : kLeastTread;
     if (std::abs(off) < least) return;
-    estimate_.map_error = MapError{left.on_face, s, offset_[0]};
+    estimate_.map_error = MapError{left.on_face, s, offset_[0], rear_knows(s, left.on_face)};
+}
+
+// Whether what front wheels found at `s` is in the rear wheels' offset, too.
+bool Estimator::rear_knows(double s, bool face) const {
+    const Vec2 front = path_.at(s).centre, rear = path_.at(0.5 * (wheels_[2].s + wheels_[3].s)).centre;
+    if (std::abs(face ? front.x - rear.x : front.z - rear.z) < kSameGround) return true;
+    const std::size_t found = straight_piece(s, face);
+    const auto told = [&](const WheelState& w) { return found > 0 && (w.told[0] == found || w.told[1] == found); };
+    return told(wheels_[2]) || told(wheels_[3]);
 }
 
 bool Estimator::is_face(std::size_t piece) const { return path_.pieces()[piece].at(0.0, path_.radius()).normal.z < kTread; }
@@ -67,13 +76,14 @@ void Estimator::remember(double s, bool face, double off) {
 void Estimator::recall(WheelState& rear) {
     const Piece& now = path_.pieces()[rear.face];
     if (rear.face == rear.recalled || rear.s < now.s + kInto || rear.s > now.s + now.length) return;
-    rear.recalled = rear.face;
+    rear.recalled = rear.face, rear.told = {};
     Error error{};
     int straight = 0;
     for (std::size_t k = rear.face; k < found_.size() && straight < 2; ++k) {
         if (path_.pieces()[k].arc) continue;
         ++straight;
         if (!found_[k]) continue;
+        rear.told[straight - 1] = k;
         Error row{};
         row[is_face(k) ? kRearOffset : kRearOffset + 1] = 1.0;
         covariance_.update(row, *found_[k] - (is_face(k) ? offset_[1].x : offset_[1].z), kRecalled * kRecalled, error);
@@ -82,8 +92,6 @@ void Estimator::recall(WheelState& rear) {
 }
 
 Vec2 Estimator::correct_map(WheelPath path, const MapError& found) {
-    const Vec2 front = path_.at(found.s).centre, rear = path_.at(0.5 * (wheels_[2].s + wheels_[3].s)).centre;
-    const bool both = std::abs(found.face ? front.x - rear.x : front.z - rear.z) < kSameGround;
     const Vec2 by = found.face ? Vec2{found.off.x, 0.0} : Vec2{0.0, found.off.z};
     // A face is moved by itself, with a tread all that is behind it.
     const std::size_t first = straight_piece(found.s, found.face);
@@ -92,17 +100,17 @@ Vec2 Estimator::correct_map(WheelPath path, const MapError& found) {
         if (found_[k] && is_face(k) == found.face && (k == first || !found.face)) *found_[k] -= found.face ? by.x : by.z;
     path_ = std::move(path);
     offset_[0] = offset_[0] - by;
-    if (both) offset_[1] = offset_[1] - by;
+    if (found.both) offset_[1] = offset_[1] - by;
     for (int i = 0; i < 4; ++i) {
         WheelState& w = wheels_[i];
         w.s = path_.project(place_ + offset_[i / 2] + w.leg.wheel, 0.0, path_.length());
-        w.put_back = w.known = 0.0, w.met = -1e9, w.recalled = 0;
+        w.put_back = w.known = 0.0, w.met = -1e9, w.recalled = 0, w.told = {};
         const auto& pieces = path_.pieces();
         for (std::size_t k = 0; k < pieces.size(); ++k)
-            if (!pieces[k].arc && pieces[k].s <= w.s) w.face = w.face_before = k;
+            if (!pieces[k].arc && pieces[k].s <= w.s) w.face = w.clear = w.clear_before = k;
     }
     estimate_.map_error.reset();
-    return (both ? -1.0 : -0.5) * by;
+    return (found.both ? -1.0 : -0.5) * by;
 }
 
 }  // namespace stairwright::estimation

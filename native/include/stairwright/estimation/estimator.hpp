@@ -64,6 +64,7 @@ struct MapError {
     bool face = false;  // else a tread
     double s = 0.0;     // where on the wheel-centre curve [m]
     Vec2 off;           // the map less what was found [m]; of a face x counts, of a tread z
+    bool both = false;  // rear wheels are on the same ground, or know of it already
 };
 
 // What the filter says of itself.
@@ -113,8 +114,10 @@ class Estimator {
         Vec2 felt;                // the force, smoothed [N]
         double traction = 0.0;    // smoothed [N]
         double s;                 // place on the curve [m]
-        std::size_t recalled = 0;  // the last piece of which it knows what front wheels found
-        std::size_t face = 0, face_before = 0;  // pieces of the curve, the last straight ones
+        std::size_t recalled = 0;  // the last piece on which it has recalled what front wheels found
+        std::array<std::size_t, 2> told{};  // pieces of which they had found something then, 0 for none
+        std::size_t face = 0;  // piece of the curve, the last straight one
+        std::size_t clear = 0, clear_before = 0;  // the last straight ones that it was on clear of corners
         bool missed = false;      // it is put back now
         double put_back = 0.0;    // how far it has been put back on that piece, see Estimator::put_back [m]
         double rolled = 0.0;      // by the last step [m]
@@ -143,6 +146,7 @@ class Estimator {
     // What front wheels find of a face or tread the rear wheels know when they get there.
     void remember(double s, bool face, double off);
     void recall(WheelState& rear);
+    bool rear_knows(double s, bool face) const;
     std::size_t straight_piece(double s, bool face) const;
     bool is_face(std::size_t piece) const;
     bool before_drop(const CurveMatch& on) const;
