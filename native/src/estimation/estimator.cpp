@@ -217,7 +217,8 @@ void Estimator::enter_face(int i, const CurveMatch& on) {
     if (on.corner || path_.pieces()[on.piece].arc) return;
     if (on.piece != w.face) w.face = on.piece, w.put_back = w.landed = 0.0;
     // In a corner a wheel goes to and fro between two faces, and measures both: what is unsure is so once it has left it.
-    if (on.piece == w.clear || std::abs(nearest_corner(on.s) - on.s) < kNearCorner) return;
+    const double corner = std::min(kNearCorner, 0.5 * path_.pieces()[on.piece].length);
+    if (on.piece == w.clear || std::abs(nearest_corner(on.s) - on.s) < corner) return;
     const bool tread = on.point.normal.z > kTread, was_tread = path_.pieces()[w.clear].at(0.0, path_.radius()).normal.z > kTread;
     const bool known = on.piece == w.clear_before;  // it comes back to it
     w.clear_before = w.clear, w.clear = on.piece;
