@@ -107,7 +107,6 @@ void bind_own_senses(nb::module_& m) {
         .def("watch", [](SafeStop& self, double position, bool advancing, double dt) {
             return static_cast<int>(self.watch(position, advancing, 0.0, 0.0, dt));
         }, nb::arg("position"), nb::arg("advancing"), nb::arg("dt"), "Why to stop: 0 not at all, 1 no progress.");
-
 }
 
 }  // namespace
