@@ -51,7 +51,9 @@ const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool 
     const control::Reference held = early_face_.step(adapted_, seen.ahead.found, *seen.places, dt);
     const std::array<Vec2, 2> ground = early_face_.ground(controller_.path(), adapted_, seen.ground);
     leg_fit_.follow({0.5 * (seen.ahead.found[0] + seen.ahead.found[1]), 0.0});
-    adapted_ = face_search_.step(leg_fit_.fit(held, ground, controller_.path(), controller_.friction(), dt), moving ? seen.ahead : control::Ahead{}, *seen.places, safe_stop_.waited() > kStalled, dt);
+    const control::Reference fitted = leg_fit_.fit(held, ground, controller_.path(), controller_.friction(), dt);
+    const control::Ahead ahead = moving ? seen.ahead : control::Ahead{};
+    adapted_ = face_search_.step(fitted, ahead, *seen.places, safe_stop_.waited() > kStalled, dt);
     const control::Reference& next = adapted_;
     const auto [w, x, y, z] = seen.state.quaternion;
     const double pitch = std::atan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y));
