@@ -175,6 +175,14 @@ def shared(browser: Browser, server: Server) -> Iterator[Product]:
 
 
 @pytest.fixture
+def fresh(shared: Product) -> Iterator[Product]:
+    """That page, showing three stairs; an error that nobody caught fails the test."""
+    shared.errors.clear()
+    yield shared.fresh()
+    assert shared.errors == []
+
+
+@pytest.fixture
 def offline_live(page: Page) -> Product:
     """The page behind a proxy that knows no WebSockets."""
     page.route_web_socket("**/plans/live", lambda socket: socket.close())

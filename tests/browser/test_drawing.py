@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import pytest
@@ -21,11 +20,9 @@ pytestmark = [pytest.mark.browser]
 
 
 @pytest.fixture
-def product(shared: Product) -> Iterator[Product]:
+def product(fresh: Product) -> Product:
     """The page that these tests share, showing three stairs."""
-    shared.errors.clear()
-    yield shared.fresh()
-    assert shared.errors == []
+    return fresh
 
 
 def _canvas(product: Product) -> FloatRect:

@@ -7,7 +7,6 @@ import json
 import math
 import re
 import time
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import pytest
@@ -28,11 +27,9 @@ pytestmark = [pytest.mark.browser]
 
 
 @pytest.fixture
-def product(shared: Product) -> Iterator[Product]:
+def product(fresh: Product) -> Product:
     """The page that these tests share, showing three stairs."""
-    shared.errors.clear()
-    yield shared.fresh()
-    assert shared.errors == []
+    return fresh
 
 
 # Keys faster than the page can draw; returns the corner with the focus after each.

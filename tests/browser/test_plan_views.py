@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import json
 import re
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import pytest
@@ -20,11 +19,9 @@ pytestmark = [pytest.mark.browser]
 
 
 @pytest.fixture
-def product(shared: Product) -> Iterator[Product]:
+def product(fresh: Product) -> Product:
     """The page that these tests share, showing three stairs."""
-    shared.errors.clear()
-    yield shared.fresh()
-    assert shared.errors == []
+    return fresh
 
 
 def _choose_robot(page: Page, name: str) -> None:
