@@ -50,12 +50,13 @@ def slowed_where_strained(plan: Plan, effort: Floats) -> Plan:
     strained = np.flatnonzero(effort > STRAINED)
     if not len(strained):
         return plan
+    standing = effort[strained]
+    spare = np.maximum(_MOST - standing, 1e-3)
     times = np.array([pose.time for pose in plan.poses])
     for _ in range(_ROUNDS):
         found = dynamics_of(plan, times, strained)
         # What motion takes falls with the square of the speed.
-        spare = np.maximum(_MOST - effort[strained], 1e-3)
-        slower = np.sqrt(np.maximum((found.share - effort[strained]) / spare, 1.0))
+        slower = np.sqrt(np.maximum((found.share - standing) / spare, 1.0))
         if slower.max() == 1.0:
             break
         even = even_times(times)
