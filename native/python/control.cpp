@@ -105,7 +105,7 @@ void bind_own_senses(nb::module_& m) {
     nb::class_<SafeStop>(m, "SafeStop", "When to give up, see control/safe_stop.hpp.")
         .def(nb::init<>())
         .def("watch", [](SafeStop& self, double position, bool advancing, double dt) {
-            return static_cast<int>(self.watch(position, advancing, 0.0, 0.0, dt));
+            return static_cast<int>(self.watch(position, advancing, 0.0, 0.0, false, dt));
         }, nb::arg("position"), nb::arg("advancing"), nb::arg("dt"), "Why to stop: 0 not at all, 1 no progress.");
 }
 

@@ -149,6 +149,27 @@ def test_slippery_ground_stops_it_safely(plan: Plan) -> None:
     assert "stands" in run.reason
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.1, 0.2, 0.3])
+def test_a_robot_that_has_slid_away_stops_and_says_that_it_is_lost(friction: float) -> None:
+    """A ramp of 34 degrees turns slippery when the robot is on it."""
+    plan = sw.plan({"points": [[-1.4, 0], [0, 0], [0.735, -0.5], [2.3, -0.5]]}, "a1_wheeled", 0.6)
+    run = Run(plan, plan.friction, parse_settings(ROBOT), Disturbance(), 0, 50.0)
+    on_the_ramp = run.track.start + 0.6 * (run.track.end - run.track.start)
+
+    def turns_slippery(_: object) -> None:
+        if run.position > on_the_ramp:
+            model = run.physics.model
+            model.geom_friction[:, 0] = model.pair_friction[:, :2] = friction
+
+    result = run.result(run.simulate(None, turns_slippery), keep_plan=False)
+    assert result.outcome == "stopped", result.reason
+    assert "lost its place" in result.reason
+    assert run.native is not None
+    # It believes the wheels again, whatever it believed while they slid.
+    assert np.abs(np.asarray(run.native.judged)[-20:, 4]).max() < 0.05
+
+
 def test_robot_sensing_needs_the_native_loop() -> None:
     with pytest.raises(InputError) as caught:
         parse_settings({"sensing": "robot", "form": "paper"})

@@ -39,6 +39,7 @@ STANDS = 1.0  # s that a robot which gave up must stand
 STOPS = {  # why it gives up, see control/safe_stop.hpp
     1: "the wheels did not follow the plan for 3 s",
     2: "the trunk leant too far from the plan",
+    3: "the ground under the wheels is over 12 cm from where the map has it: it has lost its place",
 }
 CHUNK = 125  # control steps between reports of progress
 

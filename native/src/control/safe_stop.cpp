@@ -16,7 +16,7 @@ constexpr double kMostRoll = 0.20;    // rad
 
 SafeStop::SafeStop() { reached_.fill(-std::numeric_limits<double>::infinity()); }
 
-Stop SafeStop::watch(double position, bool advancing, double pitch_error, double roll, double dt) {
+Stop SafeStop::watch(double position, bool advancing, double pitch_error, double roll, bool lost, double dt) {
     if (why_ != Stop::none) return why_;
     waited_ = advancing ? waited_ + dt : 0.0;
     if (position > mark_ + kProgress) mark_ = position, waited_ = 0.0;
@@ -28,6 +28,7 @@ Stop SafeStop::watch(double position, bool advancing, double pitch_error, double
     }
     if (best_ - reached_.front() < kProgress) why_ = Stop::no_progress;
     if (std::abs(pitch_error) > kMostPitch || std::abs(roll) > kMostRoll) why_ = Stop::tilted;
+    if (lost) why_ = Stop::lost;
     return why_;
 }
 

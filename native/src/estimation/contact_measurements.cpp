@@ -113,8 +113,9 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
         const Error ph = covariance_.times(h);
         double spread = deviation * deviation + reading * reading;
         for (std::size_t k = 0; k < kErrors; ++k) spread += h[k] * ph[k];
-        if (residual * residual > kGate * spread) return;
+        if (residual * residual > kGate * spread) return false;
         covariance_.update(h, residual, deviation * deviation * lasts + reading * reading, error);
+        return true;
     };
     // Sideways; the axis turns with the trunk.
     Error h = row(axis);
@@ -147,7 +148,8 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
     // The nearer to its grip, the less a wheel's turning says.
     const double used = std::abs(w.traction) / std::max(dot(w.felt, n), 0.02 * weight_) / kGripUsed;
     const double crept = noise_.creep * w.traction / (0.25 * weight_);
-    update(h, t, (1.0 + scale_) * rolled - crept - dot3(t, speed), std::hypot(noise_.rolling * std::max(1.0, used * used), askew));
+    const double slips = noise_.rolling * std::max(1.0, used * used);
+    wheels_[i].contradicts = !update(h, t, (1.0 + scale_) * rolled - crept - dot3(t, speed), std::hypot(slips, askew));
     if (w.landed < kBounce) return;  // always the same way: what was given way before it was felt comes back
     h = row(off);
     const bool round = path_.on_arc(on.s);

@@ -23,6 +23,9 @@ constexpr double kHopSpeed = 0.2;       // m/s of the trunk from which on a rise
 constexpr double kSure = 0.02;         // s that both faces of a corner must be felt before that counts
 constexpr double kMostScale = 0.025;   // of the wheels: more is slip
 constexpr double kBeside = 1e-6;        // m
+constexpr double kContradicted = 0.05;  // s
+constexpr double kWrongVelocity = 0.5;  // m/s
+constexpr double kMostMapError = 0.12;  // m
 constexpr double kBeyondDoubt = 3.0;    // standard deviations
 
 Error initial(const Noise& n) {
@@ -56,12 +59,13 @@ const Estimate& Estimator::step(const Readings& readings, double dt) {
     predict(readings, dt);
     see_legs(readings, dt);
     estimate_.hanging = {}, estimate_.found = {};
-    for (WheelState& w : wheels_) w.missed = false;
+    for (WheelState& w : wheels_) w.missed = w.contradicts = false;
     for (int i = 0; i < 4; ++i) measure(i, readings, dt);
     for (int i = 2; i < 4; ++i) recall(wheels_[i]);
     // One wheel that has found the face is enough: a robot that comes obliquely does not touch with both.
     for (int pair = 0; pair < 2; ++pair) estimate_.searching[pair] = wheels_[2 * pair].missed && wheels_[2 * pair + 1].missed;
     started_ = true;
+    believe_wheels_again(dt);
     find_map_error();
     report(readings);
     return estimate_;
@@ -204,7 +208,7 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     estimate_.used_grip[i] = std::abs(w.traction) / std::max(dot(w.felt, on.point.normal), 0.02 * weight_);
     if (!estimate_.touching[i]) return;
     Error error{};
-    if (!unsure) measure_place(i, on, along_x, along_z, centre, dt, error);
+    if (!unsure && !estimate_.lost) measure_place(i, on, along_x, along_z, centre, dt, error);
     measure_rolling(i, on, readings, along_x, along_z, dt, error);
     correct(error);
     if (on.corner && on.after.x < -kTread)
@@ -226,6 +230,18 @@ void Estimator::enter_face(int i, const CurveMatch& on) {
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
     const double error = tread ? noise_.face_place : noise_.tread_height;
     covariance_.add_noise(tread ? own : own + 1, 0.5 * error * error);
+}
+
+// A filter that is surer of a wrong velocity, as after a slide, than wheels can tell it turns down all that they say, for
+// ever. What none of them can be reconciled with it is to doubt.
+void Estimator::believe_wheels_again(double dt) {
+    bool touching = false, contradicted = true;
+    for (int i = 0; i < 4; ++i)
+        if (estimate_.touching[i]) touching = true, contradicted = contradicted && wheels_[i].contradicts;
+    contradicted_ = touching && contradicted ? contradicted_ + dt : 0.0;
+    if (contradicted_ < kContradicted) return;
+    contradicted_ = 0.0;
+    for (const std::size_t k : {0, 2}) covariance_.add_noise(kVelocity + k, kWrongVelocity * kWrongVelocity);
 }
 
 double Estimator::nearest_corner(double s) const {
@@ -258,6 +274,7 @@ void Estimator::report(const Readings& readings) {
     out.velocity = velocity_, out.angular_velocity = rate_;
     for (int i = 0; i < 4; ++i) estimate_.places[i] = wheels_[i].s;
     const Vec2 apart = 0.5 * (offset_[1] - offset_[0]);
+    for (const Vec2 off : offset_) estimate_.lost = estimate_.lost || norm(off) > kMostMapError;
     estimate_.ground = {apart, -1.0 * apart};
 }
 

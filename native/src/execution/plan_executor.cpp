@@ -58,9 +58,8 @@ const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool 
     const auto [w, x, y, z] = seen.state.quaternion;
     const double pitch = std::atan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y));
     const double error = std::remainder(pitch - next.value.pitch, 2 * std::numbers::pi);
-    if (safe_stop_.watch(follower_.position(), moving && !follower_.arrived(), error, std::asin(std::clamp(2 * (y * z + w * x), -1.0, 1.0)), dt) ==
-        control::Stop::none)
-        return next;
+    const double roll = std::asin(std::clamp(2 * (y * z + w * x), -1.0, 1.0));
+    if (safe_stop_.watch(follower_.position(), moving && !follower_.arrived(), error, roll, seen.lost, dt) == control::Stop::none) return next;
     stopped_at_ = time;
     stand_ = controller_.standing(seen.state, *seen.places);
     stand_.progress = next.progress;

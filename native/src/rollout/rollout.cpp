@@ -46,7 +46,7 @@ bool Rollout::diverged() const {
 Perceived Rollout::perceive(std::span<const double> noise) {
     if (auto* ideal = std::get_if<SensorModel>(&perception_)) {
         const RobotState& state = ideal->perceive(truth(), noise);
-        return {state, {}, {}, {}, {}, {}, state.joints, state.joint_rates};
+        return {state, {}, {}, {}, {}, false, {}, state.joints, state.joint_rates};
     }
     return std::get<RobotSense>(perception_).perceive(truth(), torques_, dt_);
 }

@@ -12,6 +12,7 @@ enum class Stop {
     none = 0,
     no_progress = 1,  // the plan has waited for the wheels for too long
     tilted = 2,       // the trunk is far off its planned pitch, or leans sideways
+    lost = 3,         // what the wheels find is not what the map has
 };
 
 class SafeStop {
@@ -19,8 +20,8 @@ class SafeStop {
     SafeStop();
 
     // One control step: the plan's path position [m] and whether it is to advance, pitch against the plan's and roll
-    // [rad]. Returns why to stop; once given, an answer stays. Time in which the plan is to wait does not count.
-    Stop watch(double position, bool advancing, double pitch_error, double roll, double dt);
+    // [rad], whether it has lost its place. Returns why to stop; once given, an answer stays. Time in which the plan is to wait does not count.
+    Stop watch(double position, bool advancing, double pitch_error, double roll, bool lost, double dt);
 
     Stop why() const { return why_; }
     // Since it was 5 mm farther than when this began anew, or was to wait [s].

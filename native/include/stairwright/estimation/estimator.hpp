@@ -80,6 +80,7 @@ struct Estimate {
     std::array<bool, 2> hanging{};    // a wheel of the pair stays in the air where the map has it pass a corner
     std::optional<MapError> map_error;
     std::array<bool, 2> searching{};  // the map has a face where the pair is, and it feels none
+    bool lost = false;                // the ground is farther from where the map has it than any map is wrong
     std::array<double, 2> found{};    // how much farther on each pair is by what a wheel in a corner measured at this step [m]
 };
 
@@ -119,6 +120,7 @@ class Estimator {
         std::size_t face = 0;  // piece of the curve, the last straight one
         std::size_t clear = 0, clear_before = 0;  // the last straight ones that it was on clear of corners
         bool missed = false;      // it is put back now
+        bool contradicts = false; // it rolls otherwise than the filter can believe
         double put_back = 0.0;    // how far it has been put back on that piece, see Estimator::put_back [m]
         double rolled = 0.0;      // by the last step [m]
         double rate_now = 0.0;    // absolute, of its turning [rad/s]
@@ -142,6 +144,7 @@ class Estimator {
     void put_back(int wheel, Vec2 along, double excess, Error& error);
     void compare_with_map(int wheel, const CurveMatch& on, double dt);
     void find_map_error();
+    void believe_wheels_again(double dt);
     void enter_face(int wheel, const CurveMatch& on);
     // What front wheels find of a face or tread the rear wheels know when they get there.
     void remember(double s, bool face, double off);
@@ -166,6 +169,7 @@ class Estimator {
     std::array<Vec2, 2> offset_{};
     double scale_ = 0.0;
     bool started_ = false;
+    double contradicted_ = 0.0;  // for how long by all wheels that touch [s]
     Covariance covariance_;
     std::array<WheelState, 4> wheels_;
     std::vector<std::optional<double>> found_;  // of each piece, by front wheels: offset along of a face, up of a tread [m]

@@ -14,6 +14,7 @@ struct Perceived {
     std::array<Vec2, 2> ground{};                 // how the pairs' ground differs, see estimation::Estimate
     control::Ahead ahead{};
     std::array<double, 4> used_grip{};            // of the wheels, see estimation::Estimate
+    bool lost = false;                            // its place on the map
     std::optional<estimation::MapError> map_error;
     std::array<double, 12> joints{}, joint_rates{};  // what the drives read now
 };
