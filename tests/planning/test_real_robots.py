@@ -22,6 +22,13 @@ def test_a_stair_is_climbed(robot):
     assert run.metrics.link_contacts == 0
 
 
+@pytest.mark.slow
+def test_a_larger_robot_keeps_farther_from_the_ground():
+    """It strays farther from its plan than an A1, for which 16 mm are safe."""
+    plan = sw.plan("stairs-building", "anymal_wheels")
+    assert min(pose.margins.clearance for pose in plan.poses) > 0.018
+
+
 # Every terrain once, and every robot; `benchmarks/robots.py` asks all pairs.
 PAIRS = [(REAL[k % len(REAL)], terrain) for k, terrain in enumerate(sorted(sw.terrains()))]
 

@@ -14,7 +14,7 @@ namespace stairwright::smoothing {
 
 namespace {
 
-constexpr double kClearance = 0.016;  // m; clearance that is safe
+constexpr double kClearance = 0.016;  // m; clearance that is safe for legs of 0.4 m, and for shorter ones
 constexpr double kTrunkClearance = 0.06;   // m of trunk clearance beyond which more is worth nothing, for legs of 0.4 m
 // Of the cost terms at a user's weight of 1, per node.
 constexpr double kComWeight = 15.0;     // 1/m
@@ -28,11 +28,11 @@ constexpr double kHardWeight = 600.0;
 constexpr double kFirmTorque = 0.12;  // share of a motor's torque that a path leaves, a little more than it must
 
 // Clearance of a calf's end above level ground: more cannot be had on any.
-double calf_end_clearance(const RobotModel& robot) {
+double calf_end_clearance(const RobotModel& robot, double safe) {
     double out = std::numeric_limits<double>::infinity();
     for (const LegModel& leg : robot.legs)
         for (const Capsule& c : leg.leg.calf.shape) out = std::min(out, leg.leg.wheel.radius - c.radius);
-    return std::max(out, kClearance);
+    return std::max(out, safe);
 }
 
 template <typename Value>
@@ -54,13 +54,15 @@ Objective objective(const RefineProblem& problem, const NodeSpacing& spacing, do
     o.reserve = {0.02 * size, 50.0 * root};
     o.lagged = {0.06 * size, kComWeight * root * std::sqrt(w.com_margin)};
     const ExtraMargins& more = problem.extra;
-    o.trunk = MarginTerm{kClearance, 150.0 * root, 0.002}.with(more.trunk);
-    o.links = MarginTerm{kClearance, 150.0 * root, 0.004}.with(more.links);
+    // A larger robot strays farther from its plan.
+    const double large = std::max(1.0, size), safe = kClearance * large;
+    o.trunk = MarginTerm{safe, 150.0 * root, 0.002 * large}.with(more.trunk);
+    o.links = MarginTerm{safe, 150.0 * root, 0.004 * large}.with(more.links);
     o.reach = MarginTerm{0.006 * size, 150.0 * root, 0.0005}.with(more.reach);
     const double room = kRoomWeight * root * std::sqrt(w.clearance);
     o.trunk_room = MarginTerm{kTrunkClearance * size, room}.with(more.trunk);
-    o.early = {kClearance, kEarlyWeight * root};
-    o.links_room = {calf_end_clearance(problem.robot), room};
+    o.early = {safe, kEarlyWeight * root};
+    o.links_room = {calf_end_clearance(problem.robot, safe), room};
     o.torque_weight = kTorqueWeight * root * std::sqrt(w.torque);
     o.torque_room = {0.2, 8.0 * root, kFirmTorque};
     o.torque_hard = 100.0;
