@@ -147,6 +147,13 @@ void bind_rollout(nb::module_& m) {
         .def("adopt", [](Rollout& r, const PlanFollower& follower, double friction) { r.executor().adopt(follower, friction); },
              nb::arg("follower"), nb::arg("friction"), "Another plan from now on, made for `friction`.")
         .def("correct_map", &Rollout::correct_map, nb::arg("path"), "A map on which `map_error` is mended; another plan has to follow.")
+        .def("carry", &Rollout::carry, nb::arg("robot"), nb::arg("grip_need"),
+             "The robot with its `load` from now on, which tests the ground for that friction; another plan has to follow.")
+        .def_prop_ro("load", [](const Rollout& r) -> std::optional<std::pair<double, double>> {
+            const auto& load = r.executor().load();
+            if (!load) return {};
+            return std::pair(load->mass, load->ahead);
+        }, "Mass [kg] that the weighing before the start found and nobody has told of, and how far ahead of the trunk point it is [m].")
         .def_prop_ro("map_error", [](const Rollout& r) -> std::optional<std::tuple<bool, double, double, double, bool>> {
             const auto& found = r.executor().map_error();
             if (!found) return {};

@@ -6,6 +6,7 @@ thigh and calf, straight capsules); here nothing is left out. SI units; frames o
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -110,6 +111,17 @@ class Body:
     def corners(self) -> Floats:
         """(n, 2) corners of all pieces [m]."""
         return np.array([point for piece in self.outline for point in piece.points])
+
+    def top(self, x: float) -> tuple[float, float]:
+        """(x, z) of the highest point at `x`, or at the trunk's end where `x` is beyond it [m]."""
+        x = float(np.clip(x, self.corners[:, 0].min(), self.corners[:, 0].max()))
+        heights = [
+            z0 + (z1 - z0) * (x - x0) / (x1 - x0)
+            for piece in self.outline
+            for (x0, z0), (x1, z1) in itertools.pairwise([*piece.points, piece.points[0]])
+            if x0 != x1 and min(x0, x1) <= x <= max(x0, x1)
+        ]
+        return x, max(heights, default=float(self.corners[:, 1].max()))
 
     @property
     def span(self) -> float:

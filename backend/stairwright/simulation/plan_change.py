@@ -11,7 +11,7 @@ from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
 from .governor import Track, follower, lead_of, plan_track
 from .map_correction import corrected, nearest_row
-from .replanning import after_slip, needed_friction, plan_anew
+from .replanning import after_slip, after_weighing, needed_friction, plan_anew, tested_friction
 
 
 class PlanChange:
@@ -43,7 +43,19 @@ class PlanChange:
             self._mend_map(*loop.map_error)
         elif loop.slipped is not None:
             return self._after_slip(*loop.slipped)
+        elif loop.load is not None:
+            return self._after_weighing(*loop.load)
         return ""
+
+    def _after_weighing(self, mass: float, ahead: float) -> str:
+        """Go on with a plan for what the robot carries."""
+        decision = after_weighing(self._plan, mass, ahead)
+        if decision.plan is not None:
+            self._plan = plan = decision.plan
+            track = plan_track(plan, self._path, self._settings)
+            self._loop.carry(plan.robot_description.native, tested_friction(track, plan))
+            self._follow(plan)
+        return decision.why
 
     def _after_slip(self, found: float, front: bool) -> str:
         need = needed_friction(self.track, self._plan)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from stairwright.control.setpoint import SHARE
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
 from stairwright.planning.planner import plan as make_plan
+from stairwright.robot.description import Robot
+from stairwright.robot.parts import Payload
 from stairwright.terrain.profile import Terrain
 
 from .governor import Track
@@ -19,6 +22,7 @@ LEAST = 0.2  # friction on which no robot is sent: what is known of it is too ro
 # Of the friction that was found, what another plan may need: with the motion where there is such a
 # plan, else at rest.
 USABLE = (1.0 / MOTION, 0.95)
+ABOVE = 0.05  # m above the trunk's top, of the mass centre of a load that nobody has told of
 
 
 def tested_friction(line: Track, plan: Plan) -> float:
@@ -45,12 +49,14 @@ class Decision:
     why: str = ""
 
 
-def plan_anew(old: Plan, terrain: Terrain, friction: float) -> Plan | None:
+def plan_anew(
+    old: Plan, terrain: Terrain, friction: float, robot: Robot | None = None
+) -> Plan | None:
     """A plan of the same kind over `terrain` with `friction`; None where there is none."""
     try:
         new = make_plan(
             terrain,
-            old.robot_description,
+            robot or old.robot_description,
             friction,
             old.method,
             old.weights or None,
@@ -76,4 +82,37 @@ def after_slip(plan: Plan, need: float, found: float, *, front: bool) -> Decisio
     return Decision(
         why=f"the {pair} wheels slipped at a friction of {found:.2f} before the start, the plan "
         f"needs {need:.2f} and there is none for less"
+    )
+
+
+def laden(robot: Robot, mass: float, ahead: float, pitch: float) -> Robot:
+    """The robot with a load of `mass` [kg] on top, beside the payload that it has.
+
+    Args:
+        robot: Without the load.
+        mass: Of the load.
+        ahead: Of the trunk point, horizontally, where the trunk stands at `pitch` [m, rad].
+        pitch: Of the trunk.
+    """
+    height = robot.body.top(ahead)[1] + ABOVE
+    x, top = robot.body.top((ahead - math.sin(pitch) * height) / math.cos(pitch))
+    place, own = (x, top + ABOVE), robot.payload
+    if own is not None:
+        share = mass / (mass + own.mass)
+        x, z = (share * p + (1.0 - share) * q for p, q in zip(place, own.place, strict=True))
+        mass, place = mass + own.mass, (x, z)
+    # Documents of the first schema have no payload.
+    changed = {"schema_": "stairwright/robot/2", "payload": Payload(mass=mass, place=place)}
+    return robot.model_copy(update=changed)
+
+
+def after_weighing(plan: Plan, mass: float, ahead: float) -> Decision:
+    """What to do where the robot carries `mass` [kg] that its plan is not for, see `laden`."""
+    robot = plan.robot_description
+    heavier = laden(robot, mass, ahead, plan.poses[0].pitch)
+    if new := plan_anew(plan, plan.terrain, plan.friction, heavier):
+        return Decision(new)
+    return Decision(
+        why=f"the robot weighs {heavier.mass:.1f} kg, {mass:.1f} kg more than the plan is for, and "
+        "there is none for that"
     )

@@ -138,11 +138,14 @@ void Estimator::feel_ground(const std::array<WheelForce, 4>& told, const Reading
     Vec2 lacking = {carried[0], carried[2]};
     int untold = 0;
     for (int i = 0; i < 4; ++i) lacking = lacking - wheels_[i].felt, untold += norm(told[i].untold) > 0.0;
+    std::array<Vec2, 4> all;
     for (int i = 0; i < 4; ++i) {
         const Vec2 along = told[i].untold;
         Vec2& felt = wheels_[i].felt;
         felt += share * (told[i].force + dot(felt + (1.0 / std::max(untold, 1)) * lacking, along) * along - felt);
+        all[i] = felt;
     }
+    estimate_.felt = untold ? std::nullopt : std::optional(all);
 }
 
 void Estimator::measure(int i, const Readings& readings, double dt) {

@@ -16,8 +16,8 @@ constexpr double kSamePlace = 0.15;  // m; an error of the map that was let pass
 }  // namespace
 
 PlanExecutor::PlanExecutor(control::Controller controller, control::PlanFollower follower, double grip_need, bool mends_map)
-    : controller_(std::move(controller)), follower_(std::move(follower)), grip_test_(controller_.robot(), grip_need),
-      leg_fit_(controller_.robot()), mends_map_(mends_map) {}
+    : controller_(std::move(controller)), follower_(std::move(follower)), weighing_(controller_.robot()),
+      grip_test_(controller_.robot(), grip_need), leg_fit_(controller_.robot()), mends_map_(mends_map) {}
 
 bool PlanExecutor::hangs(const control::Ahead& ahead) const {
     const auto& forces = follower_.target().forces;
@@ -30,9 +30,24 @@ bool PlanExecutor::before_drop() const {
     return controller_.path().next_drop(front) < front + kEarlyDrop;
 }
 
+const control::Reference& PlanExecutor::prepare(const control::Reference& drawn, const Perceived& seen, double dt) {
+    const bool level = seen.ahead.on_tread[0] && seen.ahead.on_tread[1];
+    adapted_ = drawn;
+    if (waits_) return adapted_;
+    if (!weighing_.over()) {
+        weighing_.step(seen.state, controller_.path(), *seen.places, seen.felt, level, dt);
+        waits_ = weighing_.load().has_value();
+        return adapted_;
+    }
+    adapted_ = grip_test_.step(drawn, seen.state, seen.used_grip, level, dt);
+    waits_ = grip_test_.over() && grip_test_.slipped();
+    if (grip_test_.over()) creep_ = grip_test_.creep();
+    return adapted_;
+}
+
 const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool moving, double time, double dt) {
     if (safe_stop_.why() != control::Stop::none) return stand_;
-    moving = moving && grip_test_.over() && !waits_;
+    moving = moving && (!seen.places || prepared()) && !waits_;
     if (mends_map_ && moving && seen.map_error && !map_error_ && std::abs(seen.map_error->s - ignored_) > kSamePlace)
         map_error_ = seen.map_error, waits_ = true;
     moving = moving && !waits_ && plan_change_.over();
@@ -41,12 +56,7 @@ const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool 
     for (std::size_t i = 0; i < 4; ++i) places[i] -= early_face_.ahead()[i / 2];
     const control::Reference& drawn = follower_.advance(places, moving && !searching, dt, hangs(seen.ahead), before_drop());
     if (!seen.places) return drawn;
-    if (!grip_test_.over() && plan_change_.over()) {
-        adapted_ = grip_test_.step(drawn, seen.state, seen.used_grip, seen.ahead.on_tread[0] && seen.ahead.on_tread[1], dt);
-        waits_ = grip_test_.over() && grip_test_.slipped();
-        if (grip_test_.over()) creep_ = grip_test_.creep();
-        return adapted_;
-    }
+    if (!prepared() && plan_change_.over()) return prepare(drawn, seen, dt);
     adapted_ = plan_change_.step(drawn, dt);
     const control::Reference held = early_face_.step(adapted_, seen.ahead.found, *seen.places, dt);
     const std::array<Vec2, 2> ground = early_face_.ground(controller_.path(), adapted_, seen.ground);
@@ -83,6 +93,12 @@ void PlanExecutor::adopt(control::PlanFollower follower, double friction) {
     safe_stop_ = {};
     early_face_.reset();
     waits_ = false;
+}
+
+void PlanExecutor::carry(const Robot& robot, double grip_need) {
+    controller_.believe(robot);
+    grip_test_ = control::GripTest(robot, grip_need);
+    leg_fit_ = control::LegFit(robot);
 }
 
 void PlanExecutor::correct_map(const WheelPath& path, Vec2 shift) {

@@ -45,16 +45,27 @@ bool Rollout::diverged() const {
 
 Perceived Rollout::perceive(std::span<const double> noise) {
     if (auto* ideal = std::get_if<SensorModel>(&perception_)) {
-        const RobotState& state = ideal->perceive(truth(), noise);
-        return {state, {}, {}, {}, {}, false, {}, state.joints, state.joint_rates};
+        Perceived seen;
+        seen.state = ideal->perceive(truth(), noise);
+        seen.joints = seen.state.joints, seen.joint_rates = seen.state.joint_rates;
+        return seen;
     }
-    return std::get<RobotSense>(perception_).perceive(truth(), torques_, dt_);
+    control::Torques told = torques_;  // by the motors' currents, as if their torques were those that are asked for
+    for (double& torque : told) torque /= scale_;
+    return std::get<RobotSense>(perception_).perceive(truth(), told, dt_);
 }
 
 void Rollout::correct_map(const WheelPath& path) {
     auto* sense = std::get_if<RobotSense>(&perception_);
     if (sense == nullptr || !executor_.map_error()) throw std::invalid_argument("there is no error of the map to correct");
     executor_.correct_map(path, sense->estimator().correct_map(path, *executor_.map_error()));
+}
+
+void Rollout::carry(const Robot& robot, double grip_need) {
+    auto* sense = std::get_if<RobotSense>(&perception_);
+    if (sense == nullptr || !executor_.load()) throw std::invalid_argument("nothing was found that the robot carries");
+    executor_.carry(robot, grip_need);
+    sense->estimator().believe(robot);
 }
 
 void Rollout::control(const Perceived& seen, bool moving, double time) {

@@ -94,8 +94,9 @@ class Controller {
     // To stand as the robot does at `state`, its wheels at `places`: still, with the forces that hold it there.
     Reference standing(const RobotState& state, const std::array<double, 4>& places) const;
 
-    // A friction or a wheel-centre curve other than the one it was made with.
+    // A friction, a wheel-centre curve or a robot (the same one with other masses) other than the one it was made with.
     void believe(double friction) { friction_ = friction; }
+    void believe(const Robot& robot) { robot_ = robot, mass_ = robot.mass(); }
     void believe(WheelPath path) { path_ = std::move(path); }
 
     const Robot& robot() const { return robot_; }

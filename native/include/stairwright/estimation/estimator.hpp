@@ -76,6 +76,8 @@ struct Estimate {
     std::array<Vec2, 2> ground{};
     std::array<bool, 2> on_tread{};   // of each pair: it can roll on for a while
     std::array<bool, 2> nearing{};    // of each pair: on a tread, near to the next face
+    // The ground's force on each wheel, world x-z, where all legs tell theirs [N].
+    std::optional<std::array<Vec2, 4>> felt;
     std::array<double, 4> used_grip{};  // tangential force over normal force of each wheel, as the legs feel them
     std::array<bool, 2> hanging{};    // a wheel of the pair stays in the air where the map has it pass a corner
     std::optional<MapError> map_error;
@@ -93,6 +95,8 @@ class Estimator {
 
     // How much slower than they roll the wheels move, see Noise [m/s].
     void believe_creep(double creep) { noise_.creep = creep; }
+    // What the robot is from now on: the same one with other masses.
+    void believe(const Robot& robot) { robot_ = robot, weight_ = robot.mass() * kGravity; }
     // Another map from now on, on which the face or tread of `found` is where it was found. Returns by how much the robot's
     // place on the map is another one by that [m].
     Vec2 correct_map(WheelPath path, const MapError& found);

@@ -1,4 +1,4 @@
-// One control step of a plan, from what is perceived to what the drives are told: test of the grip, the plan's progress,
+// One control step of a plan, from what is perceived to what the drives are told: weighing, test of the grip, the plan's progress,
 // legs that fit the ground, search for faces, safe stop, balance controller. The rollout and the player on a robot run
 // the same one.
 #pragma once
@@ -12,6 +12,7 @@
 #include "stairwright/control/plan_change.hpp"
 #include "stairwright/control/plan_follower.hpp"
 #include "stairwright/control/safe_stop.hpp"
+#include "stairwright/control/weighing.hpp"
 #include "stairwright/execution/perceived.hpp"
 
 namespace stairwright::execution {
@@ -30,10 +31,14 @@ class PlanExecutor {
     void begin_from(const Perceived& seen);
 
     // The plan goes on, or another one from now on with the friction that it was made for [1]. The robot stands and
-    // waits for this after a test of the grip in which wheels slipped.
+    // waits for this after a weighing that found a load, and after a test of the grip in which wheels slipped.
     void go_on();
     void adopt(control::PlanFollower follower, double friction);
     bool waits() const { return waits_; }
+    // What the weighing before the start found that nobody has told of.
+    const std::optional<control::Load>& load() const { return weighing_.load(); }
+    // The robot with that from now on, which tests the ground for another friction [1]; another plan has to follow.
+    void carry(const Robot& robot, double grip_need);
     // What the test of the grip before the start found, if wheels slipped.
     const std::optional<control::Grip>& slipped() const { return grip_test_.slipped(); }
     // The map's error that the robot waits for somebody to decide on.
@@ -61,10 +66,14 @@ class PlanExecutor {
     bool hangs(const control::Ahead& ahead) const;
     // Whether the plan has the front wheels where an edge that leads down may come before its place, or on it.
     bool before_drop() const;
+    // The plan's set point while the robot finds out what it has to know before it starts.
+    const control::Reference& prepare(const control::Reference& drawn, const Perceived& seen, double dt);
+    bool prepared() const { return weighing_.over() && grip_test_.over(); }
     const control::Reference& next_target(const Perceived& seen, bool moving, double time, double dt);
 
     control::Controller controller_;
     control::PlanFollower follower_;
+    control::Weighing weighing_;
     control::GripTest grip_test_;
     control::PlanChange plan_change_;
     control::SafeStop safe_stop_;

@@ -44,6 +44,9 @@ class Rollout {
     // A map without the error that the robot waits for somebody to decide on. Another plan has to follow.
     void correct_map(const WheelPath& path);
 
+    // The robot with what it was found to carry, see PlanExecutor::carry.
+    void carry(const Robot& robot, double grip_need);
+
     // What carries out the plan; decisions that it waits for go there.
     execution::PlanExecutor& executor() { return executor_; }
     const execution::PlanExecutor& executor() const { return executor_; }
