@@ -169,6 +169,15 @@ def test_a_payload_has_a_place_and_motors_are_not_as_believed() -> None:
     np.testing.assert_allclose(model.dof_frictionloss[6:], plain.dof_frictionloss[6:] + 0.2)
 
 
+def test_a_payload_without_a_place_lies_on_the_trunks_middle() -> None:
+    """Not where most corners of its outline are: a head has many of them."""
+    robot, terrain = sw.load_robot("go2w"), sw.load_terrain("flat")
+    plain = build_world(robot, terrain, 0.6, Disturbance(), pivot=0.0).body("trunk")
+    trunk = build_world(robot, terrain, 0.6, Disturbance(payload=3.0), pivot=0.0).body("trunk")
+    place = (trunk.ipos * trunk.mass[0] - plain.ipos * plain.mass[0]) / 3.0
+    np.testing.assert_allclose(place, [0.0, 0.0, 0.057 + 0.05], atol=1e-9)
+
+
 def test_faces_do_not_cross() -> None:
     narrow = sw.Terrain(points=[(-1, 0), (0, 0), (0, 0.1), (0.05, 0.1), (0.05, 0.2), (1, 0.2)])
     for seed in range(20):

@@ -20,7 +20,7 @@ from .disturbance import Disturbance
 
 _LEAST_FRICTION = 0.01
 _FACE_SLOPE = 1.0  # a stretch that is steeper (45 degrees) is a face, else a tread
-_PAYLOAD_ABOVE = 0.05  # m, mass centre of the payload above the trunk's top
+_PAYLOAD_ABOVE = 0.05  # m, mass centre of the payload above the top of the trunk's middle
 _MOST_DEVIATIONS = 2.0  # standard deviations
 _TERRAIN_STREAM = 1  # of the seed's random numbers: those of the terrain's errors
 
@@ -165,13 +165,11 @@ def disturb_trunk(spec: Any, robot: Robot, disturbance: Disturbance) -> None:
     trunk, body = spec.body("trunk"), robot.body
     mass = max(0.1, body.mass + disturbance.mass * robot.mass)
     inertia = np.array(body.inertia) * mass / body.mass
-    outline = np.array([point for piece in body.outline for point in piece.points])
-    top = np.array([outline[:, 0].mean(), 0.0, outline[:, 1].max() + _PAYLOAD_ABOVE])
-    added, place = disturbance.load.mass, disturbance.load.place
-    if place is not None:
-        top = np.array(place)
-    com = (mass * np.array(body.com) + added * top) / (mass + added)
-    for part, at in ((mass, np.array(body.com)), (added, top)):
+    added = disturbance.load.mass
+    middle, top = body.top(0.0)
+    place = np.array(disturbance.load.place or (middle, 0.0, top + _PAYLOAD_ABOVE))
+    com = (mass * np.array(body.com) + added * place) / (mass + added)
+    for part, at in ((mass, np.array(body.com)), (added, place)):
         arm = at - com
         inertia = inertia + part * (arm @ arm - arm**2)
     mass += added
