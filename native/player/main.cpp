@@ -109,6 +109,7 @@ void bring_to_rest(UdpLink& link, const Player& player) {
 int play(Player& player, UdpLink& link, const Options& options) {
     double first = 0.0, latest = 0.0, told = -1e9, done_at = 0.0, worst = 0.0, sum = 0.0;
     std::size_t steps = 0;
+    bool weighed = false;
     auto heard = Clock::now();
     while (player.phase() != Phase::damped && player.phase() != Phase::refused) {
         if (terminated || interrupts > 1) player.damp("told to stop");
@@ -124,6 +125,7 @@ int play(Player& player, UdpLink& link, const Options& options) {
             if (!options.dry_run && player.phase() != Phase::refused) link.send(command);
             const double took = since(heard);
             worst = std::max(worst, took), sum += took, ++steps;
+            if (player.load() && !weighed) std::printf("it carries %.1f kg that the plan is not for\n", player.load()->mass), weighed = true;
             if (latest - told >= 1.0) report(player, latest - first), told = latest;
         } else if (since(heard) >= patience) {
             char text[80];

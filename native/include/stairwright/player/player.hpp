@@ -52,6 +52,8 @@ class Player {
     Phase phase() const { return phase_; }
     // One sentence about how it ended or why it stopped; empty before.
     const std::string& reason() const { return reason_; }
+    // What it was found to carry before the start that the plan is not for.
+    const std::optional<control::Load>& load() const { return executor_.load(); }
     // Share of the plan that is done, 0..1.
     double done() const;
     // Largest torque of a leg's motor and of a wheel's that the last command amounts to [Nm].
