@@ -57,7 +57,8 @@ def test_a_load_is_planned_for_before_the_start() -> None:
 @pytest.mark.slow
 def test_no_plan_for_the_load_means_not_to_start() -> None:
     plan = sw.plan("single-stair-036", "go2w", friction=0.6)
-    found = sw.rollout(plan, controller=OWN, disturbance={"payload": 20.0})
+    load = {"payload": {"mass": 20.0, "place": [0.25, 0.0, 0.12]}}
+    found = sw.rollout(plan, controller=OWN, disturbance=load)
     assert found.outcome == "stopped", found.reason
     assert "kg more than the plan is for" in found.reason
     assert found.metrics.progress < 0.02
