@@ -39,6 +39,7 @@ bool Estimator::before_drop(const CurveMatch& on) const {
 }
 
 void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error) {
+    if (over_low_edge(wheels_[i], on)) return;
     const double doubt = before_drop(on) ? kMayEnd : wheels_[i].landed < kBounce ? kGivesWay : 1.0;
     const double variance = doubt * noise_.place * noise_.place * std::max(1.0, noise_.place_lasts / dt);
     const Vec2 off = on.point.centre - centre;
@@ -150,7 +151,7 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
     const double crept = noise_.creep * w.traction / (0.25 * weight_);
     const double slips = noise_.rolling * std::max(1.0, used * used);
     wheels_[i].contradicts = !update(h, t, (1.0 + scale_) * rolled - crept - dot3(t, speed), std::hypot(slips, askew));
-    if (w.landed < kBounce) return;  // always the same way: what was given way before it was felt comes back
+    if (w.landed < kBounce || over_low_edge(w, on)) return;  // always the same way: what was given way before it was felt comes back
     h = row(off);
     const bool round = path_.on_arc(on.s);
     if (round) {  // where it goes says how far round the edge it is: dn/ds = t / radius

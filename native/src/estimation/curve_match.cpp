@@ -64,13 +64,17 @@ double most_likely_on_arc(const Piece& arc, const WheelBelief& w, double radius)
 CurveMatch match(const WheelPath& path, const WheelBelief& wheel, double last, double window) {
     const auto& pieces = path.pieces();
     const double lower = std::isnan(last) ? -1.0 : last - window, upper = std::isnan(last) ? 1e9 : last + window;
+    WheelBelief unsure = wheel;
+    unsure.spread.zz += wheel.low_edge_height;
     CurveMatch best;
     best.cost = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < pieces.size(); ++k) {
         const Piece& piece = pieces[k];
         const bool first = k == 0, end = k + 1 == pieces.size();
         if ((piece.s + piece.length < lower && !end) || (piece.s > upper && !first)) continue;
-        double d = piece.arc ? most_likely_on_arc(piece, wheel, path.radius()) : most_likely(piece, wheel);
+        const bool low = wheel.low_edge != kNoPiece && (k == wheel.low_edge || k == wheel.low_edge + 1);
+        const WheelBelief& believed = low ? unsure : wheel;
+        double d = piece.arc ? most_likely_on_arc(piece, believed, path.radius()) : most_likely(piece, believed);
         const double free = d;
         d = std::clamp(d, first ? -1e9 : 0.0, end ? 1e9 : piece.length);
         CurveMatch found;
@@ -82,7 +86,7 @@ CurveMatch match(const WheelPath& path, const WheelBelief& wheel, double last, d
             const Vec2 n = found.point.normal, other = next.at(found.beyond > 0 ? 0.0 : next.length, path.radius()).normal;
             found.blocked = found.beyond * cross(n, other) > kBlocks;
         }
-        found.cost = wheel.spread.distance(wheel.centre - found.point.centre) + face_cost(wheel, found.point.normal);
+        found.cost = believed.spread.distance(wheel.centre - found.point.centre) + face_cost(wheel, found.point.normal);
         if (found.cost < best.cost) best = found;
     }
     for (std::size_t k = path.corner_from(lower); k < path.corners().size() && path.corners()[k] <= upper; ++k) {

@@ -46,6 +46,7 @@ Estimator::Estimator(Robot robot, WheelPath path, const Start& start, const Nois
       attitude_{std::cos(0.5 * start.pitch), 0.0, std::sin(0.5 * start.pitch), 0.0}, place_(start.place), covariance_(initial(noise)) {
     scale_ = -noise.deflection / path_.radius();
     for (WheelState& w : wheels_) w.s = std::numeric_limits<double>::quiet_NaN(), w.felt = {0.0, weight_ / 4};
+    note_low_edges();
 }
 
 Estimator::Rotation Estimator::rotation() const {
@@ -175,6 +176,8 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const double speed = std::hypot(velocity_[0] + own_speed[0], velocity_[2] + own_speed[2]);
     const double motion = kForceAtRest + (1.0 - kForceAtRest) * std::min(1.0, speed / kForceSpeed);
     belief.force_deviation = motion * (noise_.force * weight_ + 0.15 * norm(w.felt));
+    w.low_edge = next_low_edge(w);
+    belief.low_edge = w.low_edge, belief.low_edge_height = noise_.tread_height * noise_.tread_height;
     const CurveMatch on = match(path_, belief, w.s, kWindow);
     // A leg that swings feels a little, too: of a wall it has to be more than that.
     w.least_push = belief.force_deviation;
@@ -211,6 +214,7 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     estimate_.used_grip[i] = std::abs(w.traction) / std::max(dot(w.felt, on.point.normal), 0.02 * weight_);
     if (!estimate_.touching[i]) return;
     Error error{};
+    leave_low_edge(i, on, along_z, centre, error);
     if (!unsure && !estimate_.lost) measure_place(i, on, along_x, along_z, centre, dt, error);
     measure_rolling(i, on, readings, along_x, along_z, dt, error);
     correct(error);

@@ -99,6 +99,7 @@ Vec2 Estimator::correct_map(WheelPath path, const MapError& found) {
     for (std::size_t k = first; k < found_.size(); ++k)
         if (found_[k] && is_face(k) == found.face && (k == first || !found.face)) *found_[k] -= found.face ? by.x : by.z;
     path_ = std::move(path);
+    note_low_edges();
     offset_[0] = offset_[0] - by;
     if (found.both) offset_[1] = offset_[1] - by;
     for (int i = 0; i < 4; ++i) {

@@ -7,6 +7,8 @@
 // What does not fit is the push of a face ahead.
 #pragma once
 
+#include <limits>
+
 #include "stairwright/wheel_path.hpp"
 
 namespace stairwright::estimation {
@@ -32,12 +34,17 @@ struct CurveMatch {
     bool blocked = false;         // where it cannot be: the next face is steep against this one
 };
 
+inline constexpr std::size_t kNoPiece = std::numeric_limits<std::size_t>::max();
+
 struct WheelBelief {
     Vec2 centre;        // on the map [m]
     Spread spread;      // its covariance [m^2]
     Vec2 force;         // of the ground, world x-z [N]
     double traction = 0.0;  // see WheelForce [N]
     double force_deviation = 0.0;  // standard deviation of the force's components [N]
+    // An edge that may be none and the tread below it, which may be higher: first of the two pieces, and the variance [m^2].
+    std::size_t low_edge = kNoPiece;
+    double low_edge_height = 0.0;
 };
 
 // The most likely place of a wheel within `window` of arc length around `last`, or of anywhere if `last` is NaN.

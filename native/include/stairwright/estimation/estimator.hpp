@@ -123,6 +123,7 @@ class Estimator {
         std::array<std::size_t, 2> told{};  // pieces of which they had found something then, 0 for none
         std::size_t face = 0;  // piece of the curve, the last straight one
         std::size_t clear = 0, clear_before = 0;  // the last straight ones that it was on clear of corners
+        std::size_t low_edge = kNoPiece;  // the edge near to it that may be none, see low_edges.cpp
         bool missed = false;      // it is put back now
         bool contradicts = false; // it rolls otherwise than the filter can believe
         double put_back = 0.0;    // how far it has been put back on that piece, see Estimator::put_back [m]
@@ -157,6 +158,10 @@ class Estimator {
     std::size_t straight_piece(double s, bool face) const;
     bool is_face(std::size_t piece) const;
     bool before_drop(const CurveMatch& on) const;
+    void note_low_edges();
+    std::size_t next_low_edge(const WheelState& wheel) const;
+    void leave_low_edge(int wheel, const CurveMatch& on, const Error& along_z, Vec2 centre, Error& error);
+    bool over_low_edge(const WheelState& wheel, const CurveMatch& on) const;
     double nearest_corner(double s) const;  // along the curve, to the place `s` on it [m]
     void measure_place(int wheel, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error);
     void measure_rolling(int wheel, const CurveMatch& on, const Readings& readings, const Error& along_x, const Error& along_z, double dt, Error& error);
@@ -176,6 +181,7 @@ class Estimator {
     double contradicted_ = 0.0;  // for how long by all wheels that touch [s]
     Covariance covariance_;
     std::array<WheelState, 4> wheels_;
+    std::vector<std::size_t> low_edges_;  // pieces of the curve, see note_low_edges
     std::vector<std::optional<double>> found_;  // of each piece, by front wheels: offset along of a face, up of a tread [m]
     Estimate estimate_;
 };

@@ -1,0 +1,53 @@
+// Edges that lead down by no more than what heights may be off: they may be none, and where one is none it must not be
+// taken for one that comes later. Until a wheel is clear of it on the tread below, only its rolling says where it is.
+#include <algorithm>
+
+#include "stairwright/estimation/estimator.hpp"
+
+#include "faces.hpp"
+
+namespace stairwright::estimation {
+
+namespace {
+
+constexpr double kHeights = 3.0;  // standard deviations of a tread's height: an edge as low as that may be none
+constexpr double kBend = 0.3;     // turn to the tread below, in sines, that is no more than a bend of the ground
+constexpr double kWindow = 0.12;  // m along the curve
+
+}  // namespace
+
+void Estimator::note_low_edges() {
+    low_edges_.clear();
+    const auto& pieces = path_.pieces();
+    for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
+        if (!pieces[k].arc || pieces[k + 1].arc) continue;
+        const CurvePoint top = pieces[k].at(0.0, path_.radius()), end = pieces[k].at(pieces[k].length, path_.radius());
+        const Vec2 below = pieces[k + 1].at(0.0, path_.radius()).normal;
+        if (below.z > kTread && cross(end.normal, below) > kBend && top.centre.z - end.centre.z < kHeights * noise_.tread_height)
+            low_edges_.push_back(k);
+    }
+}
+
+// The one near to a wheel that is not clear of it yet.
+std::size_t Estimator::next_low_edge(const WheelState& w) const {
+    for (const std::size_t k : low_edges_) {
+        const Piece &edge = path_.pieces()[k], &below = path_.pieces()[k + 1];
+        if (edge.s < w.s + kWindow && w.s < below.s + std::min(kWindow, below.length) && w.clear != k + 1) return k;
+    }
+    return kNoPiece;
+}
+
+bool Estimator::over_low_edge(const WheelState& w, const CurveMatch& on) const {
+    return w.low_edge != kNoPiece && !on.corner && (on.piece == w.low_edge || on.piece == w.low_edge + 1);
+}
+
+// A wheel that is clear of it measures how high the tread below is, of which nothing was known.
+void Estimator::leave_low_edge(int i, const CurveMatch& on, const Error& along_z, Vec2 centre, Error& error) {
+    WheelState& w = wheels_[i];
+    if (w.low_edge == kNoPiece || w.clear != w.low_edge + 1) return;
+    w.low_edge = kNoPiece;
+    covariance_.add_noise((i / 2 == 0 ? kFrontOffset : kRearOffset) + 1, noise_.tread_height * noise_.tread_height);
+    covariance_.update(along_z, on.point.centre.z - centre.z, noise_.place * noise_.place, error);
+}
+
+}  // namespace stairwright::estimation
