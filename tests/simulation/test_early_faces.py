@@ -15,6 +15,8 @@ NEAR = {"face_place_error": [0.03, -0.03, 0.03, 0.03]}
 FOURTH = {"face_place_error": [0.03, 0.03, 0.03, -0.03, 0.03]}
 # The second riser is 6 cm farther from the first one than legs reach as planned.
 APART = {"face_place_error": [-0.03, 0.03, 0.03]}
+# The tread between the second riser and the third is so short that two wheels hardly find room on it.
+SHORT = {"face_place_error": [0.03, 0.03, -0.03, 0.03]}
 
 
 @pytest.mark.slow
@@ -26,6 +28,7 @@ APART = {"face_place_error": [-0.03, 0.03, 0.03]}
         pytest.param("stairs-industrial", "b2w", NEAR, id="unnoticed"),
         pytest.param("stairs-us-7-11", "a1_wheeled_x", FOURTH, id="calf"),
         pytest.param("three-stairs-up", "a1_wheeled_x", APART, id="out of reach"),
+        pytest.param("loading-dock", "a1_wheeled", SHORT, id="wheel on wheel"),
     ],
 )
 def test_no_leg_meets_it_before_the_wheels_do(

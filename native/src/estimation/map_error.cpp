@@ -24,7 +24,7 @@ void Estimator::compare_with_map(int i, const CurveMatch& on, double dt) {
     WheelState& w = wheels_[i];
     // An edge that leads down tells where the face below it is.
     const bool drop = !on.corner && path_.pieces()[on.piece].arc && path_.next_drop(on.s) <= on.s;
-    const bool felt = estimate_.touching[i] && (on.corner || drop || !path_.pieces()[on.piece].arc);
+    const bool felt = estimate_.touching[i] && !over_low_edge(w, on) && (on.corner || drop || !path_.pieces()[on.piece].arc);
     const bool face = on.corner || drop || on.point.normal.z < kTread;
     if (!felt || face != w.on_face) w.known = 0.0;
     w.on_face = face;

@@ -17,7 +17,8 @@ constexpr double kSamePlace = 0.15;  // m; an error of the map that was let pass
 
 PlanExecutor::PlanExecutor(control::Controller controller, control::PlanFollower follower, double grip_need, bool mends_map)
     : controller_(std::move(controller)), follower_(std::move(follower)), weighing_(controller_.robot()),
-      grip_test_(controller_.robot(), grip_need), leg_fit_(controller_.robot()), mends_map_(mends_map) {}
+      grip_test_(controller_.robot(), grip_need), leg_fit_(controller_.robot()), legs_apart_(controller_.robot()),
+      mends_map_(mends_map) {}
 
 bool PlanExecutor::hangs(const control::Ahead& ahead) const {
     const auto& forces = follower_.target().forces;
@@ -53,15 +54,18 @@ const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool 
     moving = moving && !waits_ && plan_change_.over();
     const bool searching = moving && seen.ahead.any();
     std::array<double, 4> places = controller_.places();
-    for (std::size_t i = 0; i < 4; ++i) places[i] -= early_face_.ahead()[i / 2];
+    for (std::size_t i = 0; i < 4; ++i) places[i] -= early_face_.ahead()[i / 2] - (i / 2 == kRear ? legs_apart_.back() : 0.0);
     const control::Reference& drawn = follower_.advance(places, moving && !searching, dt, hangs(seen.ahead), before_drop());
     if (!seen.places) return drawn;
     if (!prepared() && plan_change_.over()) return prepare(drawn, seen, dt);
     adapted_ = plan_change_.step(drawn, dt);
     const control::Reference held = early_face_.step(adapted_, seen.ahead.found, *seen.places, dt);
-    const std::array<Vec2, 2> ground = early_face_.ground(controller_.path(), adapted_, seen.ground);
+    const control::Reference apart = legs_apart_.step(held);
+    const WheelPath& path = controller_.path();
+    const std::array<Vec2, 2> found = early_face_.ground(path, adapted_, seen.ground), ground = legs_apart_.ground(path, held, found);
     leg_fit_.follow({0.5 * (seen.ahead.found[0] + seen.ahead.found[1]), 0.0});
-    const control::Reference fitted = leg_fit_.fit(held, ground, controller_.path(), controller_.friction(), dt);
+    const control::Reference fitted = leg_fit_.fit(apart, ground, path, controller_.friction(), dt);
+    keep_legs_apart(fitted, found, held.value.wheels[kRear], dt);
     const control::Ahead ahead = moving ? seen.ahead : control::Ahead{};
     adapted_ = face_search_.step(fitted, ahead, *seen.places, safe_stop_.waited() > kStalled, dt);
     const control::Reference& next = adapted_;
@@ -74,6 +78,14 @@ const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool 
     stand_ = controller_.standing(seen.state, *seen.places);
     stand_.progress = next.progress;
     return stand_;
+}
+
+// Rear legs go back at once with their wheels, not as they follow the ground.
+void PlanExecutor::keep_legs_apart(const control::Reference& fitted, const std::array<Vec2, 2>& ground, double rear, double dt) {
+    const WheelPath& path = controller_.path();
+    const double before = legs_apart_.back();
+    legs_apart_.watch(adapted_, fitted, path, ground, dt);
+    if (legs_apart_.back() != before) leg_fit_.follow(kRear, path.centre(rear - legs_apart_.back()) - path.centre(rear - before));
 }
 
 control::Command PlanExecutor::step(const Perceived& seen, bool moving, double time, double dt) {

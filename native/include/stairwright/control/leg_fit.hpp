@@ -19,6 +19,9 @@ class LegFit {
     // The robot's place is believed to be another one by this [m]: no leg is to move for it.
     void follow(Vec2 by) { off_[0] += by, off_[1] += by; }
 
+    // A pair's wheels are to be elsewhere by this at once [m].
+    void follow(int pair, Vec2 by) { off_[pair] += by; }
+
     void reset() { off_ = {}; }
 
   private:

@@ -9,6 +9,7 @@
 #include "stairwright/control/early_face.hpp"
 #include "stairwright/control/grip_test.hpp"
 #include "stairwright/control/leg_fit.hpp"
+#include "stairwright/control/legs_apart.hpp"
 #include "stairwright/control/plan_change.hpp"
 #include "stairwright/control/plan_follower.hpp"
 #include "stairwright/control/safe_stop.hpp"
@@ -66,6 +67,7 @@ class PlanExecutor {
     bool hangs(const control::Ahead& ahead) const;
     // Whether the plan has the front wheels where an edge that leads down may come before its place, or on it.
     bool before_drop() const;
+    void keep_legs_apart(const control::Reference& fitted, const std::array<Vec2, 2>& ground, double rear, double dt);
     // The plan's set point while the robot finds out what it has to know before it starts.
     const control::Reference& prepare(const control::Reference& drawn, const Perceived& seen, double dt);
     bool prepared() const { return weighing_.over() && grip_test_.over(); }
@@ -80,6 +82,7 @@ class PlanExecutor {
     control::LegFit leg_fit_;
     control::FaceSearch face_search_;
     control::EarlyFace early_face_;
+    control::LegsApart legs_apart_;
     std::optional<estimation::MapError> map_error_;
     std::optional<double> creep_;   // found and not taken yet
     double ignored_ = -1e9;         // where an error of the map was let pass [m]
