@@ -207,7 +207,7 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const double room = next < path_.corners().size() ? path_.corners()[next] - on.s : kRoom;
     const bool tread = !on.corner && on.point.normal.z > kTread;
     const bool round_it = path_.pieces()[on.piece].arc && on.point.normal.x < 0.0;  // an edge that leads up
-    estimate_.on_tread[i / 2] = tread && room >= kRoom, estimate_.nearing[i / 2] = (tread && room < kRoom) || round_it;
+    estimate_.on_tread[i / 2] = tread && room >= kRoom, estimate_.nearing[i / 2] = (tread && room < kRoom) || round_it || unsure;
 
     compare_with_map(i, on, dt);
     estimate_.touching[i] = touching;
