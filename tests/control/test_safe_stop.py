@@ -43,3 +43,10 @@ def test_waiting_for_a_decision_neither_counts_nor_begins_the_time_anew() -> Non
     for _ in range(round(0.4 / STEP)):
         why = stop.watch(0.5, True, STEP)
     assert why == 1
+
+
+def test_a_jolt_as_of_a_face_missed_by_6_cm_is_no_reason_but_leaning_farther_is() -> None:
+    """Between wheels that are 0.36 m apart."""
+    stop = _core.SafeStop()
+    assert not stop.watch(0.0, True, STEP, pitch_error=0.06 / 0.36)
+    assert stop.watch(0.0, True, STEP, pitch_error=-0.21) == 2
