@@ -17,7 +17,7 @@ SLOW = {"face_place_error": [0.03, -0.03, -0.03, -0.03]}
 FOURTH = {"face_place_error": [0.03, 0.03, 0.03, -0.03, 0.03]}
 # The second riser is 6 cm farther from the first one than legs reach as planned.
 APART = {"face_place_error": [-0.03, 0.03, 0.03]}
-# The tread between the second riser and the third is so short that two wheels hardly find room on it.
+# The tread before the third riser is so short that two wheels hardly find room on it.
 SHORT = {"face_place_error": [0.03, 0.03, -0.03, 0.03]}
 
 
