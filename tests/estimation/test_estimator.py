@@ -150,6 +150,16 @@ def test_slippery_ground_stops_it_safely(plan: Plan) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("robot", ["a1_wheeled", "go2w"])
+def test_it_knows_how_far_up_a_steep_slope_it_is(robot: str) -> None:
+    """All wheels creep, and nothing tells the place along before the top."""
+    slope = sw.plan({"points": [[-1.4, 0], [0, 0], [1.2, 0.72], [2.6, 0.72]]}, robot, 0.8)
+    run, judged = sensed(slope)
+    assert run.outcome == "success", run.reason
+    assert np.abs(judged[:, 7:9]).max() < 0.006
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("friction", [0.1, 0.2, 0.3])
 def test_a_robot_that_has_slid_away_stops_and_says_that_it_is_lost(friction: float) -> None:
     """A ramp of 34 degrees turns slippery when the robot is on it."""

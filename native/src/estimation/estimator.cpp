@@ -45,7 +45,7 @@ Estimator::Estimator(Robot robot, WheelPath path, const Start& start, const Nois
     : robot_(std::move(robot)), path_(std::move(path)), noise_(noise), weight_(robot_.mass() * kGravity),
       attitude_{std::cos(0.5 * start.pitch), 0.0, std::sin(0.5 * start.pitch), 0.0}, place_(start.place), covariance_(initial(noise)) {
     scale_ = -noise.deflection / path_.radius();
-    for (WheelState& w : wheels_) w.s = std::numeric_limits<double>::quiet_NaN(), w.felt = {0.0, weight_ / 4};
+    for (WheelState& w : wheels_) w.s = std::numeric_limits<double>::quiet_NaN(), w.felt = w.felt_before = {0.0, weight_ / 4};
     note_low_edges();
 }
 
@@ -124,6 +124,7 @@ void Estimator::see_legs(const Readings& readings, double dt) {
         w.rolled = leg.wheel.radius * rate * dt;
         // What spins the wheel up does not reach the ground.
         const double spin_up = started_ ? (leg.wheel.inertia + leg.wheel_motor.armature) * (rate - w.rate_now) / dt / leg.wheel.radius : 0.0;
+        w.traction_before = w.traction, w.felt_before = w.felt;
         w.traction += share * (told[i].traction - spin_up - w.traction);
         w.cruise += dt / (kCruiseTime + dt) * (leg.wheel.radius * w.rate_now - w.cruise);
         w.rate_now = rate;

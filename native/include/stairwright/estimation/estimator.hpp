@@ -118,6 +118,8 @@ class Estimator {
         LegPlaces leg;            // world, with the trunk point as origin
         Vec2 felt;                // the force, smoothed [N]
         double traction = 0.0;    // smoothed [N]
+        Vec2 felt_before;         // both until the reading before this one
+        double traction_before = 0.0;
         double s;                 // place on the curve [m]
         std::size_t recalled = 0;  // the last piece on which it has recalled what front wheels found
         std::array<std::size_t, 2> told{};  // pieces of which they had found something then, 0 for none
