@@ -104,10 +104,10 @@ void bind_own_senses(nb::module_& m) {
            "A set point's row for front and rear ground (2, 2) off its planned place [m], after another time step [s].");
     nb::class_<SafeStop>(m, "SafeStop", "When to give up, see control/safe_stop.hpp.")
         .def(nb::init<>())
-        .def("watch", [](SafeStop& self, double position, bool advancing, double dt, double pitch_error) {
-            return static_cast<int>(self.watch(position, advancing, pitch_error, 0.0, false, dt));
-        }, nb::arg("position"), nb::arg("advancing"), nb::arg("dt"), nb::arg("pitch_error") = 0.0,
-           "Why to stop: 0 not at all, 1 no progress, 2 the trunk leans too far.");
+        .def("watch", [](SafeStop& self, double position, bool advancing, double dt, double pitch_error, bool lost) {
+            return static_cast<int>(self.watch(position, advancing, pitch_error, 0.0, lost, dt));
+        }, nb::arg("position"), nb::arg("advancing"), nb::arg("dt"), nb::arg("pitch_error") = 0.0, nb::arg("lost") = false,
+           "Why to stop: 0 not at all, 1 no progress, 2 the trunk leans too far, 3 lost.");
 }
 
 }  // namespace

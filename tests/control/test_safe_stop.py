@@ -50,3 +50,10 @@ def test_a_jolt_as_of_a_face_missed_by_6_cm_is_no_reason_but_leaning_farther_is(
     stop = _core.SafeStop()
     assert not stop.watch(0.0, True, STEP, pitch_error=0.06 / 0.36)
     assert stop.watch(0.0, True, STEP, pitch_error=-0.21) == 2
+
+
+def test_a_robot_that_is_lost_stops_at_once_and_for_good() -> None:
+    stop = _core.SafeStop()
+    assert not stop.watch(0.0, True, STEP)
+    assert stop.watch(0.1, True, STEP, lost=True) == 3
+    assert stop.watch(0.2, True, STEP) == 3
