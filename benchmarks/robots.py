@@ -14,15 +14,16 @@ successes says how the others ended, and supports less.
 Each trial draws, evenly from its range, what `sw.trials` draws by default: friction +-0.1 (of 0.6),
 mass +-10 %, centre of mass +-2 cm along and up, the rise of all steps together +-1 cm, sensor
 noise, 4 ms of delay; the robot knows none of it. Walls are the highest on a grid of 1 cm for which
-all lower ones on a grid of 10 cm are planned too, ramps likewise in degrees up to 45: they stand at
-the edge of what is possible, where trials fail sooner than elsewhere. The robots know what their own
-sensors tell them (`sensing: robot`). All of it is statics and simulation: no hardware has run it.
+all lower ones on a grid of 10 cm are planned too, ramps likewise in degrees up to 45: they stand
+at the edge of what is possible, where trials fail sooner than elsewhere. The robots know what their
+own sensors tell them (`sensing: robot`). All of it is statics and simulation: no hardware has run
+it.
 "Not run": the trials of that row were left out for want of time, which says nothing about it.
 
 Where trials fail: down a flight `a1_wheeled` (all knees back) falls or collides. Up flights
 `anymal_wheels` collides or falls where its plans leave its centre of mass 2 to 3 cm, which trials
-shift by 2 cm. A ramp of 30 degrees takes a friction of 0.577, and some trials draw less. `d1` has no
-plan down most flights. Ramps of 45 degrees are gone up with a pair of wheels on level ground.
+shift by 2 cm. A ramp of 30 degrees takes a friction of 0.577, and some trials draw less. `d1` has
+no plan down most flights. Ramps of 45 degrees are gone up with a pair of wheels on level ground.
 
 Rows are kept in a folder by the hash of the code and the question, so that a run that was ended
 goes on, and several may share the work.
