@@ -168,8 +168,8 @@ void bind_rollout(nb::module_& m) {
         }, "Friction at which wheels slipped in the test before the start, and whether the front ones did.")
         .def_prop_ro("waits", [](const Rollout& r) { return r.executor().waits(); }, "Whether the robot stands until it is told to go on.")
         .def("diverged", &Rollout::diverged)
-        .def_prop_ro("stop", [](const Rollout& r) { return static_cast<int>(r.executor().stop()); },
-                     "Why the robot has given up: 0 it has not, 1 no progress, 2 tilted, 3 lost.")
+        .def_prop_ro("stopped", [](const Rollout& r) { return r.executor().stop() != control::Stop::none; }, "Whether the robot has given up.")
+        .def_prop_ro("stop_reason", [](const Rollout& r) { return control::reason(r.executor().stop()); }, "Why it has; empty where it has not.")
         .def_prop_ro("stopped_at", [](const Rollout& r) { return r.executor().stopped_at(); }, "Since when [s].")
         .def_prop_ro("position", [](const Rollout& r) { return r.executor().follower().position(); })
         .def_prop_ro("target", [](const Rollout& r) { return row(r.executor().target()); }, nb::rv_policy::automatic)

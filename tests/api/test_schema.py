@@ -12,7 +12,7 @@ from tests.conftest import Server
 if TYPE_CHECKING:
     import schemathesis
 
-EXAMPLES = 4  # of each kind, valid and invalid, for each of some fifty operations
+EXAMPLES = 2  # of each kind, valid and invalid, for each of some fifty operations
 
 
 def ask(operation: Any, mode: schemathesis.GenerationMode, checks: list[Any]) -> None:

@@ -36,11 +36,6 @@ from .result import Rollout
 from .sensors import Sensors
 
 STANDS = 1.0  # s that a robot which gave up must stand
-STOPS = {  # why it gives up, see control/safe_stop.hpp
-    1: "the wheels did not follow the plan for 3 s",
-    2: "the trunk leant too far from the plan",
-    3: "the ground under the wheels is over 12 cm from where the map has it: it has lost its place",
-}
 CHUNK = 125  # control steps between reports of progress
 
 
@@ -173,13 +168,13 @@ class Run:
         return ("fell", why) if why else None
 
     def _stopping(self) -> bool:
-        return self.native is not None and self.native.stop != 0
+        return self.native is not None and self.native.stopped
 
     def _gave_up(self, now: float) -> str:
         """Why the robot has stopped by itself, once it stands; empty before."""
-        if self.native is None or self.native.stop == 0 or now - self.native.stopped_at < STANDS:
+        if self.native is None or not self.native.stopped or now - self.native.stopped_at < STANDS:
             return ""
-        return STOPS[self.native.stop] if self._at_rest() else ""
+        return self.native.stop_reason if self._at_rest() else ""
 
     def _decide(self, watch: ProgressWatch) -> str:
         """Go on where the robot waits, maybe with another plan; why it must stop, or nothing."""

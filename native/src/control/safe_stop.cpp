@@ -14,6 +14,15 @@ constexpr double kMostRoll = 0.20;    // rad
 
 }  // namespace
 
+const char* reason(Stop stop) {
+    switch (stop) {
+        case Stop::no_progress: return "the wheels did not follow the plan for 3 s";
+        case Stop::tilted: return "the trunk leant too far from the plan";
+        case Stop::lost: return "the ground under the wheels is over 12 cm from where the map has it: it has lost its place";
+        default: return "";
+    }
+}
+
 SafeStop::SafeStop() { reached_.fill(-std::numeric_limits<double>::infinity()); }
 
 Stop SafeStop::watch(double position, bool advancing, double pitch_error, double roll, bool lost, double dt) {

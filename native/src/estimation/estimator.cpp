@@ -11,7 +11,6 @@ namespace stairwright::estimation {
 
 namespace {
 
-constexpr double kWindow = 0.12;        // m; a wheel is looked for this far from where it was
 constexpr double kTouching = 0.15;      // of the share of the weight: a wheel that carries less says nothing
 constexpr double kForceTime = 0.015;    // s, smoothing of the forces
 constexpr double kCruiseTime = 0.1;    // s, smoothing of the speed that a wheel rolls at

@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kHeights = 3.0;  // standard deviations of a tread's height: an edge as low as that may be none
 constexpr double kBend = 0.3;     // turn to the tread below, in sines, that is no more than a bend of the ground
-constexpr double kWindow = 0.12;  // m along the curve
 
 }  // namespace
 

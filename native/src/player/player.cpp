@@ -51,14 +51,6 @@ LowCommand damping(const PlanFile& file) {
     return out;
 }
 
-const char* why(control::Stop stop) {
-    switch (stop) {
-        case control::Stop::tilted: return "the trunk leant too far from the plan";
-        case control::Stop::lost: return "the ground under the wheels is over 12 cm from where the map has it: it has lost its place";
-        default: return "the wheels did not follow the plan for 3 s";
-    }
-}
-
 }  // namespace
 
 const char* name(Phase phase) {
@@ -156,7 +148,7 @@ std::string Player::beyond_limits(const estimation::Readings& now) const {
 void Player::decide() {
     if (executor_.stop() != control::Stop::none) {
         phase_ = Phase::gave_up;
-        reason_ = why(executor_.stop());
+        reason_ = control::reason(executor_.stop());
         return;
     }
     if (!executor_.waits()) return;

@@ -15,6 +15,9 @@ enum class Stop {
     lost = 3,         // what the wheels find is not what the map has
 };
 
+// The same in words.
+const char* reason(Stop stop);
+
 class SafeStop {
   public:
     SafeStop();
