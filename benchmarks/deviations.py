@@ -111,9 +111,9 @@ def run_case(
         settings = parse_settings({"sensing": sensing})
         run = Run(plan, plan.friction, settings, deviation, seed, 20.0)
         result = run.result(run.simulate(None), keep_plan=False)
-        judged = np.asarray(run.native.judged) if run.native is not None else np.zeros((0, 15))
-        honest = float(np.mean(judged[:, 9] < NEES_95)) if len(judged) else math.nan
-        last = judged[-1] if len(judged) else np.full(15, math.nan)
+        judged = np.asarray(run.native.judged) if run.native is not None else np.zeros((0, 16))
+        honest = float(np.mean(judged[:, 15] < NEES_95)) if len(judged) else math.nan
+        last = judged[-1] if len(judged) else np.full(16, math.nan)
         error = float(np.hypot(last[7], last[8]))
         out.append(Result(terrain, robot, name, result.outcome, result.reason, honest, error))
     return out

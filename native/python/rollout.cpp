@@ -175,8 +175,8 @@ void bind_rollout(nb::module_& m) {
         .def_prop_ro("target", [](const Rollout& r) { return row(r.executor().target()); }, nb::rv_policy::automatic)
         .def_prop_ro("score", [](const Rollout& r) { return r.score(); })
         .def_prop_ro("judged", &judged, nb::rv_policy::automatic,
-                     "Rows (n, 15) of the estimator against the truth: time, errors of attitude, velocity, place x and z; NEES;\n"
-                     "the estimated scale of the wheels and offsets of the map under front and rear wheels.")
+                     "Rows (n, 16) of the estimator against the truth: time, errors of attitude, velocity, place x and z; NEES;\n"
+                     "the estimated scale of the wheels and offsets of the map under front and rear wheels; NEES where the map may be off.")
         .def_prop_ro("sample_count", [](const Rollout& r) { return r.log().samples().size(); })
         .def("samples", &samples, nb::arg("first") = 0, nb::arg("stride") = 1, nb::rv_policy::automatic,
              "Rows of the log, see rollout/log.hpp.");

@@ -129,6 +129,13 @@ def test_the_filter_is_honest(plan: Plan) -> None:
     assert np.mean(inside) > 0.9
 
 
+def test_the_filter_is_honest_where_the_map_lies_otherwise_in_the_world(plan: Plan) -> None:
+    run, judged = sensed(plan, face_place_error=[0.03], cross_slope=0.017)
+    assert run.outcome == "success", run.reason
+    assert np.mean(judged[:, 9] < NEES_95) < 0.5  # as if the map were the world
+    assert np.mean(judged[:, 15] < NEES_95) > 0.9
+
+
 def test_a_wrong_measure_of_length_is_learnt(plan: Plan) -> None:
     run, judged = sensed(plan, odometry_scale=0.02)
     assert run.outcome == "success", run.reason

@@ -83,7 +83,7 @@ void Rollout::control(const Perceived& seen, bool moving, double time) {
     if (!log_.due()) return;
     if (const auto* sense = std::get_if<RobotSense>(&perception_)) {
         const auto judged = sense->judge();
-        judged_.push_back({time, judged.error, judged.nees, judged.scale, judged.offset});
+        judged_.push_back({time, judged.error, judged.nees, judged.scale, judged.offset, judged.nees_in_world});
     }
     Sample sample;
     sample.time = time, sample.state = state, sample.torques = torques;

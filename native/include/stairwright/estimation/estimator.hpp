@@ -41,6 +41,8 @@ struct Noise {
     double map_along = 0.006, map_height = 0.004;
     // Of the place of a face against the one before, and of the height of a tread [m].
     double face_place = 0.018, tread_height = 0.010;
+    // Of the ground sideways, which the map has level: kerbs and ramps may slope by 2 % (ADA Standards 405.3) [rad].
+    double cross_slope = 0.010;
     double place = 0.002, rolling = 0.03, aside = 0.03, off_face = 0.02;
     // A loaded tyre rolls on a radius that is smaller by this [m].
     double deflection = 0.0004;
@@ -106,7 +108,8 @@ class Estimator {
     // normalised square of roll, pitch, x and z velocity, and place (NEES, 6 degrees of freedom).
     struct Judgement {
         std::array<double, 8> error;
-        double nees;
+        double nees;                  // where the map is the world
+        double nees_in_world;         // where faces and cross slope may be off by what Noise has
         double scale;                 // of the wheels, as estimated
         std::array<Vec2, 2> offset;   // of the map under front and rear wheels, as estimated [m]
     };

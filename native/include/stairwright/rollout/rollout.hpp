@@ -23,6 +23,7 @@ struct Judged {
     std::array<double, 8> error{};
     double nees = 0.0, scale = 0.0;
     std::array<Vec2, 2> offset{};
+    double nees_in_world = 0.0;
 };
 inline constexpr std::size_t kJudgedWidth = sizeof(Judged) / sizeof(double);
 
