@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kMiss = 0.0006;  // m; largest distance of an interpolated wheel from its curve
 constexpr int kPasses = 10;
+constexpr double kEitherSide = 1e-6;  // m; along the curve, there a corner's faces are told apart
 
 // The node at a fractional node number.
 Node interpolate(std::span<const Node> nodes, double at) {
@@ -34,10 +35,11 @@ double miss(const WheelPath& path, const RobotModel& robot, int pair, const Node
     for (const double share : {0.25, 0.5, 0.75}) {
         const JointAngles q = {between(q0.thigh, q1.thigh, share), between(q0.calf, q1.calf, share)};
         const Vec2 wheel = forward(leg, between(a.body, b.body, share), q).wheel;
-        const CurvePoint wanted = path.at(between(s0, s1, share));
-        // What counts is the gap to the terrain; along the curve some slack does no harm.
-        const Vec2 off = wheel - wanted.centre;
-        worst = std::max({worst, std::abs(dot(off, wanted.normal)), 0.25 * norm(off)});
+        const double s = between(s0, s1, share);
+        // What counts is the gap to the terrain, in a corner to both faces; along the curve some slack does no harm.
+        const Vec2 off = wheel - path.centre(s);
+        worst = std::max({worst, std::abs(dot(off, path.normal(s - kEitherSide))), std::abs(dot(off, path.normal(s + kEitherSide))),
+                          0.25 * norm(off)});
     }
     return worst;
 }

@@ -7,6 +7,7 @@ import pytest
 
 from stairwright.library import load_robot
 from stairwright.planning.attempt import Attempt, Solved
+from stairwright.planning.certificate.certify import judge
 from stairwright.planning.lattice.body_lattice import LOOSE
 from stairwright.planning.path_planner import PathPlanner, path_planner
 from stairwright.planning.planner import plan
@@ -39,6 +40,14 @@ def test_a_path_that_the_polish_leaves_bad_is_mended(rise, run, friction):
     answer = planner.attempt(Attempt(1.7, LOOSE))
     assert isinstance(answer, Solved)
     assert answer.certificate.passed
+
+
+def test_between_nodes_wheels_keep_to_both_faces_of_a_corner():
+    """Trunks of large robots move far while a wheel rests in one, and joints move linearly."""
+    planner = path_planner(stair(0.17, 0.29, 30), load_robot("b2w"), 0.6, PathWeights())
+    certificate = judge(planner.motion(smoothed(planner)))
+    sunk = next(c for c in certificate.checks if c.name == "wheels sunk into the ground")
+    assert sunk.passed, sunk
 
 
 def test_only_pieces_round_bad_places_change():
