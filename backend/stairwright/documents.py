@@ -27,6 +27,10 @@ _WORDINGS = {
         "must be a mapping of names to values",
     ),
     **dict.fromkeys(("tuple_type", "list_type"), "must be a list"),
+    "too_short": "must hold at least {min_length}, not {actual_length}",
+    "too_long": "must hold at most {max_length}, not {actual_length}",
+    **dict.fromkeys(("float_parsing", "float_type"), "must be a number"),
+    **dict.fromkeys(("int_parsing", "int_type", "int_from_float"), "must be a whole number"),
 }
 
 
@@ -187,7 +191,8 @@ def _first_error(error: ValidationError, model: type[BaseModel]) -> InputError:
 
 def wording(error: Mapping[str, Any]) -> str:
     """What one of pydantic's errors says, in words of files and JSON rather than of Python."""
-    return _WORDINGS.get(error["type"], str(error["msg"]))
+    words = _WORDINGS.get(error["type"], "{msg}")
+    return words.format_map({**error.get("ctx", {}), "msg": error["msg"]})
 
 
 def load_mapping(path: Path) -> dict[str, Any]:

@@ -49,6 +49,7 @@ def test_presets_come_first_and_are_read_only(api: httpx.Client, mine: dict[str,
     ):
         assert answer.status_code == 403
         assert answer.headers["content-type"] == "application/problem+json"
+    assert "cannot be deleted" in answer.json()["detail"]
 
 
 def test_a_robot_is_saved_used_changed_and_deleted(

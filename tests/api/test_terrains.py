@@ -32,6 +32,7 @@ def test_presets_are_listed_first_and_read_only(api: httpx.Client) -> None:
     for answer in (api.put(f"/terrains/{name}", json=STAIR), api.delete(f"/terrains/{name}")):
         assert answer.status_code == 403
         assert answer.headers["content-type"] == "application/problem+json"
+    assert "cannot be deleted" in answer.json()["detail"]
 
 
 def test_a_terrain_is_saved_changed_and_deleted(api: httpx.Client) -> None:

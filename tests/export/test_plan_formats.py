@@ -196,7 +196,8 @@ def test_standing_pose_needs_the_torques_of_its_weight():
 
 @pytest.mark.parametrize("name", ["plan", "plan.html", "plan.txt"])
 def test_unknown_ending_names_the_valid_ones(plan, tmp_path, name):
-    with pytest.raises(InputError, match=r"\.json, \.csv, \.npz, \.mcap, \.mjcf, \.urdf"):
+    endings = r"\.json, \.csv, \.npz, \.mcap, \.mjcf, \.urdf, \.bundle, \.xml, \.zip"
+    with pytest.raises(InputError, match=endings):
         save(plan, tmp_path / name)
     assert not (tmp_path / name).exists()
 

@@ -126,7 +126,8 @@ def by_ending(formats: Mapping[str, Format[D]], path: str | Path, kind: str) -> 
     for name, format_ in formats.items():
         if suffix in (format_.suffix, f".{name}"):
             return format_
-    endings = ", ".join(f".{name}" for name in formats)
+    usual = [format_.suffix for format_ in formats.values()]
+    endings = ", ".join(dict.fromkeys([*(f".{name}" for name in formats), *usual]))
     raise InputError(f"{str(path)!r}: a {kind} can be written as {endings}", ("path",))
 
 

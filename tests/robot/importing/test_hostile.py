@@ -51,6 +51,7 @@ def zipped(**files: str | bytes) -> bytes:
         (URDF.replace('mass value="7.0"', 'mass value="-7"'), "-7 kg"),
         ('<robot name="a"><link name="${x}"/></robot>', "xacro"),
         ("<html/>", "neither URDF"),
+        ('<robot name="a"/>', "the file has no links"),
         ("hello", "is no XML"),
         ("", "is no XML"),
     ],
@@ -130,6 +131,7 @@ def test_zips() -> None:
         (zipped(**{"a.urdf": URDF, "b.urdf": URDF}), "several robot files"),
         (zipped(**{"..__..__a.urdf": URDF}), "outside itself"),
         (b"PK\x03\x04" + bytes(50), "cannot be read"),
+        (URDF.encode(), "'a.zip' is not a zip"),
         (zipped(**{"a.urdf": URDF})[:-30], "cannot be read"),
     ):
         with pytest.raises(InputError, match=says):

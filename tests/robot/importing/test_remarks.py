@@ -55,7 +55,7 @@ def test_position_servos_limit_by_force_not_by_angle() -> None:
 
 def test_no_limit_at_all_is_assumed_and_placeholders_are_noticed() -> None:
     made = imported(mjcf(Design(), motors="").replace('actuatorfrcrange="-35 35"', ""))
-    assert said(made.assumed, "thigh torque", "the file has none")
+    assert said(made.assumed, "thigh torque", "what holds half the weight at 0.7")
     made = imported(urdf(Design()).replace('velocity="40"', 'velocity="200"'))
     assert said(made.warnings, "200 rad/s", "placeholder")
 

@@ -74,7 +74,7 @@ class Named(Generic[D]):
             Problem: 403 for a preset's name, 409 if no more can be saved.
             InputError: If the names differ.
         """
-        self._refuse_preset(name)
+        self._refuse_preset(name, "save under another name")
         if said != name:
             raise InputError(f"the body says {said!r}, the address {name!r}", ("name",))
         saved = self.saved(services)
@@ -90,10 +90,10 @@ class Named(Generic[D]):
         Raises:
             Problem: 403 for a preset's name, 404 if there is none.
         """
-        self._refuse_preset(name)
+        self._refuse_preset(name, "presets cannot be deleted")
         if not self.saved(services).delete(name):
             raise not_found(self.kind, name)
 
-    def _refuse_preset(self, name: str) -> None:
+    def _refuse_preset(self, name: str, advice: str) -> None:
         if name in self.presets():
-            raise Problem(403, f"{name!r} is a preset: save under another name", kind="read-only")
+            raise Problem(403, f"{name!r} is a preset: {advice}", kind="read-only")

@@ -11,6 +11,11 @@ from .pair import Pair
 from .report import Notes
 
 _SPEEDS = {"thigh": 20.0, "calf": 20.0, "wheel": 30.0}  # rad/s, of what is on the market
+_LEVERS = {
+    "thigh": "0.7 of the leg's length",
+    "calf": "0.7 of the leg's length",
+    "wheel": "the wheel's radius",
+}
 _ROTOR = 0.01 / 33.5  # kg m^2 per Nm, the A1's leg motors
 _MOST_TORQUE, _MOST_SPEED, _MOST_ROTOR, _MOST_DAMPING = 1000.0, 1000.0, 10.0, 10.0
 
@@ -43,7 +48,8 @@ def _motor(
     torque, speed = drive.torque, drive.speed
     if torque is None:
         torque = own.get("torque") or plenty
-        why = f"as the preset {name}, which has the same legs" if own else "half the weight at it"
+        plain = f"what holds half the weight at {_LEVERS[part]}"
+        why = f"as the preset {name}, which has the same legs" if own else plain
         notes.assume(f"{part} torque {torque:.4g} Nm: the file has none; {why}")
     if speed is None:
         speed = own.get("speed") or _SPEEDS[part]

@@ -71,6 +71,8 @@ def unpack(data: bytes, file_name: str) -> Upload:
 
 
 def _check_ending(file_name: str) -> None:
+    if file_name.lower().endswith(".zip"):
+        raise InputError(f"{PurePosixPath(file_name).name!r} is not a zip", ("file",))
     if not file_name.lower().endswith(XML_ENDINGS):
         raise InputError(
             f"{PurePosixPath(file_name).name or 'the file'!r} must end with "

@@ -156,6 +156,8 @@ def _check_tree(root: ET.Element) -> None:
                 ("file",),
             )
         parents[ends["child"]] = name
+    if not links:
+        raise InputError("the file has no links", ("file",))
     roots = sorted(str(link) for link in links - parents.keys())
     if len(roots) != 1:
         what = "several links hang on nothing" if roots else "the links form a ring"
