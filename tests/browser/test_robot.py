@@ -212,6 +212,11 @@ def test_a_file_is_read_reported_and_opened(product: Product, tmp_path: Path) ->
     product.planned()
     assert _state(product) == "not saved"
     assert product.status == "feasible"
+    assumed = " ".join(page.locator(".number", has_text="assumed").all_inner_texts())
+    for part in ("Thigh rotor", "Wheel rotor", "Standing height"):
+        assert part in assumed
+    for other in ("torque", "Hip distance"):  # which only reasons of those speak of
+        assert other not in assumed
     page.get_by_role("button", name=re.compile("^Close go2w")).click()
 
 
@@ -227,6 +232,7 @@ def test_a_file_that_does_not_fit_is_refused_with_its_reason(product: Product) -
     alert = page.get_by_role("region", name="File").get_by_role("alert")
     alert.wait_for()
     assert "lamp.urdf does not fit" in alert.inner_text()
+    assert "file:" not in alert.inner_text()
     page.get_by_role("region", name="File").get_by_role("button", name="Dismiss").click()
 
 

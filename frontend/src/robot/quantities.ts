@@ -34,14 +34,14 @@ function withLink(file: RobotDocument, end: End, name: LinkName, link: RobotDocu
 /** Rear links have rows of their own where they differ from the front ones. */
 function linkRows(end: End, name: LinkName): Quantity[] {
   const label = end === "front" ? capital(name) : `Rear ${name}`;
-  const words = new RegExp(`\\b${name}\\b.*\\b(length|mass)`, "i");
+  const words = (what: string) => new RegExp(`\\b${name}\\b.*\\b${what}`, "i");
   return [
     quantity(
       `${end}.${name}.length`,
       "Geometry",
       label,
       METRES,
-      words,
+      words("length"),
       (f) => linkOf(f, end, name)?.length ?? null,
       (f, v) => withLink(f, end, name, longer(linkOf(f, end, name)!, v)),
     ),
@@ -50,7 +50,7 @@ function linkRows(end: End, name: LinkName): Quantity[] {
       "Masses",
       label,
       MASS,
-      words,
+      words("mass"),
       (f) => linkOf(f, end, name)?.mass ?? null,
       (f, v) => withLink(f, end, name, heavier(linkOf(f, end, name)!, v)),
     ),
@@ -132,12 +132,18 @@ type MotorField = "torque" | "speed" | "armature";
 const MOTORS: Quantity[] = (["leg", "thigh", "calf", "wheel"] as const).flatMap((name) =>
   (
     [
-      ["torque", TORQUE, "torque", /torque/i],
-      ["speed", SPEED, "top speed", /speed/i],
-      ["armature", ROTOR, "rotor inertia", /rotor|armature/i],
+      ["torque", TORQUE, "torque", "torque"],
+      ["speed", SPEED, "top speed", "speed"],
+      ["armature", ROTOR, "rotor inertia", "rotor|armature"],
     ] as const
-  ).map(([field, kind, text, words]) => motorRow(name, field, kind, text, words)),
+  ).map(([field, kind, text, words]) => motorRow(name, field, kind, text, about(name, words))),
 );
+
+/** Sentences that begin with another part's name are about that part alone. */
+function about(name: MotorName, words: string): RegExp {
+  const others = name === "leg" ? ["wheel"] : ["thigh", "calf", "wheel"].filter((n) => n !== name);
+  return new RegExp(`^(?!(${others.join("|")})\\b).*(${words})`, "i");
+}
 
 function motorRow(
   name: MotorName,

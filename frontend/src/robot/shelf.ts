@@ -98,7 +98,8 @@ export async function readFile(file: File): Promise<void> {
   } catch (error) {
     report(error);
     if (newest === abort) {
-      reading.value = { file: file.name, imported: null, refused: why(error) };
+      const refused = why(error).replace(/^file: /, "");
+      reading.value = { file: file.name, imported: null, refused };
     }
   }
 }
