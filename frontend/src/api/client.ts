@@ -164,5 +164,7 @@ export function dropSession(id: string): void {
   void fetch(`${BASE}/sessions/${id}`, { method: "DELETE", keepalive: true });
 }
 
-export const exportUrl = (kind: "plans" | "rollouts", id: string, format: string) =>
-  `${BASE}/${kind}/${encodeURIComponent(id)}/export?format=${format}`;
+export const exportPath = (kind: "plans" | "rollouts", id: string, format: string) =>
+  `${kind}/${encodeURIComponent(id)}/export?format=${format}`;
+
+export const exportUrl = (...of: Parameters<typeof exportPath>) => `${BASE}/${exportPath(...of)}`;

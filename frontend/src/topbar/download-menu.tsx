@@ -1,7 +1,7 @@
 /** Every export of the profile, of the plan and of the rollout. */
 
-import { exportUrl } from "../api/client";
-import type { ExportFormat } from "../api/types";
+import { callService, exportPath, exportUrl } from "../api/client";
+import type { ExportFormat, Plan } from "../api/types";
 import { report } from "../state/connection";
 import { drawing, isEmpty, terrainDocument } from "../state/drawing";
 import { plan } from "../state/planning";
@@ -53,7 +53,7 @@ function Everything({ close }: { close: () => void }) {
           title="Plan"
           kind="plans"
           id={shown.id}
-          formats={formats?.plan ?? []}
+          formats={(formats?.plan ?? []).filter((format) => isOf(format, shown))}
           close={close}
         />
       )}
@@ -71,6 +71,10 @@ function Everything({ close }: { close: () => void }) {
     </>
   );
 }
+
+/** A bundle is for a robot to follow: there is none of a plan that ends before the goal. */
+const isOf = (format: ExportFormat, { status }: Plan) =>
+  status === "feasible" || format.name !== "bundle";
 
 /** The drawing itself: what is dropped here or given to the command line opens it again. */
 function Profile({ close }: { close: () => void }) {
@@ -102,10 +106,9 @@ function fileName(kind: "plans" | "rollouts"): string {
 }
 
 /** Download an export under that name, with the ending that the service gives it. */
-async function saveExport(address: string, name: string): Promise<void> {
+async function saveExport(path: string, name: string): Promise<void> {
   try {
-    const answer = await fetch(address);
-    if (!answer.ok) throw new Error(`The service answered ${answer.status}.`);
+    const answer = await callService("GET", path);
     const given = /filename="[^"]*?((?:\.[a-z0-9]+)+)"/i;
     const ending = given.exec(answer.headers.get("content-disposition") ?? "")?.[1] ?? "";
     saveFile(name + ending, await answer.blob());
@@ -137,7 +140,7 @@ function Exports({ title, kind, id, formats, close }: ExportsProps) {
           download=""
           onClick={(event) => {
             event.preventDefault();
-            void saveExport(exportUrl(kind, id, name), fileName(kind));
+            void saveExport(exportPath(kind, id, name), fileName(kind));
             close();
           }}
         >
