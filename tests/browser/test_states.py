@@ -74,6 +74,11 @@ def test_an_infeasible_profile_says_what_and_where(product: Product) -> None:
     assert card.locator("h4").inner_text().strip()
     assert product.page.get_by_role("button", name="Run rollout").is_disabled()
     assert product.page.evaluate("document.activeElement.dataset.vertex") == "0"
+    product.page.get_by_role("button", name="Download").click()
+    formats = product.page.locator(".downloads b").all_inner_texts()
+    assert "MJCF" in formats
+    assert "BUNDLE" not in formats  # for a robot to follow
+    product.page.keyboard.press("Escape")
     card.get_by_role("button", name="Undo edit").click()
 
 
@@ -369,6 +374,7 @@ def test_narrow_pages_have_tabs(shared: Product) -> None:
         assert page.evaluate(UNCOVERED, ".robots .item:last-child"), "menus are not cut off"
         page.keyboard.press("Escape")
         page.set_viewport_size({"width": 390, "height": 844})
+        assert re.search(r"CoM\s+\d+ mm", page.locator(".rows").inner_text()), "units stay"
         page.get_by_role("button", name="Download").click()
         assert page.evaluate(UNCOVERED, ".downloads .item"), "nor on a phone"
         page.keyboard.press("Escape")

@@ -82,7 +82,7 @@ function pitchPanel(source: Source, time: Float64Array): Panel {
 /** Front and rear joints apart: their angles have opposite signs on many robots. */
 function jointPanel(id: "thigh" | "calf", source: Source, time: Float64Array): Panel {
   const offset = id === "thigh" ? 0 : 1;
-  const half = (joint: number, color: Color): Line[] => {
+  const half = (joint: number, color: "front" | "rear"): Line[] => {
     const lines: Line[] = [
       {
         label: `${color} desired`,
@@ -94,7 +94,7 @@ function jointPanel(id: "thigh" | "calf", source: Source, time: Float64Array): P
           (r, i) => degrees(planar(r.series.q_desired[i]!)[joint]!),
           (p, i) => degrees(p.poses[i]!.q[joint]!),
         ),
-        ...(source.run ? {} : { read: { name: "", digits: 0 } }),
+        ...(source.run ? {} : { read: { name: color, digits: 0 } }),
       },
     ];
     if (source.run) {
@@ -104,7 +104,7 @@ function jointPanel(id: "thigh" | "calf", source: Source, time: Float64Array): P
         color,
         kind: "line",
         values: sampled(time, source.run, (i) => degrees(planar(q[i]!)[joint]!)),
-        read: { name: "", digits: 0 },
+        read: { name: color, digits: 0 },
       });
     }
     return lines;
@@ -239,7 +239,7 @@ function forcePanel(source: Source, time: Float64Array): Panel {
       color,
       kind: "line",
       values: pair(2 * k, axis),
-      ...(read ? { read: { name: "", digits: 0 } } : {}),
+      ...(read ? { read: { name: color, digits: 0 } } : {}),
     }));
   return {
     id: "force",
@@ -265,14 +265,14 @@ function wheelPanel(source: Source, time: Float64Array): Panel {
         color: "front",
         kind: "line",
         values: mean(2, 5),
-        read: { name: "", digits: 2 },
+        read: { name: "front", digits: 2 },
       },
       {
         label: "rear wheels",
         color: "rear",
         kind: "line",
         values: mean(8, 11),
-        read: { name: "", digits: 2 },
+        read: { name: "rear", digits: 2 },
       },
     );
   }

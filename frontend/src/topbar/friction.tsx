@@ -37,7 +37,7 @@ export function Friction() {
         min={LEAST}
         max={MOST}
         step={0.01}
-        format={(v) => fixed(v, 2)}
+        format={(v) => fixed(v, v === Number(v.toFixed(2)) ? 2 : 3)}
         onChange={set}
         onDone={() => commit()}
         onCancel={() => commit()}

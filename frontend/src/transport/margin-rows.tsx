@@ -112,7 +112,10 @@ function Label({ row, shown }: { row: number; shown: Plan | null }) {
   return (
     <div class="ml" title={kind.hint}>
       <span>{kind.title}</span>
-      <b>{kind.read(pose.margins[kind.name], shown)}</b>
+      <b>
+        {kind.read(pose.margins[kind.name], shown)}
+        {kind.unit && <span class="unit"> {kind.unit}</span>}
+      </b>
       <small class={bad ? "x" : ""}>
         {kind.extreme} {kind.read(least, shown)} {kind.unit}
       </small>
