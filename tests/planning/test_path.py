@@ -133,8 +133,10 @@ def test_where_a_search_comes_through_and_no_plan_does_more_grip_is_named(robot)
 @pytest.mark.slow
 def test_where_nothing_helps_the_height_that_would_do_is_named():
     points = [(-1.2, 0.0), (0.0, 0.0), (0.0, 2.0), (1.5, 2.0)]
-    limit = sw.plan(terrain(points), "a1_wheeled", friction=0.6).problem.limit
+    problem = sw.plan(terrain(points), "a1_wheeled", friction=0.6).problem
+    limit = problem.limit
     assert limit.quantity == "profile height"
+    assert problem.message.startswith("needs profile height of at most 0.")
     assert limit.available == pytest.approx(2.0)
     for share, feasible in ((1.0, True), (1.2, False)):
         low = [(x, z * share * limit.needed / 2.0) for x, z in points]

@@ -236,8 +236,9 @@ def _problem(planner: PathPlanner, reached: Place | None, cause: Cause | None) -
     candidate = cause.candidate
     value = candidate.at(cause.upper)
     unit = "" if candidate.unit == "1" else f" {candidate.unit}"
+    bound = "of at most " if value < candidate.available else ""
     message = (
-        f"needs {candidate.quantity} {value:.3g}{unit}{candidate.given}, "
+        f"needs {candidate.quantity} {bound}{value:.3g}{unit}{candidate.given}, "
         f"has {candidate.available:.3g}{unit}: {stop}"
     )
     return Problem(
