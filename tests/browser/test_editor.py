@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from stairwright.terrain.stairs import stair
+
 from .conftest import DESK, PHONE, TERRAIN, Product
 
 if TYPE_CHECKING:
@@ -332,6 +334,20 @@ def test_wheel_zooms_and_fit_returns(product: Product) -> None:
     product.page.wait_for_function("() => document.querySelector('.zoom').innerText !== '100 %'")
     product.page.get_by_role("button", name="Fit to view").click()
     assert zoom.inner_text() == "100 %"
+
+
+def test_all_of_a_long_flight_is_in_view(product: Product) -> None:
+    flight = stair(0.17, 0.29, 120)
+    product.drop("flight.json", flight.model_dump_json())
+    last = product.vertex(len(flight.points) - 1)
+    last.wait_for()
+    canvas = product.page.locator(".canvas").bounding_box()
+    assert canvas is not None
+    for corner in (product.vertex(0), last):
+        box = corner.bounding_box()
+        assert box is not None
+        assert canvas["x"] < box["x"] < canvas["x"] + canvas["width"]
+        assert canvas["y"] < box["y"] < canvas["y"] + canvas["height"]
 
 
 def test_fit_leaves_room_for_dimensions_and_end_corners(product: Product) -> None:

@@ -32,7 +32,8 @@ export const zoomPercent = computed(() => Math.round((view.value.scale / fitted.
 /** A canvas with little room says less. */
 export const tight = computed(() => size.value.width <= 640);
 
-const LEAST = 20;
+/** Of the zoom: the widest profile, of 200 m, is all in view [px/m]. */
+const LEAST = 2;
 const MOST = 8000;
 
 export interface Projection {
@@ -112,7 +113,7 @@ function framing(points: Points): View | null {
   const x1 = Math.min(all.x[1], mid.x[1] + needs.after);
   const tall = all.z[1] + needs.above - all.z[0];
   const scale = Math.min(MOST, Math.max(LEAST, Math.min(width / (x1 - x0), height / tall)));
-  const spare = width / scale - (x1 - x0);
+  const spare = Math.max(0, width / scale - (x1 - x0));
   const sky = Math.max(0, height / scale - tall);
   return {
     scale,
