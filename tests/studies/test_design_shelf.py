@@ -65,4 +65,5 @@ def test_rest_lists_searches_and_gives_the_best_with_their_robots(
         assert all(each["robot"]["name"] == "a1_wheeled" for each in best)
         tag = {"if-none-match": answer.headers["etag"]}
         assert api.get(f"/designs/{only['id']}", headers=tag).status_code == 304
-        assert api.get("/designs/d-0123").status_code == 404
+        for other in ("d-0123", "nope", "..%5Cd-0123"):
+            assert api.get(f"/designs/{other}").status_code == 404

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import hashlib
+import re
 from functools import partial
 from typing import Annotated, Any
 
 import orjson
-from fastapi import APIRouter, Path, Request, Response
+from fastapi import APIRouter, Depends, Path, Request, Response
 from fastapi.sse import format_sse_event
 
 from stairwright.api import event_streams
@@ -46,7 +47,18 @@ JSON and its revision as the event's id. What it has found is at its place, the 
 EVERY = 0.5  # s between looks at what is new: each reads all that was found
 
 router = APIRouter(prefix="/designs", tags=["studies"])
-Id = Annotated[str, Path(max_length=80, pattern=r"^d-[0-9a-f]+$", examples=["d-0123456789abcdef"])]
+
+
+def _known_form(
+    design_id: Annotated[str, Path(max_length=80, examples=["d-0123456789abcdef"])],
+) -> str:
+    """An id, which names a file; what has another form is no search."""
+    if not re.fullmatch(r"d-[0-9a-f]+", design_id):
+        raise not_found("search for designs", design_id)
+    return design_id
+
+
+Id = Annotated[str, Depends(_known_form)]
 
 
 @router.post(
