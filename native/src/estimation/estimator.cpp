@@ -225,14 +225,15 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
 // Every face lies and every tread is as high as the map says only more or less: what is ahead is anew unsure.
 void Estimator::enter_face(int i, const CurveMatch& on) {
     WheelState& w = wheels_[i];
-    if (on.corner || path_.pieces()[on.piece].arc) return;
-    if (on.piece != w.face) w.face = on.piece, w.put_back = w.landed = 0.0;
+    const std::size_t at = on.corner ? kNoPiece : face_below(on.piece);
+    if (at == kNoPiece) return;
+    if (at == on.piece && !path_.pieces()[at].arc && at != w.face) w.face = at, w.put_back = w.landed = 0.0;
     // In a corner a wheel goes to and fro between two faces, and measures both: what is unsure is so once it has left it.
-    const double corner = std::min(kNearCorner, 0.5 * path_.pieces()[on.piece].length);
-    if (on.piece == w.clear || std::abs(nearest_corner(on.s) - on.s) < corner) return;
-    const bool tread = on.point.normal.z > kTread, was_tread = path_.pieces()[w.clear].at(0.0, path_.radius()).normal.z > kTread;
-    const bool known = on.piece == w.clear_before;  // it comes back to it
-    w.clear_before = w.clear, w.clear = on.piece;
+    const double corner = std::min(kNearCorner, 0.5 * path_.pieces()[at].length);
+    if (at == w.clear || std::abs(nearest_corner(on.s) - on.s) < corner) return;
+    const bool tread = !is_face(at), was_tread = !is_face(w.clear);
+    const bool known = at == w.clear_before;  // it comes back to it
+    w.clear_before = w.clear, w.clear = at;
     if (known || (tread && was_tread)) return;
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
     const double error = tread ? noise_.face_place : noise_.tread_height;

@@ -22,9 +22,10 @@ constexpr double kLeastFace = 0.008, kLeastEdge = 0.02, kLeastTread = 0.006;  //
 
 void Estimator::compare_with_map(int i, const CurveMatch& on, double dt) {
     WheelState& w = wheels_[i];
+    const Piece& piece = path_.pieces()[on.piece];
     // An edge that leads down tells where the face below it is.
-    const bool drop = !on.corner && path_.pieces()[on.piece].arc && path_.next_drop(on.s) <= on.s;
-    const bool felt = estimate_.touching[i] && !over_low_edge(w, on) && (on.corner || drop || !path_.pieces()[on.piece].arc);
+    const bool drop = !on.corner && piece.arc && path_.next_drop(on.s) <= on.s;
+    const bool felt = estimate_.touching[i] && !over_low_edge(w, on) && (on.corner || drop || !piece.arc);
     const bool face = on.corner || drop || on.point.normal.z < kTread;
     if (!felt || face != w.on_face) w.known = 0.0;
     w.on_face = face;
@@ -46,20 +47,30 @@ void Estimator::find_map_error() {
 bool Estimator::rear_knows(double s, bool face) const {
     const Vec2 front = path_.at(s).centre, rear = path_.at(0.5 * (wheels_[2].s + wheels_[3].s)).centre;
     if (std::abs(face ? front.x - rear.x : front.z - rear.z) < kSameGround) return true;
-    const std::size_t found = straight_piece(s, face);
+    const std::size_t found = face_or_tread(s, face);
     const auto told = [&](const WheelState& w) { return found > 0 && (w.told[0] == found || w.told[1] == found); };
     return told(wheels_[2]) || told(wheels_[3]);
 }
 
 bool Estimator::is_face(std::size_t piece) const { return path_.pieces()[piece].at(0.0, path_.radius()).normal.z < kTread; }
 
-std::size_t Estimator::straight_piece(double s, bool face) const {
+// The face or tread that a wheel on that piece of the curve is on. Round an edge that leads up it is still the face below;
+// one that is lower than the wheel has nothing but the edge.
+std::size_t Estimator::face_below(std::size_t piece) const {
+    const Piece& edge = path_.pieces()[piece];
+    if (!edge.arc) return piece;
+    if (!is_face(piece) || edge.at(0.0, path_.radius()).normal.x > 0.0) return kNoPiece;
+    if (!path_.pieces()[piece - 1].arc && is_face(piece - 1)) return piece - 1;
+    return std::ranges::binary_search(path_.corners(), edge.s) ? piece : kNoPiece;
+}
+
+std::size_t Estimator::face_or_tread(double s, bool face) const {
     const auto& pieces = path_.pieces();
     std::size_t best = pieces.size();
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < pieces.size(); ++k) {
         if (pieces[k].s > s + kReach) break;
-        if (pieces[k].arc || pieces[k].s + pieces[k].length < s - kReach || is_face(k) != face) continue;
+        if (face_below(k) != k || pieces[k].s + pieces[k].length < s - kReach || is_face(k) != face) continue;
         const double away = std::max({pieces[k].s - s, s - pieces[k].s - pieces[k].length, 0.0});
         if (away < nearest) nearest = away, best = k;
     }
@@ -68,22 +79,22 @@ std::size_t Estimator::straight_piece(double s, bool face) const {
 
 void Estimator::remember(double s, bool face, double off) {
     found_.resize(path_.pieces().size());
-    const std::size_t k = straight_piece(s, face);
+    const std::size_t k = face_or_tread(s, face);
     if (k < found_.size()) found_[k] = off;
 }
 
-// Of the piece that a rear wheel is on and of the next straight one; not while it may still lean on the one before.
+// Of the face or tread that a rear wheel is on and of the next one; not while it may still lean on the one before.
 void Estimator::recall(WheelState& rear) {
     const Piece& now = path_.pieces()[rear.face];
     if (rear.face == rear.recalled || rear.s < now.s + kInto || rear.s > now.s + now.length) return;
     rear.recalled = rear.face, rear.told = {};
     Error error{};
-    int straight = 0;
-    for (std::size_t k = rear.face; k < found_.size() && straight < 2; ++k) {
-        if (path_.pieces()[k].arc) continue;
-        ++straight;
+    std::size_t seen = 0;
+    for (std::size_t k = rear.face; k < found_.size() && seen < rear.told.size(); ++k) {
+        if (face_below(k) != k) continue;
+        ++seen;
         if (!found_[k]) continue;
-        rear.told[straight - 1] = k;
+        rear.told[seen - 1] = k;
         Error row{};
         row[is_face(k) ? kRearOffset : kRearOffset + 1] = 1.0;
         covariance_.update(row, *found_[k] - (is_face(k) ? offset_[1].x : offset_[1].z), kRecalled * kRecalled, error);
@@ -94,7 +105,7 @@ void Estimator::recall(WheelState& rear) {
 Vec2 Estimator::correct_map(WheelPath path, const MapError& found) {
     const Vec2 by = found.face ? Vec2{found.off.x, 0.0} : Vec2{0.0, found.off.z};
     // A face is moved by itself, with a tread all that is behind it.
-    const std::size_t first = straight_piece(found.s, found.face);
+    const std::size_t first = face_or_tread(found.s, found.face);
     if (path.pieces().size() != found_.size()) found_.clear();
     for (std::size_t k = first; k < found_.size(); ++k)
         if (found_[k] && is_face(k) == found.face && (k == first || !found.face)) *found_[k] -= found.face ? by.x : by.z;

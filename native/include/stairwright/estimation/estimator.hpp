@@ -127,7 +127,7 @@ class Estimator {
         std::size_t recalled = 0;  // the last piece on which it has recalled what front wheels found
         std::array<std::size_t, 2> told{};  // pieces of which they had found something then, 0 for none
         std::size_t face = 0;  // piece of the curve, the last straight one
-        std::size_t clear = 0, clear_before = 0;  // the last straight ones that it was on clear of corners
+        std::size_t clear = 0, clear_before = 0;  // the last faces and treads that it was on clear of corners
         std::size_t low_edge = kNoPiece;  // the edge near to it that may be none, see low_edges.cpp
         bool missed = false;      // it is put back now
         bool contradicts = false; // it rolls otherwise than the filter can believe
@@ -160,8 +160,9 @@ class Estimator {
     void remember(double s, bool face, double off);
     void recall(WheelState& rear);
     bool rear_knows(double s, bool face) const;
-    std::size_t straight_piece(double s, bool face) const;
+    std::size_t face_or_tread(double s, bool face) const;  // the piece nearest to the place `s`
     bool is_face(std::size_t piece) const;
+    std::size_t face_below(std::size_t piece) const;
     bool before_drop(const CurveMatch& on) const;
     void note_low_edges();
     std::size_t next_low_edge(const WheelState& wheel) const;
