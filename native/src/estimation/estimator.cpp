@@ -25,7 +25,6 @@ constexpr double kBeside = 1e-6;        // m
 constexpr double kContradicted = 0.05;  // s
 constexpr double kWrongVelocity = 0.5;  // m/s
 constexpr double kMostMapError = 0.12;  // m
-constexpr double kBeyondDoubt = 3.0;    // standard deviations
 
 Error initial(const Noise& n) {
     Error d{};
@@ -209,7 +208,7 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const bool round_it = path_.pieces()[on.piece].arc && on.point.normal.x < 0.0;  // an edge that leads up
     estimate_.on_tread[i / 2] = tread && room >= kRoom, estimate_.nearing[i / 2] = (tread && room < kRoom) || round_it || unsure;
 
-    compare_with_map(i, on, dt);
+    compare_with_map(i, on, belief.spread, dt);
     estimate_.touching[i] = touching;
     estimate_.used_grip[i] = std::abs(w.traction) / std::max(dot(w.felt, on.point.normal), 0.02 * weight_);
     if (!estimate_.touching[i]) return;

@@ -20,11 +20,12 @@ constexpr double kLeastFace = 0.008, kLeastEdge = 0.02, kLeastTread = 0.006;  //
 
 }  // namespace
 
-void Estimator::compare_with_map(int i, const CurveMatch& on, double dt) {
+void Estimator::compare_with_map(int i, const CurveMatch& on, const Spread& spread, double dt) {
     WheelState& w = wheels_[i];
     const Piece& piece = path_.pieces()[on.piece];
-    // An edge that leads down tells where the face below it is.
-    const bool drop = !on.corner && piece.arc && path_.next_drop(on.s) <= on.s;
+    // An edge that leads down tells where the face below it is, once the wheel is round it beyond doubt.
+    const double sure = kBeyondDoubt * std::sqrt(spread.along({on.point.normal.z, -on.point.normal.x}));
+    const bool drop = !on.corner && piece.arc && path_.next_drop(on.s) <= on.s && on.s > piece.s + sure;
     const bool felt = estimate_.touching[i] && !over_low_edge(w, on) && (on.corner || drop || !piece.arc);
     const bool face = on.corner || drop || on.point.normal.z < kTread;
     if (!felt || face != w.on_face) w.known = 0.0;
@@ -60,7 +61,7 @@ std::size_t Estimator::face_below(std::size_t piece) const {
     const Piece& edge = path_.pieces()[piece];
     if (!edge.arc) return piece;
     if (!is_face(piece) || edge.at(0.0, path_.radius()).normal.x > 0.0) return kNoPiece;
-    if (!path_.pieces()[piece - 1].arc && is_face(piece - 1)) return piece - 1;
+    if (piece > 0 && !path_.pieces()[piece - 1].arc && is_face(piece - 1)) return piece - 1;
     return std::ranges::binary_search(path_.corners(), edge.s) ? piece : kNoPiece;
 }
 

@@ -152,7 +152,7 @@ class Estimator {
     void feel_ground(const std::array<WheelForce, 4>& told, const Readings& readings, double share);
     void measure(int wheel, const Readings& readings, double dt);
     void put_back(int wheel, Vec2 along, double excess, Error& error);
-    void compare_with_map(int wheel, const CurveMatch& on, double dt);
+    void compare_with_map(int wheel, const CurveMatch& on, const Spread& spread, double dt);
     void find_map_error();
     void believe_wheels_again(double dt);
     void enter_face(int wheel, const CurveMatch& on);
