@@ -56,10 +56,11 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
     }
     const Vec2 n = on.point.normal;
     if (n.z < kTread) {
-        if (dot(wheels_[i].felt, n) < wheels_[i].least_push) return;  // it only seems to be there
+        if (dot(wheels_[i].felt, n) < wheels_[i].force_deviation) return;  // it only seems to be there
         wheels_[i].met = nearest_corner(on.s);
     }
     covariance_.update(row(n), dot(n, off), variance, error);
+    if (path_.pieces()[on.piece].arc) measure_turn(i, n, row({n.z, -n.x}), dt, error);
     if (on.beyond == 0 || !on.blocked) return;
     const Vec2 t = {n.z, -n.x};
     if (std::abs(wheels_[i].met - nearest_corner(on.s)) < kSame) {  // no news of a face that it has felt
@@ -68,6 +69,16 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
     }
     // The mean alone is projected: that the face is not felt yet is the same news at every step.
     put_back(i, t, dot(t, off) - dot_of(row(t), error), error);
+}
+
+// How far round an edge a wheel is the direction of its force says: what of it is along the wheel's way is the traction,
+// and that way turns by ds / r. An edge that is higher than drawn, or comes earlier, looks from its place like another one.
+void Estimator::measure_turn(int i, Vec2 normal, Error along, double dt, Error& error) {
+    const WheelState& w = wheels_[i];
+    const double turning = -dot(w.felt, normal) / path_.radius();
+    for (double& v : along) v *= turning;
+    const double variance = w.force_deviation * w.force_deviation * std::max(1.0, noise_.place_lasts / dt);
+    covariance_.update(along, w.traction - dot(w.felt, {normal.z, -normal.x}), variance, error);
 }
 
 // A wheel that the map has beyond a face which it does not feel: the face is farther on than drawn. Where the other

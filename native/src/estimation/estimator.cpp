@@ -179,8 +179,8 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     belief.low_edge = w.low_edge, belief.low_edge_height = noise_.tread_height * noise_.tread_height;
     const CurveMatch on = match(path_, belief, w.s, kWindow);
     // A leg that swings feels a little, too: of a wall it has to be more than that.
-    w.least_push = belief.force_deviation;
-    const auto feels = [&](Vec2 n) { return dot(w.felt, n) > std::max(kTouching * weight_ / 4, n.z < kTread ? w.least_push : 0.0); };
+    w.force_deviation = belief.force_deviation;
+    const auto feels = [&](Vec2 n) { return dot(w.felt, n) > std::max(kTouching * weight_ / 4, n.z < kTread ? w.force_deviation : 0.0); };
     bool touching = feels(on.point.normal) || feels(on.before) || feels(on.after);
     const double corner = nearest_corner(on.s);
     if (std::abs(corner - on.s) < kNearCorner) touching = touching || feels(path_.normal(corner - kBeside)) || feels(path_.normal(corner + kBeside));

@@ -137,7 +137,7 @@ class Estimator {
         double cruise = 0.0;      // speed that it rolled at until the reading before this one, smoothed [m/s]
         bool on_face = false;     // a steep one, or in a corner before one
         double known = 0.0;       // for how long it has been there, or on a tread [s]
-        double least_push = 0.0;  // of a wall that counts as felt [N]
+        double force_deviation = 0.0;  // of what is felt; of a wall more than that counts [N]
         double met = -1e9;        // the last corner of which it has felt the wall [m]
         double aloft = 0.0;       // for how long it has been in the air [s]
         double landed = 0.0;      // since it has met the face or tread that it is on [s]
@@ -170,6 +170,7 @@ class Estimator {
     bool over_low_edge(const WheelState& wheel, const CurveMatch& on) const;
     double nearest_corner(double s) const;  // along the curve, to the place `s` on it [m]
     void measure_place(int wheel, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error);
+    void measure_turn(int wheel, Vec2 normal, Error along, double dt, Error& error);
     void measure_rolling(int wheel, const CurveMatch& on, const Readings& readings, const Error& along_x, const Error& along_z, double dt, Error& error);
     void correct(const Error& error);
     void report(const Readings& readings);
