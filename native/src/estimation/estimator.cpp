@@ -234,6 +234,7 @@ void Estimator::enter_face(int i, const CurveMatch& on) {
     const bool known = at == w.clear_before;  // it comes back to it
     w.clear_before = w.clear, w.clear = at;
     if (known || (tread && was_tread)) return;
+    if (tread && i == 0 && !has_found(w.clear_before)) believe_map();
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
     const double error = tread ? noise_.face_place : noise_.tread_height;
     covariance_.add_noise(tread ? own : own + 1, 0.5 * error * error);

@@ -37,7 +37,9 @@ void Estimator::find_map_error() {
     estimate_.map_error.reset();
     const WheelState &left = wheels_[0], &right = wheels_[1];
     if (std::min(left.known, right.known) < kSettled || left.on_face != right.on_face || left.missed || right.missed) return;
-    const double off = left.on_face ? offset_[0].x : offset_[0].z, s = 0.5 * (left.s + right.s);
+    const double s = 0.5 * (left.s + right.s);
+    if (left.on_face && !has_found(face_or_tread(s, true))) believe_map();
+    const double off = left.on_face ? offset_[0].x : offset_[0].z;
     remember(s, left.on_face, off);
     const double least = path_.on_arc(left.s) ? kLeastEdge : left.on_face ? kLeastFace : kLeastTread;
     if (std::abs(off) < least) return;
@@ -76,6 +78,16 @@ std::size_t Estimator::face_or_tread(double s, bool face) const {
         if (away < nearest) nearest = away, best = k;
     }
     return best;
+}
+
+// What front wheels say of a face once, when they have found it or passed it. Each is off by itself, the one as likely
+// ahead as the other behind: what all of them seem to be off the robot's place is. The difference between two faces has
+// twice the variance of either.
+void Estimator::believe_map() {
+    Error error{}, row{};
+    row[kFrontOffset] = 1.0;
+    covariance_.update(row, -offset_[0].x, 0.5 * noise_.face_place * noise_.face_place, error);
+    correct(error);
 }
 
 void Estimator::remember(double s, bool face, double off) {

@@ -158,6 +158,8 @@ class Estimator {
     void enter_face(int wheel, const CurveMatch& on);
     // What front wheels find of a face or tread the rear wheels know when they get there.
     void remember(double s, bool face, double off);
+    bool has_found(std::size_t piece) const { return piece < found_.size() && found_[piece]; }
+    void believe_map();
     void recall(WheelState& rear);
     bool rear_knows(double s, bool face) const;
     std::size_t face_or_tread(double s, bool face) const;  // the piece nearest to the place `s`
