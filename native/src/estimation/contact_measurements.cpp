@@ -68,7 +68,7 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
         return;
     }
     // The mean alone is projected: that the face is not felt yet is the same news at every step.
-    put_back(i, t, dot(t, off) - dot_of(row(t), error), error);
+    put_back(i, row(t), dot(t, off) - dot_of(row(t), error), error);
 }
 
 // How far round an edge a wheel is the direction of its force says: what of it is along the wheel's way is the traction,
@@ -81,16 +81,18 @@ void Estimator::measure_turn(int i, Vec2 normal, Error along, double dt, Error& 
     covariance_.update(along, w.traction - dot(w.felt, {normal.z, -normal.x}), variance, error);
 }
 
-// A wheel that the map has beyond a face which it does not feel: the face is farther on than drawn. Where the other
-// pair can roll on, so is all the rest.
-void Estimator::put_back(int i, Vec2 along, double excess, Error& error) {
-    const int pair = i / 2;
+// A wheel that the map has beyond a face which it does not feel: the face is farther on than drawn, or the robot less far,
+// as either is unsure.
+void Estimator::put_back(int i, const Error& along, double excess, Error& error) {
     WheelState& w = wheels_[i];
     w.put_back += std::abs(excess);
     w.missed = w.put_back > kMissed;
-    const std::size_t at = estimate_.on_tread[1 - pair] ? kPlace : pair == 0 ? kFrontOffset : kRearOffset;
-    error[at] += excess * along.x, error[at + 1] += excess * along.z;
-    covariance_.add_noise(at, kSearchNoise * std::abs(excess));
+    const Error spread = covariance_.times(along);
+    const double variance = dot_of(along, spread);
+    for (std::size_t k = kPlace; k < kErrors; ++k)
+        if (k < kPlace + 2 || k >= kFrontOffset) error[k] += spread[k] / variance * excess;
+    const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
+    covariance_.add_noise(spread[own] > spread[kPlace] ? own : kPlace, kSearchNoise * std::abs(excess));
 }
 
 void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& readings, const Error& along_x, const Error& along_z, double dt, Error& error) {

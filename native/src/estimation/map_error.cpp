@@ -87,6 +87,10 @@ void Estimator::believe_map() {
     Error error{}, row{};
     row[kFrontOffset] = 1.0;
     covariance_.update(row, -offset_[0].x, 0.5 * noise_.face_place * noise_.face_place, error);
+    // Where the wheels are on the map, and what they have found there, stays.
+    error[kFrontOffset] = error[kRearOffset] = -error[kPlace];
+    for (std::size_t k = 0; k < found_.size(); ++k)
+        if (found_[k] && is_face(k)) *found_[k] -= error[kPlace];
     correct(error);
 }
 

@@ -151,7 +151,7 @@ class Estimator {
     void see_legs(const Readings& readings, double dt);
     void feel_ground(const std::array<WheelForce, 4>& told, const Readings& readings, double share);
     void measure(int wheel, const Readings& readings, double dt);
-    void put_back(int wheel, Vec2 along, double excess, Error& error);
+    void put_back(int wheel, const Error& along, double excess, Error& error);
     void compare_with_map(int wheel, const CurveMatch& on, const Spread& spread, double dt);
     void find_map_error();
     void believe_wheels_again(double dt);
