@@ -40,7 +40,8 @@ def installer(python: Path) -> Callable[..., None]:
         if found is None:
             _run(sys.executable, "-m", "pip", "--python", python, "install", "--no-deps", *what)
             return
-        command = [found, "pip", "install", "--no-deps", "--python", python]
+        # compiled to bytecode, as pip does it
+        command = [found, "pip", "install", "--no-deps", "--compile-bytecode", "--python", python]
         offline = subprocess.run([*command, "--offline", *what], check=False, capture_output=True)
         if offline.returncode != 0:
             _run(*command, *what)
@@ -73,9 +74,6 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     install("--require-hashes", "-r", lock)
     install(wheel)
     _run(folder / PYTHON, ROOT / "slim.py")
-    # pip compiles all of it to bytecode, which takes a minute; what is used will do
-    used = "import stairwright.api.app; from stairwright.jobs.warming import *"
-    _run(folder / PYTHON, "-E", "-c", f"{used}; warm_plans(); warm_rollouts()")
     (packages,) = (folder / "venv").glob("lib/python*/site-packages")
     places = [packages, *(path for path in packages.rglob("*") if path.is_dir())]
     for place in places:
