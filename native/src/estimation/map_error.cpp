@@ -38,9 +38,11 @@ void Estimator::find_map_error() {
     const WheelState &left = wheels_[0], &right = wheels_[1];
     if (std::min(left.known, right.known) < kSettled || left.on_face != right.on_face || left.missed || right.missed) return;
     const double s = 0.5 * (left.s + right.s);
-    if (left.on_face && !has_found(face_or_tread(s, true))) believe_map();
+    const std::size_t at = face_or_tread(s, left.on_face);
+    if (left.on_face && !has_found(at)) believe_map();
     const double off = left.on_face ? offset_[0].x : offset_[0].z;
-    remember(s, left.on_face, off);
+    found_.resize(path_.pieces().size());
+    if (at < found_.size()) found_[at] = off;
     const double least = path_.on_arc(left.s) ? kLeastEdge : left.on_face ? kLeastFace : kLeastTread;
     if (std::abs(off) < least) return;
     estimate_.map_error = MapError{left.on_face, s, offset_[0], rear_knows(s, left.on_face)};
@@ -92,12 +94,6 @@ void Estimator::believe_map() {
     for (std::size_t k = 0; k < found_.size(); ++k)
         if (found_[k] && is_face(k)) *found_[k] -= error[kPlace];
     correct(error);
-}
-
-void Estimator::remember(double s, bool face, double off) {
-    found_.resize(path_.pieces().size());
-    const std::size_t k = face_or_tread(s, face);
-    if (k < found_.size()) found_[k] = off;
 }
 
 // Of the face or tread that a rear wheel is on and of the next one; not while it may still lean on the one before.

@@ -157,7 +157,6 @@ class Estimator {
     void believe_wheels_again(double dt);
     void enter_face(int wheel, const CurveMatch& on);
     // What front wheels find of a face or tread the rear wheels know when they get there.
-    void remember(double s, bool face, double off);
     bool has_found(std::size_t piece) const { return piece < found_.size() && found_[piece]; }
     void believe_map();
     void recall(WheelState& rear);
