@@ -21,6 +21,7 @@ constexpr double kHop = 0.1;            // s in the air that are no more than a 
 constexpr double kHopSpeed = 0.2;       // m/s of the trunk from which on a riser is met so
 constexpr double kSure = 0.02;         // s that both faces of a corner must be felt before that counts
 constexpr double kMostScale = 0.025;   // of the wheels: more is slip
+constexpr double kClearOfEdge = 0.01;   // m
 constexpr double kBeside = 1e-6;        // m
 constexpr double kContradicted = 0.05;  // s
 constexpr double kWrongVelocity = 0.5;  // m/s
@@ -230,6 +231,8 @@ void Estimator::enter_face(int i, const CurveMatch& on) {
     // In a corner a wheel goes to and fro between two faces, and measures both: what is unsure is so once it has left it.
     const double corner = std::min(kNearCorner, 0.5 * path_.pieces()[at].length);
     if (at == w.clear || std::abs(nearest_corner(on.s) - on.s) < corner) return;
+    // Near to the edge before it the direction of its force may still tell where it is on that one, see measure_turn.
+    if (path_.on_arc(on.s - std::min(kClearOfEdge, 0.5 * path_.pieces()[at].length))) return;
     const bool tread = !is_face(at), was_tread = !is_face(w.clear);
     const bool known = at == w.clear_before;  // it comes back to it
     w.clear_before = w.clear, w.clear = at;
