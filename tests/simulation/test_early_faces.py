@@ -19,6 +19,8 @@ FOURTH = {"face_place_error": [0.03, 0.03, 0.03, -0.03, 0.03]}
 APART = {"face_place_error": [-0.03, 0.03, 0.03]}
 # The tread before the third riser is so short that two wheels hardly find room on it.
 SHORT = {"face_place_error": [0.03, 0.03, -0.03, 0.03]}
+# The third riser comes 6 cm early.
+THIRD = [0.03, 0.03, -0.03, 0.03, 0.03]
 
 
 @pytest.mark.slow
@@ -39,4 +41,12 @@ def test_no_leg_meets_it_before_the_wheels_do(
 ) -> None:
     plan = sw.plan(sw.load_terrain(terrain), robot, friction=0.6)
     run = sw.rollout(plan, disturbance=deviation, seed=3)
+    assert run.success, run.reason
+
+
+@pytest.mark.slow
+def test_an_edge_that_is_left_slowly_says_nothing_of_the_next_face() -> None:
+    """Its wheels took the third riser for more tread, and pushed until they slipped."""
+    plan = sw.plan(sw.load_terrain("stairs-building"), "a1_wheeled", friction=0.6)
+    run = sw.rollout(plan, disturbance={"face_place_error": THIRD}, seed=2)
     assert run.success, run.reason

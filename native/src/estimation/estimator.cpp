@@ -14,7 +14,7 @@ namespace {
 constexpr double kTouching = 0.15;      // of the share of the weight: a wheel that carries less says nothing
 constexpr double kForceTime = 0.015;    // s, smoothing of the forces
 constexpr double kCruiseTime = 0.1;    // s, smoothing of the speed that a wheel rolls at
-constexpr double kForceAtRest = 0.3;    // of a force's uncertainty in motion
+constexpr double kForceAtRest = 0.15;   // of a force's uncertainty in motion
 constexpr double kForceSpeed = 0.15;    // m/s of the wheel's centre from which on it is that in motion
 constexpr double kRoom = 0.10;          // m to the next face that a pair needs to roll on freely
 constexpr double kHop = 0.1;            // s in the air that are no more than a hop, as after a riser is met fast

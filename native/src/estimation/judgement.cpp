@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "spatial.hpp"
 
@@ -44,7 +45,8 @@ Estimator::Judgement Estimator::judge(const control::RobotState& truth) const {
     const Judged error = {out.error[0], out.error[1], out.error[3], out.error[5], out.error[6], out.error[7]};
     out.nees = normalised(error, covariance_, parts, {});
     // Wheels tell place and roll on the map; how that lies in the world they cannot: along, and sideways level or not.
-    out.nees_in_world = normalised(error, covariance_, parts, {noise_.cross_slope, 0.0, 0.0, 0.0, noise_.face_place, 0.0});
+    // Noise has the place of one face against another, each of which is off by itself.
+    out.nees_in_world = normalised(error, covariance_, parts, {noise_.cross_slope, 0.0, 0.0, 0.0, noise_.face_place / std::numbers::sqrt2, 0.0});
     out.scale = scale_, out.offset = offset_;
     return out;
 }

@@ -40,7 +40,7 @@ struct Noise {
     // Growth of the map's error in the square root of a metre rolled, and of measurements.
     double map_along = 0.006, map_height = 0.004;
     // Of the place of a face against the one before, and of the height of a tread [m].
-    double face_place = 0.018, tread_height = 0.010;
+    double face_place = 0.025, tread_height = 0.010;
     // Of the ground sideways, which the map has level: kerbs and ramps may slope by 2 % (ADA Standards 405.3) [rad].
     double cross_slope = 0.010;
     double place = 0.002, rolling = 0.03, aside = 0.03, off_face = 0.02;
