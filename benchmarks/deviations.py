@@ -2,11 +2,12 @@
 
     python benchmarks/deviations.py [--count 60] [--first 5000] [--rows NAME ...] [--robots NAME]
         [--terrains NAME ...] [--sensing robot] [--salt 0] [--workers N] [--quick] [--show]
-        [--json FILE]
+        [--spread] [--json FILE]
 
 Every preset terrain and `--count` profiles of `profiles.py` are planned for each robot; every plan
 is rolled out once for each row of the table, with deviations whose signs and draws differ from plan
-to plan. A run succeeds, ends short of that with the robot standing (stopped by itself, or at rest),
+to plan. `--spread` rolls each plan out in one row alone, the next row with each plan, so that many
+profiles fit in an hour. A run succeeds, ends short of that with the robot standing (stopped by itself, or at rest),
 or falls. Shares come with Wilson's 95 % intervals; the estimator's error is judged against the
 truth (NEES: share of the time within the 95 % band of chi squared). `--show` prints each run that
 did not succeed.
@@ -120,16 +121,16 @@ def run_case(
 
 
 def results(
-    cases: list[tuple[str, str]], workers: int, rows: tuple[str, ...], sensing: str, salt: int
+    cases: list[tuple[str, str]], workers: int, rows: list[tuple[str, ...]], sensing: str, salt: int
 ) -> Iterator[Result]:
-    """All results, in order."""
-    work = partial(run_case, rows=rows, sensing=sensing, friction=FRICTION, salt=salt)
+    """All results, in order; each case in its rows."""
+    work = partial(run_case, sensing=sensing, friction=FRICTION, salt=salt)
     if workers == 1:
-        for case in cases:
-            yield from work(case)
+        for case, mine in zip(cases, rows, strict=True):
+            yield from work(case, mine)
         return
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        for found in pool.map(work, cases):
+        for found in pool.map(work, cases, rows):
             yield from found
 
 
@@ -171,7 +172,8 @@ def run(quick: bool = False, **options: Any) -> list[Row]:
     workers = options.get("workers") or len(os.sched_getaffinity(0))
     found = []
     sensing, salt = options.get("sensing", "robot"), options.get("salt", 0)
-    for result in results(cases, workers, rows, sensing, salt):
+    each = [(rows[k % len(rows)],) if options.get("spread") else rows for k in range(len(cases))]
+    for result in results(cases, workers, each, sensing, salt):
         found.append(result)
         if options.get("show") and result.row and result.outcome != "success":
             print(
@@ -192,6 +194,7 @@ def main() -> None:
     parser.add_argument("--terrains", nargs="*", help="presets; all by default")
     parser.add_argument("--salt", type=int, help="for other draws: tune on some, report others")
     parser.add_argument("--workers", type=int, help="processes; all cores by default")
+    parser.add_argument("--spread", action="store_true", help="one row for each plan, in turn")
     parser.add_argument("--quick", action="store_true", help="6 profiles")
     parser.add_argument("--show", action="store_true", help="print what did not succeed")
     parser.add_argument("--json")
