@@ -41,23 +41,23 @@ def around(points: Floats) -> Disc2:
         ends = corners[[0, -1]]
         return _round_line(ends[0], ends[1], _POINT)
     edges = np.roll(corners, -1, axis=0) - corners
-    best: Disc2 | None = None
-    for edge in edges:
-        along = edge / np.linalg.norm(edge)
-        across = np.array([-along[1], along[0]])
-        u, v = corners @ along, corners @ across
-        middle, half = (v.min() + v.max()) / 2, (v.max() - v.min()) / 2
-        for radius in max(half, _POINT) * _WIDER:
-            room = np.sqrt(np.maximum(0.0, radius**2 - (v - middle) ** 2))
-            low, high = float((u + room).min()), float((u - room).max())
-            if low > high:
-                low = high = (low + high) / 2
-            centre = middle * across
-            found = _round_line(centre + low * along, centre + high * along, float(radius))
-            if best is None or found.area < best.area:
-                best = found
-    assert best is not None
-    return best
+    found = [_along(edge / np.linalg.norm(edge), corners) for edge in edges]
+    return min(found, key=lambda capsule: capsule.area)
+
+
+def _along(along: Floats, corners: Floats) -> Disc2:
+    """The smallest capsule round all corners whose line has a direction."""
+    across = np.array([-along[1], along[0]])
+    u, v = corners @ along, corners @ across
+    middle, half = (v.min() + v.max()) / 2, (v.max() - v.min()) / 2
+    radii = max(half, _POINT) * _WIDER
+    room = np.sqrt(np.maximum(0.0, radii[:, None] ** 2 - (v - middle) ** 2))
+    low, high = (u + room).min(axis=1), (u - room).max(axis=1)
+    low, high = np.where(low > high, (low + high) / 2, [low, high])
+    areas = radii * (math.pi * radii + 2 * np.maximum(high - low, 2 * _POINT))
+    k = int(areas.argmin())
+    start, end = (middle * across + end[k] * along for end in (low, high))
+    return _round_line(start, end, float(radii[k]))
 
 
 def _round_line(start: Floats, end: Floats, radius: float) -> Disc2:

@@ -38,23 +38,14 @@ def outer(points: Floats, corners: int = MOST_CORNERS) -> Floats:
     """
     polygon = _thick(hull(points))
     while len(polygon) > corners:
-        best: tuple[float, int, Floats] | None = None
-        for k in range(len(polygon)):
-            a, b, c, d = (polygon[(k + m) % len(polygon)] for m in range(4))
-            meeting = _meeting(a, b, c, d)
-            if meeting is None:
-                continue
-            added = abs(_turn(b.tolist(), meeting.tolist(), c.tolist())) / 2
-            if best is None or added < best[0]:
-                best = added, k, meeting
-        if best is None:
+        meeting, added = _meetings(polygon)
+        k = int(added.argmin())
+        if np.isinf(added[k]):
             low, high = polygon.min(axis=0), polygon.max(axis=0)
             return np.array([low, (high[0], low[1]), high, (low[0], high[1])])
-        _, k, meeting = best
-        n = len(polygon)
-        polygon = np.array(
-            [meeting if m == (k + 1) % n else polygon[m] for m in range(n) if m != (k + 2) % n]
-        )
+        first, second = (k + 1) % len(polygon), (k + 2) % len(polygon)
+        polygon[first] = meeting[k]
+        polygon = np.delete(polygon, second, axis=0)
     return hull(polygon) if len(polygon) > 3 else polygon
 
 
@@ -81,19 +72,25 @@ def _thick(polygon: Floats) -> Floats:
     return hull((polygon[:, None, :] + corners[None, :, :]).reshape(-1, 2))
 
 
-def _meeting(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats | None:
-    """Where edge a-b, made longer beyond b, meets d-c made longer beyond c."""
-    u, v = b - a, c - d
-    across = u[0] * v[1] - u[1] * v[0]
-    if abs(across) < 1e-15:
-        return None
-    w = c - b
-    t = (w[0] * v[1] - w[1] * v[0]) / across
-    s = (w[0] * u[1] - w[1] * u[0]) / across
-    if t <= 0 or s <= 0:
-        return None
-    point: Floats = b + t * u
-    return point
+def _meetings(polygon: Floats) -> tuple[Floats, Floats]:
+    """Of each edge's neighbours, made longer: where they meet, and the area that adds [m^2].
+
+    That of edge k + 1 to k + 2 stands at k; the area is infinite where they do not meet.
+    """
+    b, c, d = (np.roll(polygon, -k, axis=0) for k in (1, 2, 3))
+    u, v, w = b - polygon, c - d, c - b
+    with np.errstate(divide="ignore", invalid="ignore"):
+        across = _cross(u, v)
+        t, s = _cross(w, v) / across, _cross(w, u) / across
+        meeting: Floats = b + t[:, None] * u
+        added = np.abs(_cross(meeting - b, w)) / 2
+    return meeting, np.where((np.abs(across) >= 1e-15) & (t > 0) & (s > 0), added, np.inf)
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    """(n,) of vectors (n, 2)."""
+    out: Floats = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return out
 
 
 def _turn(a: Sequence[float], b: Sequence[float], c: Sequence[float]) -> float:
