@@ -39,6 +39,7 @@ def test_a_backward_plan_is_that_of_python(server: Server, api: httpx.Client) ->
     assert listed[plan.id]["facing"] == "backward"
 
 
+@pytest.mark.slow
 def test_the_service_is_asked_for_either_end(server: Server) -> None:
     own = sw.plan(DROP, facing="backward", timing="fast")
     with sw.Client(server.url) as service:

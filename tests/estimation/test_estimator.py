@@ -26,7 +26,10 @@ RADIUS = 0.05
 NEES_95 = 12.59  # of chi squared with 6 degrees of freedom
 
 
-@pytest.fixture(scope="module", params=("a1_wheeled", "a1_wheeled_x", "go2w"))
+OTHERS = [pytest.param(name, marks=pytest.mark.slow) for name in ("a1_wheeled_x", "go2w")]
+
+
+@pytest.fixture(scope="module", params=["a1_wheeled", *OTHERS])
 def plan(request: pytest.FixtureRequest) -> Plan:
     return sw.plan(STAIR, request.param)
 

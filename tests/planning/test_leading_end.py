@@ -63,6 +63,7 @@ def test_a_refusal_is_that_of_the_end_that_comes_farther() -> None:
     assert refused.problem.limit is not None
 
 
+@pytest.mark.slow
 def test_another_plan_on_the_way_keeps_the_end_that_leads() -> None:
     step = {"points": [[-1.2, 0.0], [0.0, 0.0], [0.0, 0.25], [1.2, 0.25]]}
     old = sw.plan(step, timing="fast", facing="backward")

@@ -12,7 +12,12 @@ from stairwright.planning.plan import Knees
 REAL = ("go2w", "b2w", "m20", "d1", "anymal_wheels")
 
 
-@pytest.mark.parametrize("robot", REAL)
+HEAVY = {"b2w", "m20", "anymal_wheels"}
+
+
+@pytest.mark.parametrize(
+    "robot", [pytest.param(name, marks=[pytest.mark.slow] * (name in HEAVY)) for name in REAL]
+)
 def test_a_stair_is_climbed(robot):
     plan = sw.plan("single-stair-030", robot)
     assert plan.feasible

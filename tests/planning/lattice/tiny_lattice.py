@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -100,12 +101,15 @@ def quality(tiny: Tiny, c: int) -> Any:
     return np.where(margin < 0.0, 0, np.where(firm >= 0.0, more, base).astype(np.int64))
 
 
-def neighbours(t: int, z: int, x: int) -> Any:
+@cache
+def neighbours(t: int, z: int, x: int) -> list[tuple[tuple[int, int, int], float]]:
     """Poses within two lattice steps along each axis, with how many steps they are away."""
-    for a in range(max(0, t - 2), min(NT, t + 3)):
-        for b in range(max(0, z - 2), min(NZ, z + 3)):
-            for c in range(max(0, x - 2), min(NX, x + 3)):
-                yield (a, b, c), sum(2.6 if abs(d) == 2 else abs(d) for d in (a - t, b - z, c - x))
+    return [
+        ((a, b, c), sum(2.6 if abs(d) == 2 else abs(d) for d in (a - t, b - z, c - x)))
+        for a in range(max(0, t - 2), min(NT, t + 3))
+        for b in range(max(0, z - 2), min(NZ, z + 3))
+        for c in range(max(0, x - 2), min(NX, x + 3))
+    ]
 
 
 def pose_cost(tiny: Tiny, c: int, weights: dict[str, float]) -> Any:
