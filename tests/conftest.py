@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import os
 import shutil
 import signal
@@ -99,6 +100,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         return 1 if item.get_closest_marker("slow") else 0
 
     items.sort(key=rank)
+
+
+def pytest_collection_finish() -> None:
+    """All that was imported stays: looking for garbage there took a tenth of the tests' time."""
+    gc.freeze()
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import os
+import subprocess
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 
 from .building import setup
-from .packages import setup_peers
+from .packages import setup_peers, venv_python
 from .page import npm
-from .places import PYTHON
-from .running import say, succeeds
+from .places import LOCKS, PYTHON, ROOT, STATE
+from .running import environment, say, succeeds
+from .steps import digest, step
 from .system import setup_browser
 
 MOST_TEST_PROCESSES = 4  # each has a server and a browser of its own
 
 
 def check() -> list[str]:
-    """Lint and type-check all code; the names of the checks that failed."""
+    """Lint and type-check all code, all at once; the names of the checks that failed."""
     say("Lint and types ...")
     checks: dict[str, Callable[[], bool]] = {
         "ruff": lambda: succeeds(PYTHON, "-m", "ruff", "check", "--quiet"),
@@ -24,13 +27,23 @@ def check() -> list[str]:
         "mypy": lambda: succeeds(PYTHON, "-m", "mypy"),
         "Biome and tsc": lambda: npm("run", "--silent", "check"),
     }
-    return [name for name, passes in checks.items() if not passes()]
+    with ThreadPoolExecutor() as pool:
+        passed = list(pool.map(lambda passes: passes(), checks.values()))
+    return [name for name, fine in zip(checks, passed, strict=True) if not fine]
 
 
 def check_alone() -> int:
     """The same after the set-up; 0 if all passed."""
     setup()
     return 1 if check() else 0
+
+
+def setup_tests() -> None:
+    """Compile what tests import to bytecode: once, and not in each of their processes."""
+    with step("Bytecode of the tests", STATE / "tests.stamp", digest(LOCKS, venv_python())) as new:
+        if new:
+            command = (PYTHON, "-m", "pytest", "--collect-only")
+            subprocess.run(command, cwd=ROOT, env=environment(), check=False, capture_output=True)
 
 
 def test(arguments: Sequence[str]) -> int:
@@ -40,11 +53,16 @@ def test(arguments: Sequence[str]) -> int:
     setup()
     variables = {} if quick else {"STAIRWRIGHT_BROWSER": setup_browser()}
     if whole or quick:
-        # One more than processors: tests wait for servers and browsers now and then.
-        processes = min((os.cpu_count() or 1) + 1, MOST_TEST_PROCESSES)
+        # Slow tests wait for servers and browsers now and then: one process more than cores.
+        processes = min((os.cpu_count() or 1) + (not quick), MOST_TEST_PROCESSES)
         shared = ["-n", str(processes)]
         arguments = shared + (["-m", "not slow and not browser"] if quick else [])
-    failed = check() if whole or quick else []
+    failed: list[str] = []
+    if whole or quick:
+        with ThreadPoolExecutor(1) as beside:
+            ready = beside.submit(setup_tests)
+            failed = check()
+            ready.result()
     if failed:
         say(f"FAILED: {', '.join(failed)} (the tests run nevertheless)")
     say("Tests ...")
