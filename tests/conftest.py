@@ -32,7 +32,7 @@ settings.load_profile("ci" if os.environ.get("CI") else "default")
 
 START_LIMIT = 120.0  # s until a server must answer
 BROWSERS = (
-    "chromium-headless-shell",  # the same without windows, which take a third of its time
+    "chromium-headless-shell",  # the same without windows, which take a good tenth of its time
     "chromium",
     "chromium-browser",
     "google-chrome",

@@ -12,7 +12,7 @@ from pathlib import Path
 from .running import SetupError, say, succeeds
 
 BROWSERS = (
-    "chromium-headless-shell",  # the same without windows, which take a third of its time
+    "chromium-headless-shell",  # the same without windows, which take a good tenth of its time
     "chromium",
     "chromium-browser",
     "google-chrome",

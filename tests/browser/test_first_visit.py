@@ -6,8 +6,8 @@ import re
 
 import pytest
 
+from .axe import violations
 from .conftest import PATIENCE, TERRAIN, Product
-from .test_states import _violations
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -46,7 +46,7 @@ def test_a_first_visit(product: Product) -> None:
     card = page.get_by_role("region", name="What stops the robot")
     sentence = card.locator("h4").inner_text()
     assert re.search(r"\d\u00a0m.* x\u00a0=\u00a0-?\d", sentence), sentence  # kept on one line
-    assert _violations(page) == []
+    assert violations(page) == []
     card.get_by_role("button", name="Undo edit").click()
     product.planned()
     assert product.status == "feasible"
@@ -55,7 +55,7 @@ def test_a_first_visit(product: Product) -> None:
     page.get_by_role("switch", name="Compare A with B").click()
     product.run()
     page.locator(".res thead").get_by_text("B", exact=True).first.wait_for(timeout=PATIENCE)
-    assert _violations(page) == []
+    assert violations(page) == []
 
     # Download, under a name that people find again.
     page.get_by_role("button", name="Download").click()

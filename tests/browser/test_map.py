@@ -14,14 +14,13 @@ from playwright.sync_api import expect
 
 from tests.conftest import TAB, Server, serve
 
+from .axe import violations
 from .conftest import PATIENCE, Product
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Page, Route
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
-
-AXE = Path(__file__).parents[2] / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
 
 
 @pytest.fixture(scope="module")
@@ -199,10 +198,7 @@ def test_pictures_and_data_can_be_taken_along(room: Product) -> None:
 def test_nothing_is_inaccessible(room: Product, theme: str) -> None:
     page = room.page
     page.evaluate("theme => { document.documentElement.dataset.theme = theme }", theme)
-    page.evaluate(AXE.read_text())
-    found = page.evaluate("() => axe.run('.map-room')")
-    serious = [v for v in found["violations"] if v["impact"] in ("serious", "critical")]
-    assert [(v["id"], [n["html"] for n in v["nodes"]]) for v in serious] == []
+    assert violations(page, ".map-room") == []
 
 
 def test_the_link_shows_the_same_map(room: Product, browser: Browser, service: Server) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -14,6 +14,7 @@ import stairwright as sw
 from stairwright.robot import kinematics
 from tests.conftest import TAB, Server, serve
 
+from .axe import violations
 from .conftest import PATIENCE, PHONE, Product
 
 if TYPE_CHECKING:
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-AXE = Path(__file__).parents[2] / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
 CURB = {"name": "runs-curb", "points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
 OUTSIDE = """() => [...document.querySelectorAll('.runs button, .runs input, .runs b')]
   .filter(e => e.checkVisibility())
@@ -150,16 +150,8 @@ def test_nothing_is_out_of_reach(runs: Product, size: tuple[int, int]) -> None:
 
 def test_axe_finds_nothing_serious(runs: Product) -> None:
     page = runs.page
-    page.evaluate(AXE.read_text(encoding="utf-8"))
     for _ in range(2):
-        found: dict[str, Any] = page.evaluate(
-            "() => axe.run({ exclude: [['iframe']] }, { iframes: false })"
-        )
-        serious = [
-            each for each in found["violations"] if each["impact"] in ("serious", "critical")
-        ]
-        told = [(each["id"], each["nodes"][0]["html"][:120]) for each in serious]
-        assert told == []
+        assert violations(page) == []
         page.get_by_role("button", name="Light theme").or_(
             page.get_by_role("button", name="Dark theme")
         ).click()
