@@ -287,6 +287,39 @@ DRAWN = """() => {
 }"""
 
 
+# Where the line of one dimension crosses that of another, or lies under its label.
+CROSSED = """() => {
+  const lines = [...document.querySelectorAll(".dimension")].map(e => ({
+    id: e.dataset.handle, plate: e.querySelector(".plate").getBBox(),
+    parts: [".ext", ".measure"].flatMap(c => e.querySelector(c).getAttribute("d").split("M")
+      .filter(Boolean).map(d => d.split("L").map(p => p.split(",").map(Number)))) }));
+  const side = (a, b, p) => (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+  const crosses = ([a, b], [c, d]) => side(a, b, c) * side(a, b, d) < -1e-6
+    && side(c, d, a) * side(c, d, b) < -1e-6;
+  const diagonals = ({ x, y, width: w, height: h }) =>
+    [[[x, y], [x + w, y + h]], [[x, y + h], [x + w, y]]];
+  return lines.flatMap(a => lines.filter(b => b !== a && a.parts.some(p =>
+    [...b.parts, ...diagonals(b.plate)].some(q => crosses(p, q)))).map(b => `${a.id} ${b.id}`));
+}"""
+
+
+@pytest.mark.parametrize("name", sw.robots())
+def test_dimension_lines_do_not_cross(product: Product, name: str) -> None:
+    page = product.page
+    _choose(product, name)
+    page.set_viewport_size(LAPTOP)
+    found = [page.evaluate(CROSSED)]
+    for quantity, dx, dy in (("front.thigh.length", -25, 25), ("height", 0, 25)):
+        _pull(product, quantity, dx, dy)
+        found.append(page.evaluate(CROSSED))
+    page.set_viewport_size(PHONE)
+    page.wait_for_function("() => document.querySelector('.side-view svg').clientWidth < 400")
+    found.append(page.evaluate(CROSSED))
+    page.set_viewport_size(DESK)
+    page.get_by_role("button", name="Reset robot").click()
+    assert found == [[]] * 4
+
+
 @pytest.mark.parametrize("name", sw.robots())
 def test_on_a_phone_the_drawing_fills_the_width_and_fingers_can_pull_it(
     product: Product, name: str

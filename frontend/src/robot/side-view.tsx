@@ -64,7 +64,7 @@ function Drawing() {
       {layers.has("joints") && <Joints />}
       {layers.has("dimensions") && (
         <>
-          {[...dimensions(file, pose, to)]
+          {[...dimensions(file, pose, to, size.value.width)]
             .sort((a, b) => Number(a.id === selected.value) - Number(b.id === selected.value))
             .map((each) => (
               <Line key={each.id} of={each} />
@@ -109,19 +109,12 @@ function Reach() {
   );
 }
 
-const TEXT = 6.1;
-
 function Line({ of }: { of: Dimension }) {
   const { from, to, aside } = of;
   const [ax, ay] = [from[0] + aside[0], from[1] + aside[1]];
   const [bx, by] = [to[0] + aside[0], to[1] + aside[1]];
-  const q = quantityOf(of.id);
-  const value = q.read(robotDocument.value!) ?? 0;
-  const text = `${of.label} ${(value * q.factor).toFixed(q.digits)}`;
-  const wide = text.length * TEXT + 12;
-  const rim = wide / 2 + 3;
-  const x = Math.min(size.value.width - rim, Math.max(rim, ax + (bx - ax) * of.label_at));
-  const y = ay + (by - ay) * of.label_at;
+  const [x, y] = of.label;
+  const [wide, tall] = of.size;
   return (
     <Handle
       id={of.id}
@@ -135,9 +128,9 @@ function Line({ of }: { of: Dimension }) {
       <circle class="end" cx={ax} cy={ay} r={3} />
       <circle class="end grip" cx={bx} cy={by} r={4.5} />
       <rect class="hit" x={x - wide / 2} y={y - TARGET / 2} width={wide} height={TARGET} />
-      <rect class="plate" x={x - wide / 2} y={y - 10} width={wide} height={20} rx={4} />
+      <rect class="plate" x={x - wide / 2} y={y - tall / 2} width={wide} height={tall} rx={4} />
       <text x={x} y={y + 4} text-anchor="middle">
-        {text}
+        {of.text}
       </text>
     </Handle>
   );
