@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import csv
+import re
 
 import pytest
 
-from .conftest import Product
+from .conftest import DESK, Product
 
 pytestmark = [pytest.mark.browser]
 
@@ -27,6 +28,21 @@ def test_a_plot_can_have_the_row_to_itself(product: Product) -> None:
     page.wait_for_function("() => document.querySelectorAll('.plot').length === 1")
     page.keyboard.press("Escape")
     page.wait_for_function(f"() => document.querySelectorAll('.plot').length === {count}")
+
+
+def test_plots_without_room_are_one_step_aside(product: Product) -> None:
+    page = product.page
+    page.set_viewport_size({"width": 1280, "height": 720})
+    titles = page.locator(".plot h3")
+    page.get_by_role("button", name="Show Peak torque, Margins").click()
+    page.get_by_role("region", name="Peak torque").wait_for()
+    assert "Pitch" not in titles.first.inner_text()
+    page.get_by_role("button", name=re.compile("^Show Pitch")).click()
+    page.get_by_role("region", name="Pitch").wait_for()
+    page.set_viewport_size({"width": 1920, "height": 1080})
+    page.wait_for_function("() => document.querySelectorAll('.plot').length === 5")
+    assert page.get_by_role("navigation", name="More plots").count() == 0
+    page.set_viewport_size(DESK)
 
 
 @pytest.mark.parametrize("form", ["PNG", "SVG", "CSV"])

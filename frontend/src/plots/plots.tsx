@@ -8,11 +8,13 @@ import { plan, robotOf } from "../state/planning";
 import { plannedEnd, shownRun } from "../state/playback";
 import { progress, run, runB, running, runPlan } from "../state/rollouts";
 import { compare } from "../state/setup";
+import type { IconName } from "../ui/icon";
+import { IconButton } from "../ui/icon-button";
 import type { Tint } from "./chart";
 import { PANELS, type Panel, type PanelId, type Source, timeAxis } from "./lines";
 import { buildPanel } from "./panels";
 import { Plot } from "./plot";
-import { alonePlot, roomFor, rowWidth, shownPanels } from "./room";
+import { row, rowWidth, turnRow } from "./room";
 
 /** While a rollout runs, its lines grow on the plan's bands. */
 const growing = computed(() => running.value === "a");
@@ -41,10 +43,6 @@ const panels = Object.fromEntries(
     computed(() => buildPanel(id, source.value, time.value)),
   ]),
 ) as Record<PanelId, ReadonlySignal<Panel>>;
-
-const shown = computed<readonly PanelId[]>(() =>
-  alonePlot.value ? [alonePlot.value] : shownPanels.value.slice(0, roomFor(rowWidth.value)),
-);
 
 const tint = computed<Tint | null>(() => {
   const shown = source.value.plan;
@@ -79,10 +77,17 @@ const older = computed(() => Boolean(run.value && !shownRun.value && !growing.va
 const columns = (ids: readonly PanelId[]) =>
   ids.map((id) => `minmax(0, ${id === "margins" ? 1.3 : 1}fr)`).join(" ");
 
+/** Leads to the plots that have no room in the row. */
+function Turn({ to, steps, icon }: { to: readonly PanelId[]; steps: number; icon: IconName }) {
+  const names = to.map((id) => PANELS[id]).join(", ");
+  const label = to.length > 0 ? `Show ${names}` : "No more plots";
+  return <IconButton action={() => turnRow(steps)} label={label} icon={icon} off={!to.length} />;
+}
+
 export function Plots() {
-  const row = useRef<HTMLDivElement>(null);
+  const box = useRef<HTMLDivElement>(null);
   useLayoutEffect(() => {
-    const element = row.current!;
+    const element = box.current!;
     const observer = new ResizeObserver(() => {
       rowWidth.value = element.clientWidth;
     });
@@ -91,20 +96,28 @@ export function Plots() {
   }, []);
   if (nothing.value) {
     return (
-      <div class="plots none" ref={row}>
+      <div class="plots none" ref={box}>
         {nothing.value}
       </div>
     );
   }
+  const { plots, left, right } = row.value;
+  const aside = left.length + right.length > 0;
   return (
     <div
-      ref={row}
+      ref={box}
       class={older.value ? "plots older" : "plots"}
-      style={{ "--columns": columns(shown.value) }}
+      style={{ "--columns": columns(plots) + (aside ? " 28px" : "") }}
     >
-      {shown.value.map((id) => (
+      {plots.map((id) => (
         <Plot key={id} panel={panels[id]} tint={tint} />
       ))}
+      {aside && (
+        <nav class="turn" aria-label="More plots">
+          <Turn to={right} steps={right.length} icon="right" />
+          <Turn to={left} steps={-left.length} icon="left" />
+        </nav>
+      )}
     </div>
   );
 }

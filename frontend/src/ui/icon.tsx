@@ -2,6 +2,8 @@
 
 const PATHS = {
   down: "M4.5 6.5L8 10l3.5-3.5",
+  left: "M9.5 4.5L6 8l3.5 3.5",
+  right: "M6.5 4.5L10 8l-3.5 3.5",
   check: "M3 8.5l3.2 3.2L13 4.5",
   warning: "M8 2L15 13.5H1zM8 6.5v3.5M8 11.8v.4",
   offline:
