@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from stairwright.library import load_robot
 from stairwright.robot.spatial import turn
-from stairwright.scene import shapes
+from stairwright.scene import camera, shapes
 from stairwright.scene.clearance import clearance
 from stairwright.scene.overlays import aim
 from stairwright.terrain.profile import Terrain
@@ -92,3 +92,14 @@ def test_aim_turns_z_to_the_direction(vector):
 def test_aim_handles_straight_down():
     down = np.array([[0.0, 0.0, -1.0]])
     np.testing.assert_allclose(turn(aim(down), np.array([0.0, 0, 1])), down, atol=1e-12)
+
+
+def test_a_robot_in_a_pit_is_looked_at_past_the_ground_that_would_hide_it():
+    pit = np.array([[-1.5, 0], [0, 0], [0, -1], [0.6, -1], [0.6, 0], [2, 0]], float)
+    above, inside = np.array([[-0.5, 0.0, 0.3]]), np.array([[0.1, 0.0, -0.4]])
+    usual = camera.view("follow", above[0])
+    turned = camera.view("follow", above[0], camera.following_direction(above, pit))
+    np.testing.assert_allclose(turned, usual)
+    across = camera.following_direction(np.concatenate([above, inside]), pit)
+    at = inside[0] + across * 0.5 / -across[1]  # where the line of sight leaves the ground
+    assert 0.0 < at[0] < 0.6 or at[2] > 0.0

@@ -110,10 +110,13 @@ def test_an_infeasible_plan_marks_the_place_and_the_part(session):
     assert "/problem/halo" not in nodes(session)
 
 
-def test_an_infeasible_plan_without_poses_still_shows_its_terrain(session, plan):
-    session.show(plan={**plan, "poses": [], "critical": [], "status": "infeasible"})
-    assert "/terrain/treads" in nodes(session)
+def test_an_infeasible_plan_without_poses_still_shows_terrain_and_problem(session, plan):
+    problem = {"kind": "start", "at": [2.0, 0.1], "progress": 0.0, "message": "no room"}
+    nothing = {"poses": [], "critical": [], "status": "infeasible", "problem": problem}
+    session.show(plan={**plan, **nothing})
+    assert {"/terrain/treads", "/problem/halo"} <= nodes(session)
     assert "/robot/trunk" not in nodes(session)
+    assert abs(session._server.initial_camera.look_at[0] - 2.0) < 0.2
 
 
 def test_nothing_to_show_empties_the_scene(session, plan):

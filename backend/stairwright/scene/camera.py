@@ -9,6 +9,9 @@ import numpy as np
 
 from stairwright.arrays import Floats
 from stairwright.errors import InputError
+from stairwright.terrain.profile import height_at
+
+from .shapes import HALF_WIDTH
 
 Preset = Literal["iso", "side", "front", "follow"]
 FIELD_OF_VIEW = 0.62  # rad, vertical
@@ -20,6 +23,8 @@ _DIRECTIONS = {
     "front": (0.95, -0.32, 0.34),
     "follow": (-0.45, -0.92, 0.42),
 }
+# From where to follow, the usual first; where the ground hides the robot, rather from the side.
+_FOLLOWING = (_DIRECTIONS["follow"], (-0.2, -1.0, 0.35), (0.0, -1.0, 0.25), _DIRECTIONS["side"])
 _DISTANCE = {"side": 2.4, "front": 2.1, "follow": 2.3}
 _ABOVE = 0.05  # m, of the camera over the lowest ground
 _NEAREST, _FARTHEST = 2.7, 9.0  # m, of the view of a whole course
@@ -45,10 +50,30 @@ def check(name: str) -> Preset:
     return name  # type: ignore[return-value]
 
 
-def view(name: Preset, robot: Floats) -> View:
-    """The view of preset `name` on the robot at `robot` (3,)."""
+def view(name: Preset, robot: Floats, direction: Floats | None = None) -> View:
+    """The view of preset `name` on the robot at `robot` (3,), or from another unit `direction`."""
     place = aim(robot)
-    return View(place + _DISTANCE.get(name, _NEAREST) * _direction(name), place)
+    towards = _direction(name) if direction is None else direction
+    return View(place + _DISTANCE.get(name, _NEAREST) * towards, place)
+
+
+def following_direction(course: Floats, ground: Floats) -> Floats:
+    """From where to follow, as a unit vector (3,): where the ground hides the robot least.
+
+    Args:
+        course: (n, 3) trunk points [m].
+        ground: (m, 2) the profile's corners [m].
+    """
+    directions = [_unit(each) for each in _FOLLOWING]
+    return min(directions, key=lambda direction: _hidden(course, direction, ground))
+
+
+def _hidden(course: Floats, direction: Floats, ground: Floats) -> int:
+    """How many of the points (n, 3) the ground hides from a camera in `direction` (3,)."""
+    beside = HALF_WIDTH / abs(direction[1])
+    rays = course[:, None] + np.linspace(0.0, beside, 20)[:, None] * direction
+    below = rays[..., 2].ravel() < height_at(ground, rays[..., 0].ravel())
+    return int(below.reshape(rays.shape[:2]).any(axis=1).sum())
 
 
 def aim(robot: Floats) -> Floats:
@@ -95,6 +120,9 @@ def _move(client: Any, view: View) -> None:
 
 
 def _direction(name: Preset) -> Floats:
-    direction = np.array(_DIRECTIONS[name])
-    unit: Floats = direction / np.linalg.norm(direction)
+    return _unit(_DIRECTIONS[name])
+
+
+def _unit(direction: tuple[float, float, float]) -> Floats:
+    unit: Floats = np.array(direction) / np.linalg.norm(direction)
     return unit

@@ -256,10 +256,22 @@ class SceneSession:
         run = None if rollout is None else from_rollout(rollout)
         self._motion = run or planned
         self._stage.draw_plan(plan, planned)
-        if self._motion is not None and terrain.name != self._terrain_name:
+        if terrain.name != self._terrain_name:
             # A new course is looked at afresh; an edited one keeps the user's camera.
-            self._terrain_name = terrain.name
-            self._viewers.look_afresh(self._motion.at(self._player.time).position)
+            self._look_at_course(terrain, plan)
+
+    def _look_at_course(self, terrain: Terrain, plan: Mapping[str, Any] | None) -> None:
+        if self._motion is not None:
+            course = self._motion.position
+            robot = self._motion.at(self._player.time).position
+        elif plan is not None and plan.get("problem") is not None:
+            x, z = plan["problem"]["at"]  # no pose was found: where one should be
+            robot = np.array([x, 0.0, z])
+            course = robot[None]
+        else:
+            return
+        self._terrain_name = terrain.name
+        self._viewers.look_afresh(robot, cameras.following_direction(course, terrain.vertices))
 
     def _frame(self, time: float) -> None:
         """Draw one moment; runs on the player's thread."""

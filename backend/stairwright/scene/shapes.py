@@ -18,6 +18,8 @@ from stairwright.robot.description import Robot
 from stairwright.robot.legs import LinkForm
 from stairwright.robot.parts import Outline
 
+HALF_WIDTH = 0.5  # m, of the extruded terrain
+
 
 class Mesh(NamedTuple):
     """Vertices (n, 3) in m and triangles (m, 3)."""

@@ -36,7 +36,6 @@ LAYERS = {
     "problem": True,
     "compare": True,
 }
-HALF_WIDTH = 0.5  # m, of the extruded terrain
 DEPTH = 0.25  # m, of solid below its lowest point
 GHOST_SPACING = 0.20  # m between trunks; nearer ghosts hide one another
 MAX_GHOSTS = 20
@@ -150,7 +149,7 @@ class Stage:
         if ground == self._ground:
             return
         self._ground = ground
-        solid = shapes.extrude(terrain.vertices, HALF_WIDTH, DEPTH)
+        solid = shapes.extrude(terrain.vertices, shapes.HALF_WIDTH, DEPTH)
         tints = self.colours.terrain(mu)
         for name, mesh, tint in zip(("treads", "risers", "flanks"), solid[:3], tints, strict=True):
             self._nodes.mesh("terrain", f"/terrain/{name}", mesh, tint, flat=True)
@@ -177,6 +176,9 @@ class Stage:
             self._nodes.drop("com_path")
         if self._ghosts is not None and (plan is None or motion is None or not plan["critical"]):
             self._ghosts.remove()
+        problem = None if plan is None else plan.get("problem")
+        if problem is not None:
+            self._draw_problem(problem)
         if plan is None or motion is None or self._robot is None:
             return
         poses = plan["poses"]
@@ -186,11 +188,10 @@ class Stage:
         bodies = place(self._robot, motion.position, motion.quaternion, motion.q)
         self._draw_paths(bodies)
         self._draw_ghosts(plan, motion, times)
-        if plan.get("problem") is not None:
-            self._problem = plan["problem"]
+        if problem is not None:
+            self._problem = problem
             # The paper's and the nominal method list poses beyond the one that fails.
-            self._problem_from = min(plan["problem"]["progress"], progress[-1]) - 1e-4
-            self._draw_problem(plan["problem"])
+            self._problem_from = min(problem["progress"], progress[-1]) - 1e-4
 
     def draw_rival(self, robot: Robot | None, motion: Motion | None) -> None:
         """A second plan's robot beside the first; None takes it away."""
@@ -272,7 +273,7 @@ class Stage:
         y = self._robot.hips.half_track if self._robot is not None else 0.0
         halo = shapes.ring(0.052, 0.042, 0.010, 0.002)
         both = shapes.merge(*(shapes.moved(halo, (x, side * (y + 0.03), z)) for side in (-1, 1)))
-        line = np.array([[(x, -HALF_WIDTH, z), (x, HALF_WIDTH, z)]])
+        line = np.array([[(x, side * shapes.HALF_WIDTH, z) for side in (-1, 1)]])
         self._nodes.mesh("problem", "/problem/halo", both, self.colours.error)
         self._nodes.lines("problem", "/problem/line", line, self.colours.error, 3.0)
 

@@ -26,6 +26,7 @@ class Viewers:
         self._lock = threading.RLock()
         self._robot = np.array([0.0, 0.0, 0.33])
         self._following = True
+        self._from: Floats | None = None
         self._closed = False
         self.look_afresh(self._robot)
         server.on_client_connect(self._welcome)
@@ -33,10 +34,10 @@ class Viewers:
     def __len__(self) -> int:
         return len(self._server.get_clients())
 
-    def look_afresh(self, robot: Floats) -> None:
-        """Follow the robot, which is at (3,) now [m]."""
+    def look_afresh(self, robot: Floats, direction: Floats | None = None) -> None:
+        """Follow the robot, which is at (3,) now [m]; from the unit `direction` if given."""
         with self._lock:
-            self._robot = robot.copy()
+            self._robot, self._from = robot.copy(), direction
             self.look("follow")
 
     def look(self, preset: cameras.Preset, course: Floats | None = None) -> None:
@@ -46,7 +47,8 @@ class Viewers:
             if preset == "iso" and course is not None:
                 self._aim(cameras.course_view(course))
             else:
-                self._aim(cameras.view(preset, self._robot))
+                direction = self._from if self._following else None
+                self._aim(cameras.view(preset, self._robot, direction))
 
     def follow(self, robot: Floats) -> None:
         """The robot is at (3,) now [m]."""
@@ -75,7 +77,7 @@ class Viewers:
         """
         with self._lock:
             if self._following and not self._closed:
-                self._move(cameras.point, client, cameras.view("follow", self._robot))
+                self._move(cameras.point, client, cameras.view("follow", self._robot, self._from))
 
         @client.camera.on_update
         def _(_camera: Any) -> None:
