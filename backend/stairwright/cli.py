@@ -13,6 +13,7 @@ from .errors import InputError, StairwrightError
 from .export.table import FORMATS, USUAL_RATE, names
 
 DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+MOST_PORT = 65535
 METHODS = ("path", "critical", "nominal")
 
 
@@ -44,7 +45,7 @@ def parser() -> argparse.ArgumentParser:
 
     serve = commands.add_parser("serve", help="serve the page, REST and the 3D scene")
     serve.add_argument("--host", help="address to serve on (127.0.0.1)")
-    serve.add_argument("--port", type=int, help="port to serve on (8000)")
+    serve.add_argument("--port", type=_port, help="port to serve on (8000)")
 
     plan = commands.add_parser("plan", help="plan the poses over a terrain")
     plan.add_argument("terrain", metavar="TERRAIN", help="a preset's name, or a file")
@@ -103,7 +104,7 @@ def parser() -> argparse.ArgumentParser:
     rehearse = commands.add_parser("rehearse", help="be the robot that a bundle's player drives")
     rehearse.add_argument("plan", metavar="PLAN", help="the plan's file, as in the bundle")
     rehearse.add_argument("--host", default="127.0.0.1", help="of the player (%(default)s)")
-    rehearse.add_argument("--port", type=int, default=9100, help="of the player (%(default)s)")
+    rehearse.add_argument("--port", type=_port, default=9100, help="of the player (%(default)s)")
     rehearse.add_argument("--friction", type=float, metavar="F", help="the plan's by default")
     rehearse.add_argument("--seed", type=int, default=0, help="of the sensor noise (%(default)s)")
     rehearse.add_argument(
@@ -182,6 +183,12 @@ def _add_planning(command: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUE",
         help="that the certificate holds for: height, place (m), friction",
     )
+
+
+def _port(text: str) -> int:
+    if not text.isdecimal() or int(text) > MOST_PORT:
+        raise argparse.ArgumentTypeError(f"must be a number from 0 to {MOST_PORT}, not {text!r}")
+    return int(text)
 
 
 def _add_engine(command: argparse.ArgumentParser) -> None:

@@ -12,6 +12,7 @@ from typing import Any, Self, TypeVar
 import yaml
 from pydantic import BaseModel, ConfigDict, Discriminator, Tag, ValidationError
 
+from .complaints import foremost, wording, wrong_kind
 from .errors import InputError
 
 MAX_FILE_BYTES = 64 * 2**20
@@ -20,18 +21,6 @@ _Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 # The last three are how PyYAML's constructors fail: a 13th month, "!!int x", "!!bool x".
 _UNREADABLE = (yaml.YAMLError, RecursionError, ValueError, AttributeError, KeyError)
-_WORDINGS = {
-    "extra_forbidden": "unknown field",
-    **dict.fromkeys(
-        ("model_type", "model_attributes_type", "dict_type", "mapping_type"),
-        "must be a mapping of names to values",
-    ),
-    **dict.fromkeys(("tuple_type", "list_type"), "must be a list"),
-    "too_short": "must hold at least {min_length}, not {actual_length}",
-    "too_long": "must hold at most {max_length}, not {actual_length}",
-    **dict.fromkeys(("float_parsing", "float_type"), "must be a number"),
-    **dict.fromkeys(("int_parsing", "int_type", "int_from_float"), "must be a whole number"),
-}
 
 
 class Model(BaseModel):
@@ -176,23 +165,27 @@ def parse(model: type[M], data: Any) -> M:
 
 
 def _first_error(error: ValidationError, model: type[BaseModel]) -> InputError:
-    first = error.errors(include_url=False, include_input=False, include_context=True)[0]
+    first = foremost(error.errors(include_url=False))[0]
     # A part that begins with ~ names an alternative of the model, nothing that the data has.
     where = tuple(part for part in first["loc"] if not str(part).startswith("~"))
     cause = first.get("ctx", {}).get("error")
     if isinstance(cause, InputError):
         return cause.within(*where)
-    message = wording(first)
-    if first["type"] == "extra_forbidden" and len(first["loc"]) == 1:
-        names = ", ".join(field.alias or name for name, field in model.model_fields.items())
-        message += f"; {model.__name__} has: {names}"
-    return InputError(message, where)
+    return InputError(wording(first, model), where)
 
 
-def wording(error: Mapping[str, Any]) -> str:
-    """What one of pydantic's errors says, in words of files and JSON rather than of Python."""
-    words = _WORDINGS.get(error["type"], "{msg}")
-    return words.format_map({**error.get("ctx", {}), "msg": error["msg"]})
+def load_document(model: type[M], path: Path) -> M:
+    """The document in one YAML or JSON file.
+
+    Raises:
+        InputError: If the file cannot be read, is of another kind, or for its first bad value.
+    """
+    data = load_mapping(path)
+    expected = model.model_fields["schema_"].annotation
+    wrong = wrong_kind(data.get("schema"), str(expected))
+    if wrong:
+        raise InputError(f"{path} is {wrong}")
+    return parse(model, data)
 
 
 def load_mapping(path: Path) -> dict[str, Any]:

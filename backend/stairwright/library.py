@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel
 
-from .documents import load_mapping, parse
+from .documents import load_document, parse
 from .errors import InputError
 from .resources import data_folder
 from .robot.description import Robot
@@ -53,7 +53,7 @@ def _names(folder: str) -> list[str]:
 
 @functools.cache
 def _preset(model: type[D], path: Path, changed: int) -> D:  # noqa: ARG001 - part of the key
-    return parse(model, load_mapping(path))
+    return load_document(model, path)
 
 
 def _load(model: type[D], folder: str, source: str | os.PathLike[str] | Mapping[str, Any] | D) -> D:
@@ -69,7 +69,7 @@ def _load(model: type[D], folder: str, source: str | os.PathLike[str] | Mapping[
         return loaded
     path = Path(source)
     if path.suffix.lower() in (".yaml", ".yml", ".json"):
-        return parse(model, load_mapping(path))
+        return load_document(model, path)
     kind = folder.removesuffix("s")
     raise InputError(
         f"no {kind} is called {str(source)!r}; there are: {', '.join(_names(folder))} "

@@ -153,6 +153,21 @@ def test_each_bad_value_is_named(api: httpx.Client, body: dict[str, object], fie
     assert problem["errors"][0]["message"]
 
 
+def test_misspelt_fields_and_unknown_ids_are_told_in_words(api: httpx.Client) -> None:
+    misspelt = api.post("/plans", json={"terain": {"point": []}, "robot": "a1_wheeled"}).json()
+    assert misspelt["errors"][0]["message"] == "unknown field; did you mean 'terrain'?"
+    inner = api.post("/plans", json={"terrain": CURB, "tolerance": {"width": 1}}).json()
+    assert inner["errors"][0]["message"] == "unknown field; there are: height, place, friction"
+    other = api.post("/plans", json={"terrain": {"schema": "stairwright/robot/2", "name": "x"}})
+    assert other.json()["detail"].endswith("this is a robot (stairwright/robot/2), not a terrain")
+    for path, told in {
+        "/trials/x": "there are no trials with the id 'x'",
+        "/rollouts/x": "there is no rollout with the id 'x'",
+        "/robots/x": "there is no robot with the name 'x'",
+    }.items():
+        assert api.get(path).json()["detail"] == told
+
+
 def test_null_is_the_default_as_in_python(api: httpx.Client) -> None:
     nothing = {"friction": None, "weights": None}
     plans = [api.post("/plans", json={"terrain": CURB, **given}) for given in ({}, nothing)]

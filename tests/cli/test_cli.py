@@ -206,6 +206,32 @@ def test_a_plan_that_is_made_already_takes_no_weights(plan: Path) -> None:
     run("rollout", plan, "--weight", "speed=0.2", status=2)
 
 
+@pytest.mark.parametrize("command", ["serve", "rehearse plan.json"])
+def test_a_port_that_cannot_be_is_told_by_its_flag(
+    command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main([*command.split(), "--port", "99999"])
+    error = capsys.readouterr().err
+    assert "--port: must be a number from 0 to 65535, not '99999'" in error
+    assert "STAIRWRIGHT" not in error
+
+
+def test_a_file_of_another_kind_is_told_what_it_is(
+    plan: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    study = tmp_path / "study.yaml"
+    study.write_text("schema: stairwright/study/1\n")
+    for arguments, told in {
+        f"plan {plan}": "is a plan (stairwright/plan/1), not a terrain",
+        f"plan flat --robot {plan}": "is a plan (stairwright/plan/1), not a robot",
+        f"certify {study}": "is a study (stairwright/study/1), not a plan",
+        f"robot import {study}": "is a study (stairwright/study/1), not a URDF, MJCF or zip",
+    }.items():
+        assert main(arguments.split()) == 2
+        assert f"{told}\n" in capsys.readouterr().err, arguments
+
+
 def test_a_port_in_use_is_bad_input() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         run("serve", "--port", str(taken.getsockname()[1]), status=2)

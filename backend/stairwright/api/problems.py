@@ -13,12 +13,13 @@ from typing import Any
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
+from fastapi.routing import APIRoute
 from pydantic import BaseModel, Field
 from sqlalchemy.exc import DatabaseError, OperationalError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
-from stairwright.documents import wording
+from stairwright.complaints import foremost, wording
 from stairwright.errors import InputError
 from stairwright.jobs.failures import Failure
 from stairwright.storage.opening import is_damage
@@ -85,9 +86,13 @@ class Problem(Exception):
         return Response(body, self.status, self.headers, media_type=MEDIA_TYPE)
 
 
-def not_found(kind: str, name: str, field: str = "") -> Problem:
+_SEVERAL = ("trials", "margins")  # kinds that are called by a plural
+
+
+def not_found(kind: str, name: str, field: str = "", by: str = "id") -> Problem:
     """404 for a thing of some kind; `field` if a value in the body named it."""
-    message = f"there is no {kind} {printable(name)!r}"
+    there_is = "there are" if kind in _SEVERAL else "there is"
+    message = f"{there_is} no {kind} with the {by} {printable(name)!r}"
     errors = [FieldError(field=field, message=message)] if field else []
     return Problem(404, message, kind="not-found", errors=errors)
 
@@ -110,10 +115,10 @@ def _path(loc: Sequence[str | int]) -> str:
     return printable(".".join(str(part) for part in loc if not str(part).startswith("~")))
 
 
-def _field_error(error: Mapping[str, Any]) -> FieldError:
+def _field_error(error: Mapping[str, Any], bodies: Sequence[Any]) -> FieldError:
     loc = list(error["loc"])
     source = loc.pop(0) if loc and loc[0] in ("body", "query", "path", "header") else ""
-    message, cause = wording(error), error.get("ctx", {}).get("error")
+    message, cause = wording(error, *bodies), error.get("ctx", {}).get("error")
     if isinstance(cause, InputError):
         loc, message = [*loc, *cause.field], cause.message
     elif isinstance(cause, ValueError):
@@ -124,13 +129,17 @@ def _field_error(error: Mapping[str, Any]) -> FieldError:
     return FieldError(field=path, message=printable(message))
 
 
-def from_validation(errors: Sequence[Mapping[str, Any]]) -> Problem:
-    """400 if the body is no JSON at all, else 422, from pydantic's list of errors."""
+def from_validation(errors: Sequence[Mapping[str, Any]], *bodies: Any) -> Problem:
+    """400 if the body is no JSON at all, else 422, from pydantic's list of errors.
+
+    `bodies` are the types of what was sent, to tell which fields there are.
+    """
+    errors = foremost(errors)
     first = errors[0]
     if first["type"] == "json_invalid":
         why = first.get("ctx", {}).get("error", "")
         return Problem(400, f"the body is not valid JSON: {printable(str(why))}", kind="bad-json")
-    shown = [_field_error(error) for error in errors[:MAX_ERRORS]]
+    shown = [_field_error(error, bodies) for error in errors[:MAX_ERRORS]]
     head = f"{shown[0].field}: {shown[0].message}" if shown[0].field else shown[0].message
     more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
     return Problem(422, head + more, kind="bad-input", errors=shown)
@@ -140,8 +149,6 @@ def problem_of(error: Exception) -> Problem:
     """What went wrong, as the client is told; what only the log may know is written there."""
     if isinstance(error, Problem):
         return error
-    if isinstance(error, RequestValidationError):
-        return from_validation(error.errors())
     if isinstance(error, InputError):
         return from_input_error(error)
     if isinstance(error, Failure):
@@ -163,7 +170,9 @@ def problem_of(error: Exception) -> Problem:
 def install(app: FastAPI) -> None:
     """Let every exception leave as a problem document."""
 
-    async def on_error(_: Request, error: Exception) -> Response:
+    async def on_error(request: Request, error: Exception) -> Response:
+        if isinstance(error, RequestValidationError):
+            return from_validation(error.errors(), *_bodies(request)).response()
         return problem_of(error).response()
 
     # Named, since Starlette raises again what only the handler of Exception has answered.
@@ -182,6 +191,13 @@ def install(app: FastAPI) -> None:
             allowed = _allowed_methods(app, request.url.path)
             headers = {"Allow": allowed} if allowed else headers
         return Problem(error.status_code, detail, headers=headers).response()
+
+
+def _bodies(request: Request) -> list[Any]:
+    """Types of what the request's route takes as its body."""
+    route = request.scope.get("route")
+    parameters = route.dependant.body_params if isinstance(route, APIRoute) else []
+    return [parameter.field_info.annotation for parameter in parameters]
 
 
 def _allowed_methods(app: FastAPI, path: str) -> str:

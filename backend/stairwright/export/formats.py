@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from stairwright.complaints import wrong_kind
 from stairwright.documents import load_mapping, parse
 from stairwright.errors import InputError
 from stairwright.library import load_robot, robots
@@ -126,9 +127,11 @@ def _load(path: Path) -> dict[str, Any]:
 
 
 def _expect(data: dict[str, Any], kind: str, path: str | Path) -> dict[str, Any]:
-    schema = data.get("schema")
-    if schema not in [f"stairwright/{name}/1" for name in kind.split(" or ")]:
-        raise InputError(f"{path} holds {schema or 'no schema'}, not a {kind}", ("schema",))
+    schema, expected = data.get("schema"), [f"stairwright/{name}/1" for name in kind.split(" or ")]
+    if schema not in expected:
+        wrong = wrong_kind(schema, " ".join(expected))
+        reason = f"is {wrong}" if wrong else f"holds {schema or 'no schema'}, not a {kind}"
+        raise InputError(f"{path} {reason}", ("schema",))
     return data
 
 

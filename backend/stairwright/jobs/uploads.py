@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import PurePath
 from typing import Any
 
+from stairwright.complaints import schema_in, wrong_kind
 from stairwright.documents import parse, parse_mapping
 from stairwright.errors import InputError
 from stairwright.terrain.mesh import FILE_TYPES, slice_mesh
@@ -70,6 +71,9 @@ def _table(data: bytes, _: str, options: Options) -> Terrain:
 
 
 def _document(data: bytes, suffix: str, options: Options) -> Terrain:
+    wrong = wrong_kind(schema_in(data), "stairwright/terrain/1")
+    if wrong:
+        raise InputError(f"the file is {wrong}", ("file",))
     text = _text(data)
     if suffix == "json":
         if not text.lstrip().startswith("{"):

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from stairwright.documents import load_mapping, parse
+from stairwright.documents import load_document, parse
 from stairwright.library import load_robot, load_terrain
 
 from .design_document import Design, design_id
@@ -80,7 +80,8 @@ def prepared_design(
     """
     if isinstance(document, Design):
         chosen = document
+    elif isinstance(document, Mapping):
+        chosen = parse(Design, dict(document))
     else:
-        data = document if isinstance(document, Mapping) else load_mapping(Path(document))
-        chosen = parse(Design, dict(data))
+        chosen = load_document(Design, Path(document))
     return resolved_design(chosen, load_terrain, load_robot, budget, "the budget")

@@ -10,8 +10,9 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from stairwright.arguments import as_friction
+from stairwright.complaints import wording
 from stairwright.control.settings import parse_settings
-from stairwright.documents import parse, wording
+from stairwright.documents import parse
 from stairwright.errors import InputError
 from stairwright.planning.courses import Courses
 from stairwright.planning.plan import FacingChoice, Method, PlanTiming, usual_facing

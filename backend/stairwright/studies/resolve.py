@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from stairwright import library
-from stairwright.documents import load_mapping, parse
+from stairwright.documents import load_document, parse
 from stairwright.errors import InputError
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -32,7 +32,7 @@ def load_study(source: str | Path | Mapping[str, Any] | Study) -> Study:
     elif not isinstance(source, (str, Path)):
         raise InputError("must be a study's document, or the name of its file", ("study",))
     else:
-        study = parse(Study, load_mapping(Path(source)))
+        study = load_document(Study, Path(source))
     return resolve(study, library.load_terrain, library.load_robot)
 
 

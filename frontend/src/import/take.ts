@@ -38,12 +38,12 @@ function sentence(text: string): string {
   return `${capital(text)}${text.endsWith(".") ? "" : "."}`;
 }
 
-/** A plan holds the terrain that it is for; any other file is taken as it is. */
+/** Plans and rollouts hold the terrain that they are for; any other file is taken as it is. */
 async function terrainIn(file: File): Promise<File> {
   if (!/\.json$/i.test(file.name)) return file;
   try {
     const document = JSON.parse(await file.text());
-    if (!/^stairwright\/plan\//.test(document.schema) || !document.terrain) return file;
+    if (!/^stairwright\/(plan|rollout)\//.test(document.schema) || !document.terrain) return file;
     return new File([JSON.stringify(document.terrain)], file.name, { type: file.type });
   } catch {
     // What is wrong with it is for the service to say.

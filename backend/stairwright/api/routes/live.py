@@ -103,4 +103,4 @@ def _question(asked: dict[str, Any]) -> LiveQuestion:
     try:
         return LiveQuestion.model_validate(asked)
     except ValidationError as error:
-        raise from_validation(error.errors()) from None
+        raise from_validation(error.errors(), LiveQuestion) from None

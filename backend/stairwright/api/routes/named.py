@@ -57,7 +57,7 @@ class Named(Generic[D]):
             return self.load(name)
         saved = self.saved(services).get(name)
         if saved is None:
-            raise not_found(self.kind, name)
+            raise not_found(self.kind, name, by="name")
         return saved
 
     def get(self, request: Request, services: Services, name: str) -> Response:
@@ -92,7 +92,7 @@ class Named(Generic[D]):
         """
         self._refuse_preset(name, "presets cannot be deleted")
         if not self.saved(services).delete(name):
-            raise not_found(self.kind, name)
+            raise not_found(self.kind, name, by="name")
 
     def _refuse_preset(self, name: str, advice: str) -> None:
         if name in self.presets():

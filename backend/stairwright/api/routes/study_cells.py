@@ -64,7 +64,7 @@ async def get_cell(
     """One cell: its values, what is known of it, and the question that POST /plans takes."""
     study = parse(Study, orjson.loads(following.record.document))
     if cell >= study.cells:
-        raise not_found("cell", str(cell))
+        raise not_found("cell", str(cell), by="number")
     values = point(study, cell)
     try:
         plan: dict[str, Any] | None = (await asyncio.to_thread(Questions(study).at, values)).plan
@@ -110,7 +110,7 @@ async def _asked(services: Services, following: Following, what: str, *args: Any
     """What a worker process reads from the study's store."""
     path = services.store.studies.path(following.record.id)
     if not path.exists():
-        raise not_found("result of the study", following.record.id)
+        raise not_found("result of a study", following.record.id)
     async with services.planning.queue.slot("export"):
         content: bytes = await services.plan_pool.run(
             _read_store, what, str(path), *args, deadline=EXPORT_DEADLINE

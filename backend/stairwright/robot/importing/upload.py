@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 
+from stairwright.complaints import described, schema_in
 from stairwright.errors import InputError
 
 MOST_BYTES = 64 * 2**20  # of everything, unpacked
@@ -58,7 +59,7 @@ def unpack(data: bytes, file_name: str) -> Upload:
         InputError: If there is no robot file, or more than one could be it.
     """
     if data[:4] != b"PK\x03\x04":
-        _check_ending(file_name)
+        _check_ending(file_name, data)
         return Upload(PurePosixPath(file_name).name, data)
     files = _entries(data)
     names = [name for name in files if name.lower().endswith(XML_ENDINGS)]
@@ -70,13 +71,16 @@ def unpack(data: bytes, file_name: str) -> Upload:
     return Upload(chosen, files[chosen], rest)
 
 
-def _check_ending(file_name: str) -> None:
+def _check_ending(file_name: str, data: bytes) -> None:
     if file_name.lower().endswith(".zip"):
         raise InputError(f"{PurePosixPath(file_name).name!r} is not a zip", ("file",))
     if not file_name.lower().endswith(XML_ENDINGS):
+        name = PurePosixPath(file_name).name or "the file"
+        schema = schema_in(data)
         raise InputError(
-            f"{PurePosixPath(file_name).name or 'the file'!r} must end with "
-            f"{', '.join(XML_ENDINGS)} or .zip",
+            f"{name!r} is {described(schema)}, not a URDF, MJCF or zip"
+            if schema
+            else f"{name!r} must end with {', '.join(XML_ENDINGS)} or .zip",
             ("file",),
         )
 
