@@ -146,6 +146,25 @@ def test_what_cannot_be_done_is_status_1(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("points", "method", "told"),
+    [
+        ("[[0, 0], [0.1, 0], [0.1, 0.1], [2, 0.1]]", "path",
+         "the first flat stretch is too short; needs length 0.238 m, has 0.100 m, at x = 0.05 m"),
+        ("[[-1, 0], [0, 0], [0, 1], [2, 1]]", "nominal", "needs friction 0.804, has 0.6)"),
+    ],
+)  # fmt: skip
+def test_what_stops_the_robot_is_told_with_place_and_amount(
+    points: str, method: str, told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    terrain = tmp_path / "terrain.json"
+    terrain.write_text(f'{{"points": {points}}}')
+    assert main(["plan", str(terrain), "--method", method]) == 1
+    line = capsys.readouterr().err
+    assert told in line
+    assert " x = " in line
+
+
+@pytest.mark.parametrize(
     "arguments",
     [
         (),

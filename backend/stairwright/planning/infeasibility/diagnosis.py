@@ -28,14 +28,12 @@ _ENDLESS = 100.0  # margins beyond it, friction or m, stand for what no value me
 def no_standing_pose(terrain: Terrain, robot: Robot, error: NoStandingPose) -> Problem:
     """The problem of a course without room to stand at an end."""
     path = wheel_path(terrain, robot.wheel.radius)
-    at = path.contacts(np.array([min(max(error.s, 0.0), path.length)]))[0]
-    return Problem(
-        kind=error.kind,
-        at=(float(at[0]), float(at[1])),
-        progress=0.0,
-        message=f"No place to stand at the {error.kind}: {error}.",
-        limit=error.limit,
-    )
+    x, z = map(float, path.contacts(np.array([min(max(error.s, 0.0), path.length)]))[0])
+    message, limit = f"No place to stand at the {error.kind}: {error}", error.limit
+    if limit is not None:
+        message += f"; needs {limit.quantity} {limit.needed:.3f} m, has {limit.available:.3f} m"
+    message += f", at x = {x:.2f} m, z = {z:.2f} m"
+    return Problem(kind=error.kind, at=(x, z), progress=0.0, message=message, limit=limit)
 
 
 def statics_problem(search: PoseSearch, pose: Pose) -> Problem:
