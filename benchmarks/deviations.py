@@ -7,10 +7,10 @@
 Every preset terrain and `--count` profiles of `profiles.py` are planned for each robot; every plan
 is rolled out once for each row of the table, with deviations whose signs and draws differ from plan
 to plan. `--spread` rolls each plan out in one row alone, the next row with each plan, so that many
-profiles fit in an hour. A run succeeds, ends short of that with the robot standing (stopped by itself, or at rest),
-or falls. Shares come with Wilson's 95 % intervals; the estimator's error is judged against the
-truth (NEES: share of the time within the 95 % band of chi squared). `--show` prints each run that
-did not succeed.
+profiles fit in an hour. A run succeeds, ends short of that with the robot standing (stopped by
+itself, or at rest), or falls. Shares come with Wilson's 95 % intervals; the estimator's error is
+judged against the truth (NEES: share of the time within the 95 % band of chi squared). `--show`
+prints each run that did not succeed.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ _WORDINGS = {
     **dict.fromkeys(("int_parsing", "int_type", "int_from_float"), "must be a whole number"),
 }
 _SCHEMA = re.compile(r"stairwright/([a-z]+)/\d+")
-_SEVERAL = ("trials", "margins")
+SEVERAL = ("trials", "margins")  # kinds that are called by a plural
 _MOST_NAMES = 20
 _ALIKE = 0.7  # of difflib's ratio, from which on a name is taken for a misspelt one
 
@@ -82,7 +82,7 @@ def described(schema: str) -> str:
 
 
 def _one(kind: str) -> str:
-    return kind if kind in _SEVERAL else f"a {kind}"
+    return kind if kind in SEVERAL else f"a {kind}"
 
 
 def _is_of_schema(error: Error) -> bool:

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 import stairwright as sw
+from stairwright.terrain.stairs import stair
 
 EARLY = {"x_offset": -0.05}
 # The second riser comes 6 cm earlier, against the first one.
@@ -49,4 +50,11 @@ def test_an_edge_that_is_left_slowly_says_nothing_of_the_next_face() -> None:
     """Its wheels took the third riser for more tread, and pushed until they slipped."""
     plan = sw.plan(sw.load_terrain("stairs-building"), "a1_wheeled", friction=0.6)
     run = sw.rollout(plan, disturbance={"face_place_error": THIRD}, seed=2)
+    assert run.success, run.reason
+
+
+@pytest.mark.slow
+def test_a_rear_wheel_stays_off_the_front_one_on_a_short_tread() -> None:
+    plan = sw.plan(stair(0.093, 0.396, 3), "go2w", friction=0.6)
+    run = sw.rollout(plan, disturbance={"face_place_error": [0.03, -0.03, -0.03]}, seed=3)
     assert run.success, run.reason

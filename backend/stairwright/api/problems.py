@@ -19,7 +19,7 @@ from sqlalchemy.exc import DatabaseError, OperationalError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
-from stairwright.complaints import foremost, wording
+from stairwright.complaints import SEVERAL, foremost, wording
 from stairwright.errors import InputError
 from stairwright.jobs.failures import Failure
 from stairwright.storage.opening import is_damage
@@ -86,12 +86,9 @@ class Problem(Exception):
         return Response(body, self.status, self.headers, media_type=MEDIA_TYPE)
 
 
-_SEVERAL = ("trials", "margins")  # kinds that are called by a plural
-
-
 def not_found(kind: str, name: str, field: str = "", by: str = "id") -> Problem:
     """404 for a thing of some kind; `field` if a value in the body named it."""
-    there_is = "there are" if kind in _SEVERAL else "there is"
+    there_is = "there are" if kind in SEVERAL else "there is"
     message = f"{there_is} no {kind} with the {by} {printable(name)!r}"
     errors = [FieldError(field=field, message=message)] if field else []
     return Problem(404, message, kind="not-found", errors=errors)
