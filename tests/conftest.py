@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import gc
 import os
-import shutil
 import signal
 import socket
 import ssl
@@ -22,6 +21,8 @@ import httpx
 import pytest
 from hypothesis import settings
 
+from tools.system import find_browser
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
@@ -31,13 +32,6 @@ settings.register_profile("ci", deadline=None, derandomize=True)
 settings.load_profile("ci" if os.environ.get("CI") else "default")
 
 START_LIMIT = 120.0  # s until a server must answer
-BROWSERS = (
-    "chromium-headless-shell",  # the same without windows, which take a good tenth of its time
-    "chromium",
-    "chromium-browser",
-    "google-chrome",
-    "google-chrome-stable",
-)
 CHROMIUM_FLAGS = (
     "--no-sandbox",  # containers and root have none
     "--disable-dev-shm-usage",
@@ -216,8 +210,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
 @pytest.fixture(scope="session")
 def browser_path() -> str:
     """Where Chromium is; without one the test fails, since a skipped test proves nothing."""
-    named = os.environ.get("STAIRWRIGHT_BROWSER")
-    found = named or next(filter(None, map(shutil.which, BROWSERS)), None)
+    found = find_browser()
     if found is None:
         pytest.fail("No Chromium here: run ./dev test, or install one, or set STAIRWRIGHT_BROWSER.")
     return found
