@@ -18,11 +18,12 @@ export const alonePlot = signal<PanelId | null>(null);
 
 /** Narrower, and the numbers of a heading do not fit [px]. */
 const LEAST = 220;
+
 /** Width of the row of plots [px]; 0 before it was measured. */
 export const rowWidth = signal(0);
 
 /** Place of the row's first plot among those that are shown. */
-export const firstPlot = signal(0);
+const firstPlot = signal(0);
 
 /** The plots in the row, and those to its left and right that have no room. */
 export const row = computed(() => {

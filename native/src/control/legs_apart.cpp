@@ -6,7 +6,7 @@ namespace stairwright::control {
 
 namespace {
 
-constexpr double kRoom = 0.03;   // m between front and rear legs; where less is planned, that is enough. Wheels roll on by half of it
+constexpr double kRoom = 0.03;   // m between front and rear legs; where less is planned, that is enough. Wheels roll on by 2 cm of it
 constexpr double kTread = 0.9;   // cosine of the slope of the ground that wheels stay back on
 constexpr double kGain = 100.0;  // 1/s
 constexpr double kSpeed = 0.3;   // m/s
