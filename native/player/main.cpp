@@ -105,6 +105,14 @@ void bring_to_rest(UdpLink& link, const Player& player) {
     }
 }
 
+// What the plan is not for.
+void tell(const control::Load& load) {
+    if (load.mass > 0.0)
+        std::printf("it carries %.1f kg that the plan is not for\n", load.mass);
+    else
+        std::printf("its mass centre is (%.0f, %.0f) mm from where the plan has it\n", 1e3 * load.shift.x, 1e3 * load.shift.z);
+}
+
 // How it ended.
 int play(Player& player, UdpLink& link, const Options& options) {
     double first = 0.0, latest = 0.0, told = -1e9, done_at = 0.0, worst = 0.0, sum = 0.0;
@@ -125,7 +133,7 @@ int play(Player& player, UdpLink& link, const Options& options) {
             if (!options.dry_run && player.phase() != Phase::refused) link.send(command);
             const double took = since(heard);
             worst = std::max(worst, took), sum += took, ++steps;
-            if (player.load() && !weighed) std::printf("it carries %.1f kg that the plan is not for\n", player.load()->mass), weighed = true;
+            if (player.load() && !weighed) tell(*player.load()), weighed = true;
             if (latest - told >= 1.0) report(player, latest - first), told = latest;
         } else if (since(heard) >= patience) {
             char text[80];

@@ -148,12 +148,13 @@ void bind_rollout(nb::module_& m) {
              nb::arg("follower"), nb::arg("friction"), "Another plan from now on, made for `friction`.")
         .def("correct_map", &Rollout::correct_map, nb::arg("path"), "A map on which `map_error` is mended; another plan has to follow.")
         .def("carry", &Rollout::carry, nb::arg("robot"), nb::arg("grip_need"),
-             "The robot with its `load` from now on, which tests the ground for that friction; another plan has to follow.")
-        .def_prop_ro("load", [](const Rollout& r) -> std::optional<std::pair<double, double>> {
+             "The robot as the weighing found it from now on, which tests the ground for that friction; another plan has to follow.")
+        .def_prop_ro("load", [](const Rollout& r) -> std::optional<std::tuple<double, Vec2, Vec2>> {
             const auto& load = r.executor().load();
             if (!load) return {};
-            return std::pair(load->mass, load->ahead);
-        }, "Mass [kg] that the weighing before the start found and nobody has told of, and how far ahead of the trunk point it is [m].")
+            return std::tuple(load->mass, load->place, load->shift);
+        }, "What the weighing before the start found and nobody has told of, in the trunk's frame: mass [kg] and its place [m], of which\n"
+           "z is not a number where the robot could not nod, or, where that mass is 0, the shift of the robot's mass centre [m].")
         .def_prop_ro("map_error", [](const Rollout& r) -> std::optional<std::tuple<bool, double, double, double, bool>> {
             const auto& found = r.executor().map_error();
             if (!found) return {};

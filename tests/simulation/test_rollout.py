@@ -140,9 +140,11 @@ def test_noise_and_delay_are_the_same_for_the_compiled_and_the_plain_loop(flat: 
 
 def test_speed_setting_is_kept(flat: Plan) -> None:
     slow, fast = (rollout(flat, controller={"speed": v}) for v in (0.1, 0.3))
-    speed = np.gradient(fast.series.progress, fast.series.time)
-    assert slow.metrics.duration > 2 * fast.metrics.duration - 2.0
-    assert np.median(speed[len(speed) // 3 : len(speed) // 2]) == pytest.approx(0.3, rel=0.1)
+    progress = np.array(fast.series.progress)
+    halfway = (progress > progress[-1] / 3) & (progress < progress[-1] / 2)
+    speed = np.gradient(progress, fast.series.time)[halfway]
+    assert slow.metrics.duration > 2 * fast.metrics.duration - 5.0
+    assert np.median(speed) == pytest.approx(0.3, rel=0.1)
 
 
 def test_progress_rises_to_one_and_may_cancel(flat: Plan) -> None:

@@ -47,10 +47,12 @@ class PlanChange:
             return self._after_weighing(*loop.load)
         return ""
 
-    def _after_weighing(self, mass: float, ahead: float) -> str:
-        """Go on with a plan for what the robot carries."""
-        decision = after_weighing(self._plan, mass, ahead)
-        if decision.plan is not None:
+    def _after_weighing(self, mass: float, place: _core.Vec2, shift: _core.Vec2) -> str:
+        """Go on with a plan for the robot as it was found to be, or the old one if it stands it."""
+        decision = after_weighing(self._plan, mass, (place.x, place.z), (shift.x, shift.z))
+        if decision.plan is None:
+            self._loop.go_on()
+        else:
             self._plan = plan = decision.plan
             track = plan_track(plan, self._path, self._settings)
             self._loop.carry(plan.robot_description.native, tested_friction(track, plan))

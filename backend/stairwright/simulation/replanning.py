@@ -22,7 +22,9 @@ LEAST = 0.2  # friction on which no robot is sent: what is known of it is too ro
 # Of the friction that was found, what another plan may need: with the motion where there is such a
 # plan, else at rest.
 USABLE = (1.0 / MOTION, 0.95)
-ABOVE = 0.05  # m above the trunk's top, of the mass centre of a load that nobody has told of
+ABOVE = 0.05  # m above the trunk's top, of the mass centre of a load whose height is not known
+
+Point = tuple[float, float]  # (x, z)
 
 
 def tested_friction(line: Track, plan: Plan) -> float:
@@ -85,34 +87,60 @@ def after_slip(plan: Plan, need: float, found: float, *, front: bool) -> Decisio
     )
 
 
-def laden(robot: Robot, mass: float, ahead: float, pitch: float) -> Robot:
-    """The robot with a load of `mass` [kg] on top, beside the payload that it has.
+def laden(robot: Robot, mass: float, place: Point) -> Robot:
+    """The robot with a load of `mass` [kg] beside the payload that it has.
 
     Args:
         robot: Without the load.
         mass: Of the load.
-        ahead: Of the trunk point, horizontally, where the trunk stands at `pitch` [m, rad].
-        pitch: Of the trunk.
+        place: Of its mass centre in the trunk's frame [m]; on top where z is not a number.
     """
-    height = robot.body.top(ahead)[1] + ABOVE
-    x, top = robot.body.top((ahead - math.sin(pitch) * height) / math.cos(pitch))
-    place, own = (x, top + ABOVE), robot.payload
+    x, z = place
+    if math.isnan(z):
+        z = robot.body.top(x)[1] + ABOVE
+    own = robot.payload
     if own is not None:
         share = mass / (mass + own.mass)
-        x, z = (share * p + (1.0 - share) * q for p, q in zip(place, own.place, strict=True))
-        mass, place = mass + own.mass, (x, z)
-    # Documents of the first schema have no payload.
-    changed = {"schema_": "stairwright/robot/2", "payload": Payload(mass=mass, place=place)}
-    return robot.model_copy(update=changed)
+        x, z = (share * p + (1.0 - share) * q for p, q in zip((x, z), own.place, strict=True))
+        mass += own.mass
+    return _changed(robot, payload=Payload(mass=mass, place=(x, z)))
 
 
-def after_weighing(plan: Plan, mass: float, ahead: float) -> Decision:
-    """What to do where the robot carries `mass` [kg] that its plan is not for, see `laden`."""
+def balanced_at(robot: Robot, shift: Point) -> Robot:
+    """The robot with its mass centre shifted in the trunk's frame [m]."""
+    x, y, z = robot.trunk.com
+    share = robot.mass / robot.trunk.mass
+    com = (x + share * shift[0], y, z + share * shift[1])
+    return _changed(robot, trunk=robot.trunk.model_copy(update={"com": com}))
+
+
+def _changed(robot: Robot, **parts: object) -> Robot:
+    # Documents of the first schema have neither a payload nor a mass centre off the middle.
+    return robot.model_copy(update={"schema_": "stairwright/robot/2", **parts})
+
+
+def after_weighing(plan: Plan, mass: float, place: Point, shift: Point) -> Decision:
+    """What to do where the robot weighs other than its plan is for.
+
+    Args:
+        plan: Which it is about to follow.
+        mass: That it carries [kg], and
+        place: where, see `laden`; or, where that mass is 0,
+        shift: of its mass centre, see `balanced_at`.
+    """
     robot = plan.robot_description
-    heavier = laden(robot, mass, ahead, plan.poses[0].pitch)
-    if new := plan_anew(plan, plan.terrain, plan.friction, heavier):
+    found = laden(robot, mass, place) if mass else balanced_at(robot, shift)
+    if new := plan_anew(plan, plan.terrain, plan.friction, found):
         return Decision(new)
+    if mass:
+        return Decision(
+            why=f"the robot weighs {found.mass:.1f} kg, {mass:.1f} kg more than the plan is for, "
+            "and there is none for that"
+        )
+    least, off = min(pose.margins.com for pose in plan.poses), math.hypot(*shift)
+    if least > off:
+        return Decision()
     return Decision(
-        why=f"the robot weighs {heavier.mass:.1f} kg, {mass:.1f} kg more than the plan is for, and "
-        "there is none for that"
+        why=f"the robot's mass centre is {1e3 * off:.0f} mm from where the plan has it, which "
+        f"leaves it {1e3 * least:.0f} mm, and there is none for that"
     )

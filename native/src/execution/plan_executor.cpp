@@ -36,7 +36,7 @@ const control::Reference& PlanExecutor::prepare(const control::Reference& drawn,
     adapted_ = drawn;
     if (waits_) return adapted_;
     if (!weighing_.over()) {
-        weighing_.step(seen.state, controller_.path(), *seen.places, seen.felt, level, dt);
+        adapted_ = weighing_.step(drawn, seen.state, controller_.path(), *seen.places, seen.felt, level, dt);
         waits_ = weighing_.load().has_value();
         return adapted_;
     }
