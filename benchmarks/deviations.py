@@ -188,7 +188,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--first", type=int)
     parser.add_argument("--count", type=int, help="random profiles")
-    parser.add_argument("--rows", nargs="*", help=f"of: {', '.join(ROWS)}")
+    parser.add_argument("--rows", nargs="*", help=f"of: {', '.join(ROWS)}".replace("%", "%%"))
     parser.add_argument("--robots", nargs="*")
     parser.add_argument("--sensing", choices=("ideal", "robot"))
     parser.add_argument("--terrains", nargs="*", help="presets; all by default")
