@@ -106,7 +106,7 @@ void bring_to_rest(UdpLink& link, const Player& player) {
 }
 
 // What the plan is not for.
-void tell(const control::Load& load) {
+void tell(const stairwright::control::Load& load) {
     if (load.mass > 0.0)
         std::printf("it carries %.1f kg that the plan is not for\n", load.mass);
     else

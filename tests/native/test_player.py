@@ -157,7 +157,7 @@ def test_a_robot_that_crouches_gets_into_the_plans_first_pose(plan):
     drop = leg.thigh.length * math.cos(thigh) + leg.calf.length * math.cos(calf)
     run.data.qpos[2] = drop + leg.wheel.radius - leg.hip[1]
     assert run.data.qpos[2] < height - 0.01
-    while run.time < 2.5 and player.phase != "driving":
+    while run.time < 5.0 and player.phase != "driving":
         robot.act(player.step(run.time, *robot.sense()))
     assert player.phase == "driving"
     np.testing.assert_allclose(run.data.qpos[7:9], plan.poses[0].q[:2], atol=0.03)
