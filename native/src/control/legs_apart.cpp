@@ -6,7 +6,7 @@ namespace stairwright::control {
 
 namespace {
 
-constexpr double kRoom = 0.03;   // m between front and rear legs; where less is planned, that is enough. Wheels roll on by 2 cm of it
+constexpr double kRoom = 0.03;   // m between front and rear legs; where less is planned, that is enough
 constexpr double kTread = 0.9;   // cosine of the slope of the ground that wheels stay back on
 constexpr double kGain = 100.0;  // 1/s
 constexpr double kSpeed = 0.3;   // m/s
@@ -15,7 +15,7 @@ constexpr double kSpeed = 0.3;   // m/s
 
 Reference LegsApart::step(const Reference& planned) const {
     Reference out = planned;
-    out.value.wheels[kRear] -= back_;
+    out.value.wheels[kRear] -= back_, out.rate.wheels[kRear] -= back_rate_;
     return out;
 }
 
@@ -29,7 +29,9 @@ void LegsApart::watch(const Reference& planned, const Reference& fitted, const W
     const double nearer = std::max(0.0, ground[kRear].x - ground[kFront].x);
     double lacking = nearer > 0.0 || back_ > 0.0 ? std::min(kRoom, apart(planned)) - apart(fitted) : 0.0;
     if (path.normal(planned.value.wheels[kRear]).z < kTread) lacking = std::min(lacking, 0.0);
-    back_ = std::clamp(back_ + std::clamp(kGain * lacking, -kSpeed, kSpeed) * dt, 0.0, std::max(nearer, back_ - kSpeed * dt));
+    const double next = std::clamp(back_ + std::clamp(kGain * lacking, -kSpeed, kSpeed) * dt, 0.0, std::max(nearer, back_ - kSpeed * dt));
+    back_rate_ = (next - back_) / dt;
+    back_ = next;
 }
 
 double LegsApart::apart(const Reference& at) const {

@@ -28,7 +28,7 @@ class LegsApart {
     double apart(const Reference& at) const;
 
     RobotModel robot_;
-    double back_ = 0.0;
+    double back_ = 0.0, back_rate_ = 0.0;  // m, m/s
 };
 
 }  // namespace stairwright::control
