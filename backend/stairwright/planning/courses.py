@@ -40,7 +40,7 @@ class Courses:
             begin, end = known.ends
             whole = {
                 at: search
-                for at, search in known.searches.items()
+                for at, search in known.searches.copy().items()
                 if search.begin is begin and search.end is end
             }
             made = replace(

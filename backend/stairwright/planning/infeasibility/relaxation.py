@@ -115,7 +115,7 @@ class Candidate:
         found = [
             one
             for one, outcomes in self.tried.items()
-            if one >= ratio and any(isinstance(end, Solved) for end in outcomes.values())
+            if one >= ratio and any(isinstance(end, Solved) for end in outcomes.copy().values())
         ]
         return self.tried[min(found)] if found else {}
 

@@ -85,7 +85,7 @@ def search_between(
     search = kept.get(key)
     if search is None:
         search = Search(q, begin, end, make_lattice(q.robot, fine), bounds)
-        finest = sum(one[0] <= 1.0 for one in kept)
+        finest = sum(one[0] <= 1.0 for one in kept.copy())  # other threads search, too
         if len(kept) < _KEPT and (fine > 1.0 or finest < _KEPT_FINE):
             kept[key] = search
     return search
