@@ -68,10 +68,8 @@ def test_a_load_lies_where_it_was_found_beside_the_payload_that_is_known() -> No
 def test_a_robot_balanced_elsewhere_has_its_mass_centre_there() -> None:
     robot = laden(sw.load_robot("go2w"), 2.0, (0.1, 0.1))
     other = balanced_at(robot, (0.01, -0.02))
-    origin, q = np.zeros(1), standing_joints(robot)[None]
-    before, after = (
-        com(r, origin, origin, origin, forward(r, origin, origin, origin, q)) for r in (robot, other)
-    )
+    body, q = (np.zeros(1),) * 3, standing_joints(robot)[None]
+    before, after = (com(r, *body, forward(r, *body, q)) for r in (robot, other))
     assert after - before == pytest.approx(np.array([[0.01, -0.02]]))
 
 

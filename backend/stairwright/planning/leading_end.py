@@ -36,7 +36,7 @@ def better_led(led_by: Callable[[Facing], Plan], timing: PlanTiming) -> Plan:
 
 def _room(plan: Plan) -> float:
     """Least CoM margin [m], as far as it matters."""
-    from .path_planner import THIN_IF_FAST
+    from .path_planner import THIN
     from .smoothing.path_document import least_margins
 
-    return min(least_margins(plan)["com"], THIN_IF_FAST)
+    return min(least_margins(plan)["com"], THIN)

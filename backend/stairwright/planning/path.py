@@ -13,7 +13,7 @@ from stairwright.planning.attempt import Blocked, Solved
 from stairwright.planning.certificate.certify import with_dynamics
 from stairwright.planning.courses import courses
 from stairwright.planning.infeasibility.diagnosis import no_standing_pose
-from stairwright.planning.path_planner import THIN, PathPlanner
+from stairwright.planning.path_planner import PathPlanner
 from stairwright.planning.plan import Plan, PlanTiming, Problem
 from stairwright.planning.smoothing.path_document import make_plan
 from stairwright.planning.standing import NoStandingPose
@@ -103,7 +103,7 @@ def _best(planners: Sequence[PathPlanner]) -> tuple[PathPlanner, Solved | Blocke
     for planner in planners:
         found = solve(planner, search_threads())
         tried.append((planner, found))
-        if isinstance(found, Solved) and found.margin > THIN:
+        if isinstance(found, Solved) and found.margin > planner.thin:
             break
 
     def worth(one: tuple[PathPlanner, Solved | Blocked]) -> tuple[float, float]:

@@ -32,7 +32,7 @@ from stairwright.planning.smoothing.path_document import PathPoses, make_plan
 from stairwright.planning.smoothing.path_timing import path_parameter
 from stairwright.planning.smoothing.refine import Refined, refine
 from stairwright.planning.smoothing.repair import STAGES, Stage, repair
-from stairwright.planning.standing import StandingPose, find_standing_poses
+from stairwright.planning.standing import StandingPose, find_standing_poses, scale
 from stairwright.planning.threads import still_wanted
 from stairwright.planning.timing.fast import TimingProblem
 from stairwright.planning.weights import PathWeights
@@ -40,8 +40,7 @@ from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
 
-THIN = 0.01  # m; CoM margin of a path that is compared with others
-THIN_IF_FAST = 0.015  # m; of one that is to be driven fast, for inertia takes some of it
+THIN = 0.015  # m; CoM margin up to which more of it comes first, for legs of 0.4 m or less
 STRAIGHTER = 3.4  # times the weight of smoothness
 
 
@@ -126,7 +125,7 @@ class PathPlanner(PathProblem):
         """Orders paths that are to be driven fast: by their least time [s], behind all others thin
         ones by their cost, for it is margin that they lack and not time.
         """
-        if isinstance(answer, Blocked) or answer.margin <= self.thin:
+        if isinstance(answer, Blocked) or answer.margin <= THIN:
             return True, self.cost(answer)
         poses, begun = self.poses(answer.nodes), clock.perf_counter()
         plan = make_plan(self.terrain, self.robot, self.friction, self.weights, begun, poses)
@@ -151,7 +150,7 @@ class PathPlanner(PathProblem):
         What came of other attempts is as it was, and of those that are beyond repair.
         """
         other = replace(self, thorough=True)
-        for how, end in self.tried.items():
+        for how, end in self.tried.copy().items():  # abandoned attempts may still end
             if isinstance(end, Solved) or end.weak is None or self._beyond_repair(end):
                 other.tried[how] = end
         return other
@@ -183,7 +182,7 @@ class PathPlanner(PathProblem):
     @property
     def thin(self) -> float:
         """CoM margin up to which a path is compared with others [m]."""
-        return THIN_IF_FAST if self.fast else THIN
+        return THIN * max(1.0, scale(self.robot))
 
     @cached_property
     def straighter(self) -> PathPlanner:
