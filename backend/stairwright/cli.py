@@ -9,11 +9,11 @@ from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from . import __version__
+from .api.addresses import MOST_PORT
 from .errors import InputError, StairwrightError
 from .export.table import FORMATS, USUAL_RATE, names
 
 DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
-MOST_PORT = 65535
 METHODS = ("path", "critical", "nominal")
 
 
