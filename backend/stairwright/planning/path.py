@@ -71,9 +71,7 @@ def plan_path(
     except NoStandingPose as error:
         return document(robot, problem=no_standing_pose(terrain, robot, error))
     except InputError as error:
-        at = terrain.points[0]
-        problem = Problem(kind="start", at=at, progress=0.0, message=str(error))
-        return document(robot, problem=problem)
+        return document(robot, problem=Problem.told("start", terrain.points[0], 0.0, str(error)))
     planner, found = _best(planners)
     robot = planner.robot
     if isinstance(found, Solved) and tolerance:

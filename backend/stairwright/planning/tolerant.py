@@ -103,14 +103,9 @@ def tolerance_problem(fallen: Fallen, tolerance: Tolerance) -> Problem:
     motion = planner.motion(nodes)
     k = int(np.abs(motion.progress - progress).argmin())
     x, z = planner.path.contacts(nodes.s[k : k + 1, 0])[0].tolist()
-    return Problem(
-        kind=kind,
-        at=(x, z),
-        progress=progress,
-        message=f"Within the tolerance ({asked}) {words}; {low:.0%} of it is stood. "
-        "Without a tolerance there is a plan.",
-        limit=Limit(needed=1.0, available=low, quantity="share of the tolerance", unit="1"),
-    )
+    limit = Limit(needed=1.0, available=low, quantity="share of the tolerance", unit="1")
+    what = f"with no tolerance there is a plan, with {asked} {words}"
+    return Problem.told(kind, (x, z), progress, what, limit)
 
 
 def _checks(planner: PathPlanner, found: Solved, tolerance: Tolerance) -> list[Check]:

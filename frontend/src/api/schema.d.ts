@@ -2166,6 +2166,12 @@ export interface components {
              */
             unit: string;
             /**
+             * Given
+             * @description what else must change with it
+             * @default
+             */
+            given: string;
+            /**
              * Confirmed
              * @description values asked of all of planning: with the first there is no plan, with the second there is one, with everything else as it is
              */

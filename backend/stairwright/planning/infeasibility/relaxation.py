@@ -188,7 +188,7 @@ def _legs_with_grip(planner: PathPlanner) -> Candidate:
     return Candidate(
         "reach", "leg length", "m", legs, LONGEST * legs,
         lambda c, v: replace(_with_robot(c, _longer(robot, v / legs)), friction=grip),
-        f" with friction {grip:.2g}",
+        f"friction {grip:.2g}",
     )  # fmt: skip
 
 
