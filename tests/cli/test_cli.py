@@ -149,8 +149,7 @@ def test_what_cannot_be_done_is_status_1(tmp_path: Path) -> None:
     ("points", "method", "told"),
     [
         ("[[0, 0], [0.1, 0], [0.1, 0.1], [2, 0.1]]", "path",
-         "needs length 0.238 m, has 0.1 m: no place to stand at the start, the first flat stretch "
-         "is too short, at x = 0.05 m"),
+         "needs length 0.238 m, has 0.1 m: no place to stand at the start, the first flat "),
         ("[[-1, 0], [0, 0], [0, 1], [2, 1]]", "nominal", "needs friction 0.804, has 0.6: "),
     ],
 )  # fmt: skip

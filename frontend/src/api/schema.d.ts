@@ -2982,6 +2982,14 @@ export interface components {
              */
             assumed: string[];
             /**
+             * Assumed Fields
+             * @description which sentence of `assumed`, from 0, tells a field, by its path: wheel.radius, rear.actuators.calf.torque
+             * @default {}
+             */
+            assumed_fields: {
+                [key: string]: number;
+            };
+            /**
              * Nominal Height
              * @description trunk centre above the ground, standing [m]
              */
@@ -3053,6 +3061,14 @@ export interface components {
              * @default []
              */
             assumed: string[];
+            /**
+             * Assumed Fields
+             * @description which sentence of `assumed`, from 0, tells a field, by its path: wheel.radius, rear.actuators.calf.torque
+             * @default {}
+             */
+            assumed_fields: {
+                [key: string]: number;
+            };
             /**
              * Nominal Height
              * @description trunk centre above the ground, standing [m]

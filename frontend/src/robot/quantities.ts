@@ -34,14 +34,14 @@ function withLink(file: RobotDocument, end: End, name: LinkName, link: RobotDocu
 /** Rear links have rows of their own where they differ from the front ones. */
 function linkRows(end: End, name: LinkName): Quantity[] {
   const label = end === "front" ? capital(name) : `Rear ${name}`;
-  const words = (what: string) => new RegExp(`\\b${name}\\b.*\\b${what}`, "i");
+  const path = end === "front" ? name : `rear.${name}`;
   return [
     quantity(
       `${end}.${name}.length`,
       "Geometry",
       label,
       METRES,
-      words("length"),
+      `${path}.length`,
       (f) => linkOf(f, end, name)?.length ?? null,
       (f, v) => withLink(f, end, name, longer(linkOf(f, end, name)!, v)),
     ),
@@ -50,7 +50,7 @@ function linkRows(end: End, name: LinkName): Quantity[] {
       "Masses",
       label,
       MASS,
-      words("mass"),
+      `${path}.mass`,
       (f) => linkOf(f, end, name)?.mass ?? null,
       (f, v) => withLink(f, end, name, heavier(linkOf(f, end, name)!, v)),
     ),
@@ -67,7 +67,7 @@ const GEOMETRY: Quantity[] = [
     "Geometry",
     "Wheel radius",
     METRES,
-    /wheel.*radius|radius.*wheel/i,
+    "wheel.radius",
     (f) => f.wheel.radius,
     (f, v) => wheels(f, (w) => bigger(w, v)),
   ),
@@ -76,7 +76,7 @@ const GEOMETRY: Quantity[] = [
     "Geometry",
     "Wheel width",
     METRES,
-    /wheel.*width|width.*wheel/i,
+    "wheel.width",
     (f) => f.wheel.width,
     (f, v) => wheels(f, (w) => ({ ...w, width: v })),
   ),
@@ -85,7 +85,7 @@ const GEOMETRY: Quantity[] = [
     "Geometry",
     "Hip distance",
     { ...METRES, min: 0.02 },
-    /\bhip/i,
+    "hips.front",
     (f) => f.hips.front[0]! - f.hips.rear[0]!,
     (f, v) => ({
       ...f,
@@ -97,7 +97,7 @@ const GEOMETRY: Quantity[] = [
     "Geometry",
     "Half track",
     METRES,
-    /track/i,
+    "hips.half_track",
     (f) => f.hips.half_track,
     (f, v) => ({ ...f, hips: { ...f.hips, half_track: v } }),
   ),
@@ -107,7 +107,7 @@ const GEOMETRY: Quantity[] = [
       "Geometry",
       `Trunk ${name}`,
       METRES,
-      /(trunk|body).*(size|box|shape)/i,
+      "trunk.size",
       (f) => f.trunk.size[axis]!,
       (f, v) => resized(f, axis as 0 | 1 | 2, v),
     ),
@@ -117,7 +117,7 @@ const GEOMETRY: Quantity[] = [
     "Geometry",
     "Standing height",
     METRES,
-    /height|stand/i,
+    "nominal_height",
     (f) => f.nominal_height,
     (f, v) => {
       const { least, most } = heights(f);
@@ -132,33 +132,21 @@ type MotorField = "torque" | "speed" | "armature";
 const MOTORS: Quantity[] = (["leg", "thigh", "calf", "wheel"] as const).flatMap((name) =>
   (
     [
-      ["torque", TORQUE, "torque", "torque"],
-      ["speed", SPEED, "top speed", "speed"],
-      ["armature", ROTOR, "rotor inertia", "rotor|armature"],
+      ["torque", TORQUE, "torque"],
+      ["speed", SPEED, "top speed"],
+      ["armature", ROTOR, "rotor inertia"],
     ] as const
-  ).map(([field, kind, text, words]) => motorRow(name, field, kind, text, about(name, words))),
+  ).map(([field, kind, text]) => motorRow(name, field, kind, text)),
 );
 
-/** Sentences that begin with another part's name are about that part alone. */
-function about(name: MotorName, words: string): RegExp {
-  const others = name === "leg" ? ["wheel"] : ["thigh", "calf", "wheel"].filter((n) => n !== name);
-  return new RegExp(`^(?!(${others.join("|")})\\b).*(${words})`, "i");
-}
-
-function motorRow(
-  name: MotorName,
-  field: MotorField,
-  kind: Kind,
-  text: string,
-  words: RegExp,
-): Quantity {
+function motorRow(name: MotorName, field: MotorField, kind: Kind, text: string): Quantity {
   const label = name === "leg" ? "Leg" : capital(name);
   return quantity(
     `${name}.${field}`,
     "Motors",
     `${label} ${text}`,
     kind,
-    words,
+    `actuators.${name}.${field}`,
     (f) => f.actuators[name]?.[field] ?? null,
     (f, v) => ({
       ...f,
@@ -176,7 +164,7 @@ function rangeEnd(end: End, joint: LinkName, side: 0 | 1): Quantity {
     "Joint ranges",
     `${capital(end)} ${joint}, ${side === 0 ? "lower" : "upper"}`,
     ANGLE,
-    /range|limit/i,
+    `joints.${end}.${joint}`,
     (f) => f.joints[end][joint][side]!,
     (f, v) => {
       const range = [...f.joints[end][joint]] as [number, number];

@@ -22,8 +22,8 @@ export interface Quantity {
   /** Null where this robot has no such number. */
   read: (file: RobotDocument) => number | null;
   write: (file: RobotDocument, value: number) => RobotDocument;
-  /** Found in the sentences of `assumed` that speak of it. */
-  words: RegExp;
+  /** Of its field in the robot's document. */
+  path: string;
 }
 
 type Write = Quantity["write"];
@@ -53,9 +53,9 @@ export function quantity(
   group: Group,
   label: string,
   kind: Kind,
-  words: RegExp,
+  path: string,
   read: Quantity["read"],
   write: Write,
 ): Quantity {
-  return { id, group, label, ...kind, words, read, write: (f, v) => standing(write(latest(f), v)) };
+  return { id, group, label, ...kind, path, read, write: (f, v) => standing(write(latest(f), v)) };
 }
