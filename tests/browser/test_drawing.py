@@ -160,9 +160,10 @@ def test_files_are_dropped_and_text_is_pasted(product: Product) -> None:
         "() => document.querySelector('[data-vertex=\"2\"]').ariaLabel.includes('0.120')"
     )
     product.drop("broken.csv", "a,b\nnot,numbers\n")
-    product.page.locator(".import-error").wait_for()
+    refused = product.page.locator(".import-error")
+    refused.wait_for()
     assert product.corners() == 4
-    product.page.get_by_role("button", name="Dismiss").click()
+    refused.get_by_role("button", name="Dismiss").click()
     points = [[-1.5, 0], [0, 0], [0, 0.1], [0.4, 0.1], [0.4, 0.2], [2, 0.2]]
     product.paste(json.dumps({"points": points})).has_corners(6).planned()
     product.paste("points:\n- [-1.5, 0]\n- [0.6, 0]\n- [1.2, 0.1]\n- [3, 0.1]\nfriction: 0.5\n")
