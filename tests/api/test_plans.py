@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import httpx
 import pytest
 
 import stairwright as sw
-from tests.conftest import Server
 
 CURB = {"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
 WALL = {"points": [[-1.0, 0], [0, 0], [0, 3], [1, 3]]}
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as client:
-        yield client
 
 
 def test_a_plan_is_solved_stored_and_found_again(api: httpx.Client) -> None:

@@ -19,12 +19,6 @@ WALL = {"points": [[-1.0, 0], [0, 0], [0, 3], [1, 3]]}
 
 
 @pytest.fixture(scope="module")
-def api(server: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as client:
-        yield client
-
-
-@pytest.fixture(scope="module")
 def service(server: Server) -> Iterator[Client]:
     with Client(server.url) as client:
         yield client
