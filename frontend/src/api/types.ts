@@ -52,8 +52,7 @@ export type Outcome = Schemas["Rollout"]["outcome"];
 export type Metrics = Schemas["Metrics"];
 /** Speeds, torques and forces come with the end of a rollout. */
 type AtTheEnd = "dq" | "torque" | "progress_desired" | "contact_force";
-export type Series = Omit<Schemas["Series"], AtTheEnd> &
-  Partial<Pick<Schemas["Series"], AtTheEnd>>;
+export type Series = Omit<Schemas["Series"], AtTheEnd> & Partial<Pick<Schemas["Series"], AtTheEnd>>;
 
 /** What can be played: a rollout, or as much of it as there is yet. */
 export interface Drive {
