@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import threading
 import time as clock
 from collections.abc import Callable, Mapping
@@ -25,7 +24,6 @@ from .shown import Document, Shown
 from .stage import Stage, check_layers
 from .viewers import Viewers
 
-log = logging.getLogger(__name__)
 Replan = Callable[[dict[str, float]], None]
 
 
