@@ -61,7 +61,7 @@ class Limit(Model):
     available: float
     quantity: str = ""
     unit: str = ""
-    given: str = Field("", description="what else must change with it")
+    given: dict[str, float] = Field({}, description="values of what else must change with it")
     confirmed: tuple[float, float] | None = Field(
         None,
         description="values asked of all of planning: with the first there is no plan, with the "
@@ -70,7 +70,7 @@ class Limit(Model):
 
     def __str__(self) -> str:
         bound = "of at most " if self.needed < self.available else ""
-        given = f" with {self.given}" if self.given else ""
+        given = "".join(f" with {name} {value:.2g}" for name, value in self.given.items())
         needed, available = map(self._amount, (self.needed, self.available))
         return f"needs {self.quantity} {bound}{needed}{given}, has {available}"
 

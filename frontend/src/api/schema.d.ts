@@ -785,10 +785,12 @@ export interface components {
             /** @default  */
             unit: string;
             /**
-             * @description what else must change with it
-             * @default
+             * @description values of what else must change with it
+             * @default {}
              */
-            given: string;
+            given: {
+                [key: string]: number;
+            };
             /** @description values asked of all of planning: with the first there is no plan, with the second there is one, with everything else as it is */
             confirmed?: number[] | null;
         };

@@ -40,34 +40,29 @@ function loadPlace(axis: 0 | 1, label: string): Quantity {
     label,
     OFFSET,
     "payload.place",
-    (f) => (f.payload ? (f.payload.place ?? [0, 0])[axis]! : null),
     (f, v) => {
       if (!f.payload) return f;
       const place = [...(f.payload.place ?? [0, 0])] as [number, number];
       place[axis] = v;
       return { ...f, payload: { ...f.payload, place } };
     },
+    (f) => (f.payload ? (f.payload.place ?? [0, 0])[axis]! : null),
   );
 }
 
 export const MASSES: Quantity[] = [
-  quantity(
-    "trunk.mass",
-    "Masses",
-    "Trunk",
-    MASS,
-    "trunk.mass",
-    (f) => f.trunk.mass,
-    (f, v) => ({ ...f, trunk: heavier(f.trunk, v) }),
-  ),
+  quantity("trunk.mass", "Masses", "Trunk", MASS, "trunk.mass", (f, v) => ({
+    ...f,
+    trunk: heavier(f.trunk, v),
+  })),
   quantity(
     "com.x",
     "Masses",
     "Trunk CoM, x",
     OFFSET,
     "trunk.com",
-    (f) => com(f)[0]!,
     (f, v) => withCom(f, 0, v),
+    (f) => com(f)[0]!,
   ),
   quantity(
     "com.z",
@@ -75,17 +70,11 @@ export const MASSES: Quantity[] = [
     "Trunk CoM, z",
     OFFSET,
     "trunk.com",
-    (f) => com(f)[2]!,
     (f, v) => withCom(f, 2, v),
+    (f) => com(f)[2]!,
   ),
-  quantity(
-    "wheel.mass",
-    "Masses",
-    "Wheel",
-    MASS,
-    "wheel.mass",
-    (f) => f.wheel.mass,
-    (f, v) => wheels(f, (w) => heavier(w, v)),
+  quantity("wheel.mass", "Masses", "Wheel", MASS, "wheel.mass", (f, v) =>
+    wheels(f, (w) => heavier(w, v)),
   ),
   quantity(
     "payload.mass",
@@ -93,8 +82,8 @@ export const MASSES: Quantity[] = [
     "Payload",
     { ...MASS, min: 0, step: 0.5 },
     "payload.mass",
-    (f) => f.payload?.mass ?? 0,
     withLoad,
+    (f) => f.payload?.mass ?? 0,
   ),
   loadPlace(0, "Payload, x"),
   loadPlace(1, "Payload, z"),

@@ -3,17 +3,7 @@
 import type { RobotDocument } from "../api/types";
 import { capital } from "../geometry/format";
 import { MASSES, wheels } from "./masses";
-import {
-  ANGLE,
-  type Kind,
-  MASS,
-  METRES,
-  type Quantity,
-  quantity,
-  ROTOR,
-  SPEED,
-  TORQUE,
-} from "./quantity";
+import { ANGLE, MASS, METRES, type Quantity, quantity, ROTOR, SPEED, TORQUE } from "./quantity";
 import { bigger, heavier, heights, longer, resized } from "./stretch";
 
 export { GROUPS, type Group, type Quantity } from "./quantity";
@@ -36,23 +26,11 @@ function linkRows(end: End, name: LinkName): Quantity[] {
   const label = end === "front" ? capital(name) : `Rear ${name}`;
   const path = end === "front" ? name : `rear.${name}`;
   return [
-    quantity(
-      `${end}.${name}.length`,
-      "Geometry",
-      label,
-      METRES,
-      `${path}.length`,
-      (f) => linkOf(f, end, name)?.length ?? null,
-      (f, v) => withLink(f, end, name, longer(linkOf(f, end, name)!, v)),
+    quantity(`${end}.${name}.length`, "Geometry", label, METRES, `${path}.length`, (f, v) =>
+      withLink(f, end, name, longer(linkOf(f, end, name)!, v)),
     ),
-    quantity(
-      `${end}.${name}.mass`,
-      "Masses",
-      label,
-      MASS,
-      `${path}.mass`,
-      (f) => linkOf(f, end, name)?.mass ?? null,
-      (f, v) => withLink(f, end, name, heavier(linkOf(f, end, name)!, v)),
+    quantity(`${end}.${name}.mass`, "Masses", label, MASS, `${path}.mass`, (f, v) =>
+      withLink(f, end, name, heavier(linkOf(f, end, name)!, v)),
     ),
   ];
 }
@@ -62,23 +40,11 @@ const LINKS = (["front", "rear"] as const).flatMap((end) =>
 );
 
 const GEOMETRY: Quantity[] = [
-  quantity(
-    "wheel.radius",
-    "Geometry",
-    "Wheel radius",
-    METRES,
-    "wheel.radius",
-    (f) => f.wheel.radius,
-    (f, v) => wheels(f, (w) => bigger(w, v)),
+  quantity("wheel.radius", "Geometry", "Wheel radius", METRES, "wheel.radius", (f, v) =>
+    wheels(f, (w) => bigger(w, v)),
   ),
-  quantity(
-    "wheel.width",
-    "Geometry",
-    "Wheel width",
-    METRES,
-    "wheel.width",
-    (f) => f.wheel.width,
-    (f, v) => wheels(f, (w) => ({ ...w, width: v })),
+  quantity("wheel.width", "Geometry", "Wheel width", METRES, "wheel.width", (f, v) =>
+    wheels(f, (w) => ({ ...w, width: v })),
   ),
   quantity(
     "hips",
@@ -86,21 +52,16 @@ const GEOMETRY: Quantity[] = [
     "Hip distance",
     { ...METRES, min: 0.02 },
     "hips.front",
-    (f) => f.hips.front[0]! - f.hips.rear[0]!,
     (f, v) => ({
       ...f,
       hips: { ...f.hips, front: [v / 2, f.hips.front[1]!], rear: [-v / 2, f.hips.rear[1]!] },
     }),
+    (f) => f.hips.front[0]! - f.hips.rear[0]!,
   ),
-  quantity(
-    "half_track",
-    "Geometry",
-    "Half track",
-    METRES,
-    "hips.half_track",
-    (f) => f.hips.half_track,
-    (f, v) => ({ ...f, hips: { ...f.hips, half_track: v } }),
-  ),
+  quantity("half_track", "Geometry", "Half track", METRES, "hips.half_track", (f, v) => ({
+    ...f,
+    hips: { ...f.hips, half_track: v },
+  })),
   ...(["length", "width", "height"] as const).map((name, axis) =>
     quantity(
       `trunk.${name}`,
@@ -108,26 +69,15 @@ const GEOMETRY: Quantity[] = [
       `Trunk ${name}`,
       METRES,
       "trunk.size",
-      (f) => f.trunk.size[axis]!,
       (f, v) => resized(f, axis as 0 | 1 | 2, v),
+      (f) => f.trunk.size[axis]!,
     ),
   ),
-  quantity(
-    "height",
-    "Geometry",
-    "Standing height",
-    METRES,
-    "nominal_height",
-    (f) => f.nominal_height,
-    (f, v) => {
-      const { least, most } = heights(f);
-      return { ...f, nominal_height: Math.min(most, Math.max(least, v)) };
-    },
-  ),
+  quantity("height", "Geometry", "Standing height", METRES, "nominal_height", (f, v) => {
+    const { least, most } = heights(f);
+    return { ...f, nominal_height: Math.min(most, Math.max(least, v)) };
+  }),
 ];
-
-type MotorName = "leg" | "thigh" | "calf" | "wheel";
-type MotorField = "torque" | "speed" | "armature";
 
 const MOTORS: Quantity[] = (["leg", "thigh", "calf", "wheel"] as const).flatMap((name) =>
   (
@@ -136,24 +86,20 @@ const MOTORS: Quantity[] = (["leg", "thigh", "calf", "wheel"] as const).flatMap(
       ["speed", SPEED, "top speed"],
       ["armature", ROTOR, "rotor inertia"],
     ] as const
-  ).map(([field, kind, text]) => motorRow(name, field, kind, text)),
+  ).map(([field, kind, text]) =>
+    quantity(
+      `${name}.${field}`,
+      "Motors",
+      `${capital(name)} ${text}`,
+      kind,
+      `actuators.${name}.${field}`,
+      (f, v) => ({
+        ...f,
+        actuators: { ...f.actuators, [name]: { ...f.actuators[name]!, [field]: v } },
+      }),
+    ),
+  ),
 );
-
-function motorRow(name: MotorName, field: MotorField, kind: Kind, text: string): Quantity {
-  const label = name === "leg" ? "Leg" : capital(name);
-  return quantity(
-    `${name}.${field}`,
-    "Motors",
-    `${label} ${text}`,
-    kind,
-    `actuators.${name}.${field}`,
-    (f) => f.actuators[name]?.[field] ?? null,
-    (f, v) => ({
-      ...f,
-      actuators: { ...f.actuators, [name]: { ...f.actuators[name]!, [field]: v } },
-    }),
-  );
-}
 
 /** A range keeps this much, so that its ends never meet [rad]. */
 const LEAST_RANGE = 0.02;
@@ -165,7 +111,6 @@ function rangeEnd(end: End, joint: LinkName, side: 0 | 1): Quantity {
     `${capital(end)} ${joint}, ${side === 0 ? "lower" : "upper"}`,
     ANGLE,
     `joints.${end}.${joint}`,
-    (f) => f.joints[end][joint][side]!,
     (f, v) => {
       const range = [...f.joints[end][joint]] as [number, number];
       range[side] =
@@ -173,6 +118,7 @@ function rangeEnd(end: End, joint: LinkName, side: 0 | 1): Quantity {
       const joints = { ...f.joints, [end]: { ...f.joints[end], [joint]: range } };
       return { ...f, joints };
     },
+    (f) => f.joints[end][joint][side]!,
   );
 }
 

@@ -47,6 +47,15 @@ export const ANGLE: Kind = {
 /** A document of the first schema says all that one of the second does. */
 const latest = (file: RobotDocument): RobotDocument => ({ ...file, schema: "stairwright/robot/2" });
 
+/** A number of a robot's document by its path, such as `calf.length`; null where there is none. */
+export function numberAt(file: unknown, path: string): number | null {
+  let at: unknown = file;
+  for (const part of path.split(".")) {
+    at = at && typeof at === "object" ? (at as Record<string, unknown>)[part] : undefined;
+  }
+  return typeof at === "number" ? at : null;
+}
+
 /** One number; writing it keeps the robot on its feet. */
 export function quantity(
   id: string,
@@ -54,8 +63,8 @@ export function quantity(
   label: string,
   kind: Kind,
   path: string,
-  read: Quantity["read"],
   write: Write,
+  read: Quantity["read"] = (file) => numberAt(file, path),
 ): Quantity {
   return { id, group, label, ...kind, path, read, write: (f, v) => standing(write(latest(f), v)) };
 }

@@ -236,7 +236,7 @@ def _problem(planner: PathPlanner, reached: Place | None, cause: Cause | None) -
     candidate = cause.candidate
     limit = Limit(
         needed=candidate.at(cause.upper), available=candidate.available,
-        quantity=candidate.quantity, unit=candidate.unit, given=candidate.given,
+        quantity=candidate.quantity, unit=candidate.unit, given=dict(candidate.given),
         confirmed=(candidate.at(cause.lower), candidate.at(cause.upper)),
     )  # fmt: skip
     return Problem.told(candidate.kind, at, progress, stop, limit)
