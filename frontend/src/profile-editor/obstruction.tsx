@@ -33,6 +33,8 @@ const PADDING = 12;
 const LINE = 18;
 const BUTTONS = 36;
 const NUMBERS = 44;
+/** Letters for which a line may end early: a number stays with its unit. */
+const UNBROKEN = 14;
 /** Of a letter of the sentence, and left of it [px]. */
 const LETTER = 7.2;
 const ICON = 24;
@@ -56,7 +58,7 @@ const robotBox = computed<Rect | null>(() => {
 
 function heightOf(stop: Problem, width: number): number {
   const letters = (width - 2 * PADDING - ICON) / LETTER;
-  const lines = Math.ceil(stop.message.length / letters);
+  const lines = Math.ceil((stop.message.length + UNBROKEN) / letters);
   const more = tight.value ? 0 : NUMBERS;
   return 2 * PADDING + lines * LINE + more + BUTTONS;
 }
