@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from stairwright.planning.attempt import Blocked, Solved
 from stairwright.planning.infeasibility.bracket import Bracket
 from stairwright.planning.infeasibility.confirmation import _settled, alone
-from stairwright.planning.plan import Limit
+from stairwright.planning.problem import Limit
 from stairwright.planning.strategy import AT_ONCE, FINER, solve
 from stairwright.planning.threads import in_this_thread
 

@@ -14,7 +14,8 @@ from stairwright.planning.certificate.certify import with_dynamics
 from stairwright.planning.courses import courses
 from stairwright.planning.infeasibility.diagnosis import no_standing_pose
 from stairwright.planning.path_planner import THIN, PathPlanner
-from stairwright.planning.plan import Plan, PlanTiming, Problem
+from stairwright.planning.plan import Plan, PlanTiming
+from stairwright.planning.problem import Problem
 from stairwright.planning.smoothing.path_document import make_plan
 from stairwright.planning.standing import NoStandingPose
 from stairwright.planning.strategy import solve

@@ -17,7 +17,8 @@ from stairwright.planning.certificate.certify import tolerated
 from stairwright.planning.certificate.tolerance.checks import NAMES
 from stairwright.planning.extra_margins import NO_EXTRA, ExtraMargins
 from stairwright.planning.path_planner import PathPlanner
-from stairwright.planning.plan import Check, Limit, Problem, ProblemKind
+from stairwright.planning.plan import Check
+from stairwright.planning.problem import Limit, Problem, ProblemKind
 from stairwright.planning.strategy import keeping_extra_margins
 from stairwright.planning.tolerance import Tolerance
 

@@ -7,9 +7,10 @@ import numpy as np
 from stairwright import _core
 from stairwright.planning.certificate.certify import judge
 from stairwright.planning.certificate.motion import Motion
-from stairwright.planning.plan import Certificate, Check, Plan, Problem, ProblemKind, between_poses
+from stairwright.planning.plan import Certificate, Check, Plan
 from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.poses.pose_reference import Reference
+from stairwright.planning.problem import Problem, ProblemKind, between_poses
 from stairwright.terrain.wheel_path import wheel_path
 
 # Room for the centre of mass: of 490 random stairs climbed with more every rollout succeeds, of

@@ -9,7 +9,7 @@ import numpy as np
 
 from stairwright import _core
 from stairwright.arrays import Flags, Floats
-from stairwright.planning.plan import Limit, Pose, Problem, ProblemKind
+from stairwright.planning.plan import Pose
 from stairwright.planning.poses.pose_search import (
     CLEARANCE,
     LEGS_DISTANCE,
@@ -17,6 +17,7 @@ from stairwright.planning.poses.pose_search import (
     PoseSearch,
     Rules,
 )
+from stairwright.planning.problem import Limit, Problem, ProblemKind
 from stairwright.planning.standing import NoStandingPose
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain

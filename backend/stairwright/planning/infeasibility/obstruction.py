@@ -36,7 +36,7 @@ from stairwright.planning.infeasibility.relaxation import (
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
 from stairwright.planning.path_planner import PathPlanner
-from stairwright.planning.plan import Limit, Problem
+from stairwright.planning.problem import Limit, Problem
 from stairwright.planning.smoothing.path_document import PathPoses
 from stairwright.planning.threads import race, search_threads
 

@@ -11,9 +11,10 @@ import numpy as np
 from stairwright.arrays import Floats
 from stairwright.planning.assembly import assemble
 from stairwright.planning.infeasibility.diagnosis import no_standing_pose, statics_limit
-from stairwright.planning.plan import Limit, Plan, Pose, Problem
+from stairwright.planning.plan import Plan, Pose
 from stairwright.planning.poses.paper_timing import pose_times
 from stairwright.planning.poses.pose_documents import complete_poses
+from stairwright.planning.problem import Limit, Problem
 from stairwright.planning.standing import NoStandingPose, find_standing_poses
 from stairwright.planning.weights import NominalWeights
 from stairwright.robot import kinematics
