@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import re
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
@@ -106,10 +105,8 @@ def changed(asked: Question, plan: sw.Plan, factor: float) -> Question | None:
     points, robot, friction = asked
     assert plan.problem is not None
     assert plan.problem.limit is not None
-    quantity = plan.problem.limit.quantity
-    name, _, grip = quantity.partition(" with friction ")
-    if grip:
-        friction = float(grip)
+    limit = plan.problem.limit
+    name, friction = limit.quantity, limit.given.get("friction", friction)
     # A knee that bends both ways was planned bent to one side: that robot lacks the amount.
     robot = json.loads(plan.robot_description.model_dump_json())
     if name == "friction":
@@ -135,7 +132,7 @@ def examine(seed: int) -> dict[str, Any] | None:
     limit = plan.problem.limit
     if limit is None or plan.problem.kind in ("start", "goal"):
         return row
-    row["quantity"] = re.sub(r" with .*", "", limit.quantity)
+    row["quantity"] = limit.quantity
     # As many digits as the message has.
     needed, there = limit.needed, limit.available
     way = STEP if needed > there else 1.0 / STEP

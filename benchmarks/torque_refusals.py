@@ -277,8 +277,7 @@ def examine(seed: int) -> dict[str, Any] | None:
     limit = plan.problem.limit if plan.problem else None
     if limit is None or plan.problem is None or "torque" not in limit.quantity:
         return None
-    grip = limit.quantity.partition(" with friction ")[2]
-    mu = float(grip) if grip else friction  # it needs both
+    mu = limit.given.get("friction", friction)  # it needs both
     arrives = Search(plan.robot_description, np.array(points), mu).arrives()
     return {"seed": seed, "message": plan.problem.message, "confirmed": not arrives}
 

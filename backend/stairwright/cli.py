@@ -9,11 +9,11 @@ from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from . import __version__
+from .api.addresses import MOST_PORT
 from .errors import InputError, StairwrightError
 from .export.table import FORMATS, USUAL_RATE, names
 
 DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
-MOST_PORT = 65535
 METHODS = ("path", "critical", "nominal")
 
 
@@ -54,12 +54,7 @@ def parser() -> argparse.ArgumentParser:
     _add_rate(plan)
 
     rollout = commands.add_parser("rollout", help="carry a plan out in simulation")
-    rollout.add_argument("source", metavar="PLAN-or-TERRAIN", help="a plan's file, or a terrain")
-    _add_planning(rollout)
-    rollout.add_argument("--seed", type=int, default=0, help="of the sensor noise (%(default)s)")
-    rollout.add_argument(
-        "--controller", action="append", default=[], metavar="NAME=VALUE", help="a setting"
-    )
+    _add_carrying_out(rollout)
     rollout.add_argument(
         "--disturbance",
         action="append",
@@ -76,20 +71,13 @@ def parser() -> argparse.ArgumentParser:
     rollout.add_argument(
         "--workers", type=int, metavar="N", help="share trials among so many; default: all cores"
     )
-    rollout.add_argument(
-        "--model", metavar="FILE", help="simulate the robot's own MJCF or URDF, not our model of it"
-    )
+    _add_model(rollout)
     rollout.add_argument("-o", "--output", metavar="FILE", help=names("rollout"))
 
     margins = commands.add_parser(
         "margins", help="how much delay and how much less friction a plan stands"
     )
-    margins.add_argument("source", metavar="PLAN-or-TERRAIN", help="a plan's file, or a terrain")
-    _add_planning(margins)
-    margins.add_argument("--seed", type=int, default=0, help="of the sensor noise (%(default)s)")
-    margins.add_argument(
-        "--controller", action="append", default=[], metavar="NAME=VALUE", help="a setting"
-    )
+    _add_carrying_out(margins)
     margins.add_argument("-o", "--output", metavar="FILE", help=".json")
 
     export = commands.add_parser("export", help="write a plan, rollout or robot in another format")
@@ -106,10 +94,8 @@ def parser() -> argparse.ArgumentParser:
     rehearse.add_argument("--host", default="127.0.0.1", help="of the player (%(default)s)")
     rehearse.add_argument("--port", type=_port, default=9100, help="of the player (%(default)s)")
     rehearse.add_argument("--friction", type=float, metavar="F", help="the plan's by default")
-    rehearse.add_argument("--seed", type=int, default=0, help="of the sensor noise (%(default)s)")
-    rehearse.add_argument(
-        "--model", metavar="FILE", help="simulate the robot's own MJCF or URDF, not our model of it"
-    )
+    _add_seed(rehearse)
+    _add_model(rehearse)
 
     certify = commands.add_parser("certify", help="check a plan independently and exactly")
     certify.add_argument("plan", metavar="PLAN", help="a plan's file")
@@ -182,6 +168,25 @@ def _add_planning(command: argparse.ArgumentParser) -> None:
         default=[],
         metavar="NAME=VALUE",
         help="that the certificate holds for: height, place (m), friction",
+    )
+
+
+def _add_carrying_out(command: argparse.ArgumentParser) -> None:
+    command.add_argument("source", metavar="PLAN-or-TERRAIN", help="a plan's file, or a terrain")
+    _add_planning(command)
+    _add_seed(command)
+    command.add_argument(
+        "--controller", action="append", default=[], metavar="NAME=VALUE", help="a setting"
+    )
+
+
+def _add_seed(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--seed", type=int, default=0, help="of the sensor noise (%(default)s)")
+
+
+def _add_model(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--model", metavar="FILE", help="simulate the robot's own MJCF or URDF, not our model of it"
     )
 
 

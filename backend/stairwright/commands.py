@@ -223,4 +223,4 @@ def _write(path: str, text: str) -> None:
 def _obstacle(plan: Plan) -> str | None:
     if plan.feasible:
         return None
-    return summary.of_problem(plan.problem) if plan.problem else "the terrain is infeasible"
+    return plan.problem.message if plan.problem else "the terrain is infeasible"

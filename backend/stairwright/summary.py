@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from .benchmark import Figures
-    from .planning.plan import Certificate, Plan, Problem
+    from .planning.plan import Certificate, Plan
     from .simulation.margins_result import RobustMargins
     from .simulation.result import Metrics, Rollout
     from .simulation.trials_result import Trials
@@ -55,19 +55,6 @@ def of_plan(plan: Plan) -> str:
         rows.append(("tolerance", asked))
     rows.append(("id", plan.id))
     return columns(rows)
-
-
-def of_problem(problem: Problem) -> str:
-    """What stops the robot, where and by how much, in one line."""
-    message, limit = problem.message, problem.limit
-    more = []
-    if " x = " not in message:
-        more.append("at x = {:.2f} m, z = {:.2f} m".format(*problem.at))
-    if limit is not None and " has " not in message:
-        unit = "" if limit.unit in ("", "1") else f" {limit.unit}"
-        needs = f"needs {limit.quantity} {limit.needed:.3g}{unit}"
-        more.append(f"{needs}, has {limit.available:.3g}{unit}")
-    return f"{message.rstrip('.')} ({'; '.join(more)})" if more else message
 
 
 def _margins(plan: Plan) -> str:

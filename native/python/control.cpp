@@ -124,9 +124,9 @@ void bind_control(nb::module_& m) {
     bind_own_senses(m);
     nb::class_<Controller>(m, "Controller", "The balance controller, form contact; keeps forces and places.")
         .def(nb::init<Robot, WheelPath, double, const Gains&>(), nb::arg("robot"), nb::arg("path"), nb::arg("friction"), nb::arg("gains"))
-        .def("step", [](Controller& self, const Fixed<19>& qpos, const Fixed<18>& qvel, const Fixed<kReferenceWidth>& target, double yaw_rate) {
-            return numbers(self.step(robot_state(qpos, qvel), reference(target), yaw_rate));
-        }, nb::arg("qpos"), nb::arg("qvel"), nb::arg("target"), nb::arg("yaw_rate") = 0.0, nb::rv_policy::automatic,
+        .def("step", [](Controller& self, const Fixed<19>& qpos, const Fixed<18>& qvel, const Fixed<kReferenceWidth>& target) {
+            return numbers(self.step(robot_state(qpos, qvel), reference(target)));
+        }, nb::arg("qpos"), nb::arg("qvel"), nb::arg("target"), nb::rv_policy::automatic,
            "Torques (12,) before the motors' limits [Nm]; `target` is a row in the order of control.setpoint.")
         .def_prop_ro("forces", [](const Controller& c) { return numbers(c.forces()); }, nb::rv_policy::automatic)
         .def_prop_ro("places", [](const Controller& c) { return numbers(c.places()); }, nb::rv_policy::automatic)

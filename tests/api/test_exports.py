@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator
 
 import httpx
 import numpy as np
@@ -23,12 +22,6 @@ ROUTES = {
     "rollout": "/api/v1/rollouts/{rollout_id}/export",
     "robot": "/api/v1/robots/{name}/export",
 }
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as client:
-        yield client
 
 
 @pytest.fixture(scope="module")

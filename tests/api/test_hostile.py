@@ -17,12 +17,6 @@ JSON = {"content-type": "application/json"}
 FLAT = '{"points": [[0, 0], [1, 0]]}'
 
 
-@pytest.fixture(scope="module")
-def api(server: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=f"{server.url}/api/v1", timeout=60) as client:
-        yield client
-
-
 def refused(answer: httpx.Response, *statuses: int) -> dict[str, object]:
     assert answer.status_code in statuses, answer.text[:500]
     assert answer.headers["content-type"] == "application/problem+json"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import httpx
 import pytest
 
@@ -11,12 +9,6 @@ from stairwright.api.attempts import Attempts
 from stairwright.api.settings import Settings
 from stairwright.errors import InputError
 from tests.conftest import Server
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=f"{server.url}/api/v1", timeout=60) as client:
-        yield client
 
 
 def test_every_answer_has_the_usual_headers(server: Server) -> None:

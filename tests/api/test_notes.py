@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
@@ -13,12 +12,6 @@ from stairwright.storage.store import Store
 from tests.conftest import Server
 
 CURB = {"name": "noted-curb", "points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as client:
-        yield client
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections.abc import Iterator
 from urllib.parse import quote
 
 import httpx
@@ -18,12 +17,6 @@ from tests.robot.importing.written import mjcf, urdf
 
 CURB = {"points": [[-1.0, 0], [0, 0], [0, 0.03], [1, 0.03]]}
 BOMB = '<!DOCTYPE a [<!ENTITY b "cccccccc">]><robot name="&b;"/>'
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=f"{server.url}/api/v1", timeout=60) as client:
-        yield client
 
 
 @pytest.fixture(scope="module")

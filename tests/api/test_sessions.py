@@ -16,12 +16,6 @@ from tests.conftest import Server
 ORIGIN_REFUSED = 403
 
 
-@pytest.fixture(scope="module")
-def api(server: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as client:
-        yield client
-
-
 @pytest.fixture
 def session(api: httpx.Client) -> Iterator[str]:
     made = api.post("/sessions")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from urllib.parse import quote, unquote
 
 import httpx
@@ -12,15 +11,8 @@ import pytest
 import trimesh
 
 from stairwright.library import robots, terrains
-from tests.conftest import Server
 
 STAIR = {"points": [[-1.5, 0], [0, 0], [0, 0.2], [2, 0.2]], "friction": 0.8}
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=f"{server.url}/api/v1", timeout=60) as client:
-        yield client
 
 
 def test_presets_are_listed_first_and_read_only(api: httpx.Client) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
@@ -19,12 +18,6 @@ from tests.conftest import Server
 CURB = {"name": "curb", "points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]], "friction": 0.4}
 LEVEL = {"name": "level", "points": [[-0.5, 0], [0.5, 0]], "friction": 0.2}
 ASKED = {"height": 0.01, "friction": 0.1}
-
-
-@pytest.fixture(scope="module")
-def api(server: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=f"{server.url}/api/v1", timeout=60) as client:
-        yield client
 
 
 def test_a_plan_with_a_tolerance_is_that_of_python(server: Server, api: httpx.Client) -> None:

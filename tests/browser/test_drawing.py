@@ -1,8 +1,11 @@
-"""Terrains that are drawn, typed and saved: pen, hand, table, other windows."""
+"""Terrains that are drawn, typed, dropped and saved: pen, hand, table, files, other windows."""
 
 from __future__ import annotations
 
 import itertools
+import json
+import math
+import re
 from typing import TYPE_CHECKING
 
 import pytest
@@ -146,3 +149,64 @@ def test_what_another_window_saved_is_offered_and_not_replaced_in_silence(
     for saved in (name, "of-another-window"):
         page.get_by_role("button", name=f"Delete {saved}").click()
     page.keyboard.press("Escape")
+
+
+def test_files_are_dropped_and_text_is_pasted(product: Product) -> None:
+    text = "x,z\n-1.5,0\n0,0\n0,0.1\n2,0.1\n"
+    product.drop("kerb.csv", text).has_corners(4)
+    assert product.planned().corner(2) == (0.0, pytest.approx(0.1))
+    product.paste(text.replace("0.1", "0.12"))
+    product.page.wait_for_function(
+        "() => document.querySelector('[data-vertex=\"2\"]').ariaLabel.includes('0.120')"
+    )
+    product.drop("broken.csv", "a,b\nnot,numbers\n")
+    refused = product.page.locator(".import-error")
+    refused.wait_for()
+    assert product.corners() == 4
+    refused.get_by_role("button", name="Dismiss").click()
+    points = [[-1.5, 0], [0, 0], [0, 0.1], [0.4, 0.1], [0.4, 0.2], [2, 0.2]]
+    product.paste(json.dumps({"points": points})).has_corners(6).planned()
+    product.paste("points:\n- [-1.5, 0]\n- [0.6, 0]\n- [1.2, 0.1]\n- [3, 0.1]\nfriction: 0.5\n")
+    assert product.has_corners(4).planned().corner(2) == (1.2, pytest.approx(0.1))
+
+
+def test_a_profile_and_a_plan_that_were_downloaded_open_again(product: Product) -> None:
+    for name in ("plan.json", "curb-015.json"):
+        product.choose_terrain("curb-015").page.get_by_role("button", name="Download").click()
+        schema = "plan" if name == "plan.json" else "terrain"
+        with product.page.expect_download() as saved:
+            product.page.get_by_role("menuitem", name=f"JSON stairwright/{schema}/1").click()
+        product.fresh("flat").has_corners(2)
+        product.drop(name, saved.value.path().read_text()).has_corners(4).planned()
+        assert product.corner(2) == (0.0, pytest.approx(0.15))
+    assert saved.value.suggested_filename == "curb-015.json"
+
+
+def test_thousands_of_corners_are_thinned_and_all_in_reach(product: Product) -> None:
+    # The drawing is looked at, not the plan.
+    product.page.route("**/plans", lambda route: route.fulfill(status=422, json={"detail": "no"}))
+    try:
+        line = [f"{0.002 * i},{0.002 * math.sin(0.1 * i)}" for i in range(1998)]
+        product.paste("x,z\n-1.5,0\n" + "\n".join(line) + "\n6,0\n")
+        product.page.locator(".app[data-plan=refused]").wait_for()
+        assert 50 < product.corners() < 400
+        product.page.locator("[data-vertex]").nth(20).focus()
+        at = product.focused()
+        assert at is not None
+        for i in range(1, 4):
+            product.page.keyboard.press("PageDown")
+            assert product.focused() == at + i
+        product.page.keyboard.press("Delete")
+        assert product.focused() == at + 2
+    finally:
+        product.page.unroute("**/plans")
+
+
+def test_a_terrain_is_saved_and_deleted(product: Product) -> None:
+    product.drag(6, 0, -20).planned()
+    product.page.get_by_role("button", name=TERRAIN).click()
+    product.page.get_by_label("Save as").fill("my stairs")
+    product.page.get_by_role("button", name="Save", exact=True).click()
+    product.page.get_by_role("button", name=re.compile(r"^Terrain\s+my stairs")).click()
+    product.page.get_by_role("button", name="Delete my stairs").click()
+    product.page.get_by_role("button", name="Delete my stairs").wait_for(state="detached")

@@ -1,9 +1,8 @@
-"""The profile editor: pointer, keyboard, numbers, tools, files, history."""
+"""The profile editor: pointer, keyboard, numbers, tools, history."""
 
 from __future__ import annotations
 
 import itertools
-import json
 import math
 import re
 import time
@@ -11,16 +10,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from stairwright.terrain.stairs import stair
-
-from .conftest import DESK, PHONE, TERRAIN, Product
+from .conftest import TERRAIN, Product
 
 if TYPE_CHECKING:
     from playwright.sync_api import (
-        FloatRect,
-        Locator,
         Page,
-        ViewportSize,
         WebSocket,
         WebSocketRoute,
     )
@@ -168,28 +162,6 @@ def test_numbers_can_be_typed(product: Product) -> None:
     assert product.corner(7)[0] == pytest.approx(end[0] + 0.05)
 
 
-# The corners whose middle something that floats over the canvas takes from the pointer.
-COVERED = """() => [...document.querySelectorAll("[data-vertex]")].filter(vertex => {
-  const box = vertex.querySelector("rect").getBoundingClientRect();
-  const at = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
-  return at?.closest(".ro, .hint");
-}).length"""
-
-
-@pytest.mark.parametrize("viewport", [DESK, PHONE], ids=["desk", "phone"])
-@pytest.mark.parametrize(("terrain", "corner"), [("three-stairs-up-down", 3), ("loading-dock", 6)])
-def test_the_read_out_covers_no_corner(
-    product: Product, viewport: ViewportSize, terrain: str, corner: int
-) -> None:
-    product.page.set_viewport_size(viewport)
-    try:
-        product.choose_terrain(terrain).vertex(corner).focus()
-        product.page.locator(".ro").wait_for()
-        assert product.page.evaluate(COVERED) == 0
-    finally:
-        product.page.set_viewport_size(DESK)
-
-
 def test_several_corners_move_together(product: Product) -> None:
     before = [product.corner(i) for i in range(product.corners())]
     product.vertex(0).focus()
@@ -264,183 +236,6 @@ def test_stairs_by_the_code(product: Product) -> None:
     product.page.get_by_role("menuitemradio", name="Free rise and run").click()
     faces = [product.corner(i) for i in range(product.corners())]
     assert any(b[1] - a[1] == pytest.approx(0.2) for a, b in itertools.pairwise(faces))
-
-
-def test_files_are_dropped_and_text_is_pasted(product: Product) -> None:
-    text = "x,z\n-1.5,0\n0,0\n0,0.1\n2,0.1\n"
-    product.drop("kerb.csv", text).has_corners(4)
-    assert product.planned().corner(2) == (0.0, pytest.approx(0.1))
-    product.paste(text.replace("0.1", "0.12"))
-    product.page.wait_for_function(
-        "() => document.querySelector('[data-vertex=\"2\"]').ariaLabel.includes('0.120')"
-    )
-    product.drop("broken.csv", "a,b\nnot,numbers\n")
-    product.page.locator(".import-error").wait_for()
-    assert product.corners() == 4
-    product.page.get_by_role("button", name="Dismiss").click()
-    points = [[-1.5, 0], [0, 0], [0, 0.1], [0.4, 0.1], [0.4, 0.2], [2, 0.2]]
-    product.paste(json.dumps({"points": points})).has_corners(6).planned()
-    product.paste("points:\n- [-1.5, 0]\n- [0.6, 0]\n- [1.2, 0.1]\n- [3, 0.1]\nfriction: 0.5\n")
-    assert product.has_corners(4).planned().corner(2) == (1.2, pytest.approx(0.1))
-
-
-def test_a_profile_and_a_plan_that_were_downloaded_open_again(product: Product) -> None:
-    for name in ("plan.json", "curb-015.json"):
-        product.choose_terrain("curb-015").page.get_by_role("button", name="Download").click()
-        schema = "plan" if name == "plan.json" else "terrain"
-        with product.page.expect_download() as saved:
-            product.page.get_by_role("menuitem", name=f"JSON stairwright/{schema}/1").click()
-        product.fresh("flat").has_corners(2)
-        product.drop(name, saved.value.path().read_text()).has_corners(4).planned()
-        assert product.corner(2) == (0.0, pytest.approx(0.15))
-    assert saved.value.suggested_filename == "curb-015.json"
-
-
-def test_thousands_of_corners_are_thinned_and_all_in_reach(product: Product) -> None:
-    # The drawing is looked at, not the plan.
-    product.page.route("**/plans", lambda route: route.fulfill(status=422, json={"detail": "no"}))
-    try:
-        line = [f"{0.002 * i},{0.002 * math.sin(0.1 * i)}" for i in range(1998)]
-        product.paste("x,z\n-1.5,0\n" + "\n".join(line) + "\n6,0\n")
-        product.page.locator(".app[data-plan=refused]").wait_for()
-        assert 50 < product.corners() < 400
-        product.page.locator("[data-vertex]").nth(20).focus()
-        at = product.focused()
-        assert at is not None
-        for i in range(1, 4):
-            product.page.keyboard.press("PageDown")
-            assert product.focused() == at + i
-        product.page.keyboard.press("Delete")
-        assert product.focused() == at + 2
-    finally:
-        product.page.unroute("**/plans")
-
-
-def test_a_terrain_is_saved_and_deleted(product: Product) -> None:
-    product.drag(6, 0, -20).planned()
-    product.page.get_by_role("button", name=TERRAIN).click()
-    product.page.get_by_label("Save as").fill("my stairs")
-    product.page.get_by_role("button", name="Save", exact=True).click()
-    product.page.get_by_role("button", name=re.compile(r"^Terrain\s+my stairs")).click()
-    product.page.get_by_role("button", name="Delete my stairs").click()
-    product.page.get_by_role("button", name="Delete my stairs").wait_for(state="detached")
-
-
-def test_wheel_zooms_and_fit_returns(product: Product) -> None:
-    zoom = product.page.locator(".zoom")
-    assert zoom.inner_text() == "100 %"
-    product.page.locator(".ed").hover(position={"x": 500, "y": 250})
-    product.page.mouse.wheel(0, -400)
-    product.page.wait_for_function("() => document.querySelector('.zoom').innerText !== '100 %'")
-    product.page.get_by_role("button", name="Fit to view").click()
-    assert zoom.inner_text() == "100 %"
-
-
-def test_all_of_a_long_flight_is_in_view(product: Product) -> None:
-    flight = stair(0.17, 0.29, 120)
-    product.drop("flight.json", flight.model_dump_json())
-    last = product.vertex(len(flight.points) - 1)
-    last.wait_for()
-    canvas = product.page.locator(".canvas").bounding_box()
-    assert canvas is not None
-    for corner in (product.vertex(0), last):
-        box = corner.bounding_box()
-        assert box is not None
-        assert canvas["x"] < box["x"] < canvas["x"] + canvas["width"]
-        assert canvas["y"] < box["y"] < canvas["y"] + canvas["height"]
-
-
-def test_fit_leaves_room_for_dimensions_and_end_corners(product: Product) -> None:
-    """Flat ground is as wide as the canvas: its numbers lay on the line, its ends half outside."""
-    product.choose_terrain("flat")
-
-    def box(found: Locator) -> FloatRect:
-        where = found.bounding_box()
-        assert where is not None
-        return where
-
-    canvas, label = box(product.page.locator(".ed")), box(product.page.locator(".dimbg"))
-    first, last = (box(product.vertex(i).locator("rect")) for i in (0, 1))
-    assert label["y"] > first["y"] + first["height"]
-    assert first["x"] > canvas["x"] + 40  # past the ruler
-    assert last["x"] + last["width"] < canvas["x"] + canvas["width"]
-
-
-# Numbers of poses that are cut off, or that the legend lies over.
-UNREADABLE = """() => {
-  const canvas = document.querySelector(".canvas").getBoundingClientRect();
-  const words = [...document.querySelectorAll(".lg span")].map(s => s.getBoundingClientRect());
-  return [...document.querySelectorAll(".kb g")].filter(number => {
-    const b = number.lastElementChild.getBoundingClientRect();
-    return b.top < canvas.top + 20 || words.some(w =>
-      w.left < b.right && b.left < w.right && w.top < b.bottom && b.top < w.bottom);
-  }).map(number => number.textContent);
-}"""
-
-
-def test_a_tall_flight_leaves_the_numbers_of_its_poses_readable(product: Product) -> None:
-    page = product.page
-    page.set_viewport_size({"width": 1280, "height": 720})
-    try:
-        product.draw_flight(20)
-        assert page.locator(".kb g").count() > 10
-        assert page.evaluate(UNREADABLE) == []
-    finally:
-        page.set_viewport_size(DESK)
-
-
-def test_a_typed_rise_that_leaves_the_view_is_shown_but_where_the_user_chose(
-    product: Product,
-) -> None:
-    page = product.page
-    page.set_viewport_size({"width": 1280, "height": 720})
-    canvas = page.locator(".canvas").bounding_box()
-    assert canvas is not None
-
-    def higher(than: str, rise: str) -> float:
-        """Height of the last corner in the window after the rise was typed [px]."""
-        page.get_by_role("button", name=f"Rise {than} m").first.dblclick()
-        page.get_by_label("Rise in metres").fill(rise)
-        page.keyboard.press("Enter")
-        product.planned()
-        corner = product.vertex(product.corners() - 1).locator("rect").bounding_box()
-        assert corner is not None
-        return corner["y"]
-
-    try:
-        assert higher("0.125", "1.400") > canvas["y"] + 20
-        page.keyboard.press("Control+z")
-        product.planned()
-        page.locator(".ed").hover(position={"x": 250, "y": 150})
-        page.mouse.wheel(0, 100)
-        assert higher("0.125", "2.500") < canvas["y"] + 20
-    finally:
-        page.set_viewport_size(DESK)
-
-
-def test_two_fingers_zoom_and_change_nothing(product: Product) -> None:
-    before = [product.corner(i) for i in range(product.corners())]
-    box = product.vertex(3).bounding_box()
-    assert box is not None
-    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    touch = product.page.context.new_cdp_session(product.page)
-
-    def fingers(kind: str, apart: float) -> None:
-        points = [{"x": x, "y": y, "id": 0}, {"x": x + apart, "y": y - apart, "id": 1}]
-        touch.send(
-            "Input.dispatchTouchEvent",
-            {"type": kind, "touchPoints": [] if kind == "touchEnd" else points},
-        )
-
-    fingers("touchStart", 80)
-    for apart in (100, 130, 160):
-        fingers("touchMove", apart)
-    fingers("touchEnd", 160)
-    product.page.wait_for_function(
-        "() => Number(document.querySelector('.zoom').innerText.replace(' %', '')) > 150"
-    )
-    assert [product.corner(i) for i in range(product.corners())] == before
-    product.page.get_by_role("button", name="Fit to view").click()
 
 
 def test_weights_replan_and_reset(product: Product) -> None:

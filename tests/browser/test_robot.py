@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,121 +14,35 @@ from stairwright.export.formats import save
 
 from .axe import violations
 from .conftest import DESK, PHONE, Product
+from .robot_room import LAPTOP, choose, enter, robot_room, state
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Locator, ViewportSize
+    from playwright.sync_api import ViewportSize
 
 pytestmark = [pytest.mark.browser]
-
-LAPTOP: ViewportSize = {"width": 1280, "height": 720}
 
 
 @pytest.fixture
 def product(shared: Product) -> Iterator[Product]:
     """The page that these tests share, in Robot, with the A1 as it is stored."""
-    shared.errors.clear()
-    page = shared.page
-    shared.fresh()
-    page.keyboard.press("2")
-    _choose(shared, "a1_wheeled_x")
-    reset = page.get_by_role("button", name="Reset robot")
-    if reset.is_enabled():
-        reset.click()
-    yield shared.planned()
-    page.keyboard.press("1")
-    assert shared.errors == []
-
-
-def _choose(product: Product, name: str) -> None:
-    entries = product.page.locator(".entry > button:first-child")
-    entries.filter(has=product.page.get_by_title(name, exact=True)).click()
-    product.planned()
-
-
-def _field(product: Product, quantity: str) -> Locator:
-    return product.page.locator(f'[data-quantity="{quantity}"] input')
-
-
-def _type(product: Product, quantity: str, text: str) -> None:
-    field = _field(product, quantity)
-    field.fill(text)
-    field.press("Enter")
-    field.evaluate("e => e.blur()")
-    product.planned()
-
-
-def _state(product: Product) -> str:
-    return product.page.locator(".bench h2 small").inner_text()
-
-
-def _pull(product: Product, quantity: str, dx: float, dy: float) -> None:
-    """Drag the grip of a dimension by pixels and let go."""
-    box = product.page.locator(f'[data-handle="{quantity}"] .grip').bounding_box()
-    assert box is not None
-    mouse = product.page.mouse
-    mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    mouse.down()
-    mouse.move(box["x"] + box["width"] / 2 + dx, box["y"] + box["height"] / 2 + dy, steps=8)
-    mouse.up()
-
-
-def test_a_dimension_is_dragged_as_one_step_and_the_plan_follows(product: Product) -> None:
-    page = product.page
-    page.evaluate("performance.clearMarks()")
-    _pull(product, "hips", 20, 0)
-    assert _state(product) == "edited, 1 number"
-    longer = float(_field(product, "hips").input_value())
-    assert 0.25 < longer < 0.35
-    assert round(longer * 1000) == pytest.approx(longer * 1000)
-    page.wait_for_function("performance.getEntriesByName('stairwright:poses').length > 0")
-    product.planned()
-    page.keyboard.press("Control+z")
-    assert _state(product) == "preset"
-    page.keyboard.press("Control+Shift+z")
-    assert float(_field(product, "hips").input_value()) == longer
-    page.get_by_role("button", name="Reset Hip distance").click()
-    assert _state(product) == "preset"
-
-
-def test_escape_gives_a_drag_up(product: Product) -> None:
-    page = product.page
-    box = page.locator('[data-handle="hips"] .grip').bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + 3, box["y"] + 3)
-    page.mouse.down()
-    page.mouse.move(box["x"] + 30, box["y"] + 3, steps=5)
-    assert _state(product) == "edited, 1 number"
-    page.keyboard.press("Escape")
-    page.mouse.up()
-    assert _state(product) == "preset"
-
-
-def test_keys_change_a_dimension_and_enter_leads_to_its_field(product: Product) -> None:
-    page = product.page
-    handle = page.locator('[data-handle="front.calf.length"]')
-    handle.focus()
-    page.keyboard.press("ArrowUp")
-    page.keyboard.press("Shift+ArrowUp")
-    assert _field(product, "front.calf.length").input_value() == "0.211"
-    assert handle.get_attribute("aria-valuetext") == "0.211 m"
-    page.keyboard.press("Enter")
-    assert page.evaluate("document.activeElement.ariaLabel") == "Calf, m"
+    with robot_room(shared) as product:
+        yield product
 
 
 def test_the_plan_is_of_the_robot_in_hand(product: Product) -> None:
     """A load, a weak motor and a moved mass centre: the planner is asked about all of it."""
     page = product.page
     with page.expect_request(re.compile(r"/api/v1/plans$")) as asked:
-        _type(product, "payload.mass", "2.5")
+        enter(product, "payload.mass", "2.5")
     sent = asked.value.post_data_json["robot"]
     assert sent["payload"]["mass"] == 2.5
     assert sw.Robot.model_validate(sent).mass == pytest.approx(11.84 + 2.5)
     assert page.locator(".number", has_text="Total").locator("output").inner_text() == "14.34"
     with page.expect_request(re.compile(r"/api/v1/plans$")) as asked:
-        _type(product, "com.x", "25")
+        enter(product, "com.x", "25")
     assert asked.value.post_data_json["robot"]["trunk"]["com"][0] == pytest.approx(0.025)
     assert product.status == "feasible"
-    _type(product, "leg.torque", "1.0")
+    enter(product, "leg.torque", "1.0")
     assert product.status == "infeasible"
     assert "torque" in page.locator(".rivals").first.locator(".facts-line").inner_text()
 
@@ -147,10 +60,10 @@ def test_every_number_of_every_preset_makes_a_robot_that_the_service_takes(
     """Each is stepped up once, all together: shapes, moments and heights stay possible."""
     page = product.page
     for name in sw.robots():
-        _choose(product, name)
+        choose(product, name)
         fields = page.locator(".rows .num")
         fields.evaluate_all(STEP_UP)
-        assert int(_state(product).split()[1]) >= fields.count() > 30
+        assert int(state(product).split()[1]) >= fields.count() > 30
         page.evaluate("document.activeElement.blur()")
         product.planned()
         assert product.status in ("feasible", "infeasible"), name
@@ -160,7 +73,7 @@ def test_every_number_of_every_preset_makes_a_robot_that_the_service_takes(
 
 def test_a_link_carries_the_edited_robot(product: Product) -> None:
     page = product.page
-    _type(product, "front.thigh.length", "0.22")
+    enter(product, "front.thigh.length", "0.22")
     address = product.linked('"length":0.22,')
     other = page.context.new_page()
     opened = Product(other)
@@ -172,12 +85,12 @@ def test_a_link_carries_the_edited_robot(product: Product) -> None:
 
 def test_an_own_robot_is_saved_listed_and_deleted(product: Product) -> None:
     page = product.page
-    _type(product, "wheel.radius", "0.06")
+    enter(product, "wheel.radius", "0.06")
     page.get_by_role("button", name="Save as").click()
     page.get_by_role("textbox", name="Save as").fill("my a1")
     page.get_by_role("button", name="Save", exact=True).click()
     page.get_by_role("button", name="Delete my a1").wait_for()
-    assert _state(product) == "yours"
+    assert state(product) == "yours"
     got = page.request.get("/api/v1/robots/my a1").json()
     assert got["wheel"]["radius"] == pytest.approx(0.06)
     page.get_by_role("button", name="Delete my a1").click()
@@ -189,7 +102,7 @@ def test_an_own_robot_is_saved_listed_and_deleted(product: Product) -> None:
 @pytest.mark.parametrize("name", ["YAML", "URDF", "MJCF"])
 def test_an_edited_robot_is_downloaded(product: Product, name: str, tmp_path: Path) -> None:
     page = product.page
-    _type(product, "front.calf.length", "0.215")
+    enter(product, "front.calf.length", "0.215")
     page.get_by_role("button", name="Download robot").click()
     with page.expect_download() as download:
         page.get_by_role("menuitem", name=name).click()
@@ -207,10 +120,10 @@ def test_a_file_is_read_reported_and_opened(product: Product, tmp_path: Path) ->
     report = page.get_by_role("region", name="File")
     report.get_by_text("theirs.urdf read").wait_for()
     assert report.locator("li").count() > 0  # what had to be assumed
-    assert _state(product) == "preset"  # nothing changes before it is opened
+    assert state(product) == "preset"  # nothing changes before it is opened
     report.get_by_role("button", name=re.compile("^Open")).click()
     product.planned()
-    assert _state(product) == "not saved"
+    assert state(product) == "not saved"
     assert product.status == "feasible"
     assumed = " ".join(page.locator(".number", has_text="assumed").all_inner_texts())
     for part in ("Thigh rotor", "Wheel rotor", "Standing height"):
@@ -274,76 +187,3 @@ def test_nothing_overflows(product: Product, size: ViewportSize) -> None:
     )
     page.set_viewport_size(DESK)
     assert wide == []
-
-
-# Of the side view: its width, that of the drawn robot, labels and what fingers can hit.
-DRAWN = """() => {
-  const box = e => { const b = e.getBoundingClientRect();
-    return { left: b.left, top: b.top, right: b.right, bottom: b.bottom }; };
-  const all = selector => [...document.querySelectorAll(`.side-view ${selector}`)].map(box);
-  return { view: all("svg")[0], wheels: all(".rb .wh"), dimensions: all(".dimension"),
-    labels: all(".plate"),
-    grips: all(".dimension circle.hit, .dimension rect.hit, .pose-grip .hit") };
-}"""
-
-
-# Where the line of one dimension crosses that of another, or lies under its label.
-CROSSED = """() => {
-  const lines = [...document.querySelectorAll(".dimension")].map(e => ({
-    id: e.dataset.handle, plate: e.querySelector(".plate").getBBox(),
-    parts: [".ext", ".measure"].flatMap(c => e.querySelector(c).getAttribute("d").split("M")
-      .filter(Boolean).map(d => d.split("L").map(p => p.split(",").map(Number)))) }));
-  const side = (a, b, p) => (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
-  const crosses = ([a, b], [c, d]) => side(a, b, c) * side(a, b, d) < -1e-6
-    && side(c, d, a) * side(c, d, b) < -1e-6;
-  const diagonals = ({ x, y, width: w, height: h }) =>
-    [[[x, y], [x + w, y + h]], [[x, y + h], [x + w, y]]];
-  return lines.flatMap(a => lines.filter(b => b !== a && a.parts.some(p =>
-    [...b.parts, ...diagonals(b.plate)].some(q => crosses(p, q)))).map(b => `${a.id} ${b.id}`));
-}"""
-
-
-@pytest.mark.parametrize("name", sw.robots())
-def test_dimension_lines_do_not_cross(product: Product, name: str) -> None:
-    page = product.page
-    _choose(product, name)
-    page.set_viewport_size(LAPTOP)
-    found = [page.evaluate(CROSSED)]
-    for quantity, dx, dy in (("front.thigh.length", -25, 25), ("height", 0, 25)):
-        _pull(product, quantity, dx, dy)
-        found.append(page.evaluate(CROSSED))
-    page.set_viewport_size(PHONE)
-    page.wait_for_function("() => document.querySelector('.side-view svg').clientWidth < 400")
-    found.append(page.evaluate(CROSSED))
-    page.set_viewport_size(DESK)
-    page.get_by_role("button", name="Reset robot").click()
-    assert found == [[]] * 4
-
-
-@pytest.mark.parametrize("name", sw.robots())
-def test_on_a_phone_the_drawing_fills_the_width_and_fingers_can_pull_it(
-    product: Product, name: str
-) -> None:
-    page = product.page
-    _choose(product, name)
-    page.set_viewport_size(PHONE)
-    page.wait_for_function("() => document.querySelector('.side-view svg').clientWidth < 400")
-    drawn = page.evaluate(DRAWN)
-    page.set_viewport_size(DESK)
-    view, labels = drawn["view"], drawn["labels"]
-    left = min(each["left"] for each in drawn["dimensions"])
-    right = max(each["right"] for each in drawn["dimensions"])
-    assert right - left > 0.7 * (view["right"] - view["left"])
-    assert all(view["left"] <= e["left"] and e["right"] <= view["right"] for e in labels)
-    for k, a in enumerate(labels):
-        for b in labels[k + 1 :]:
-            across = min(a["right"], b["right"]) - max(a["left"], b["left"])
-            assert across <= 1 or min(a["bottom"], b["bottom"]) - max(a["top"], b["top"]) <= 3
-        for wheel in drawn["wheels"]:
-            radius = (wheel["right"] - wheel["left"]) / 2
-            x, y = wheel["left"] + radius, wheel["top"] + radius
-            beside = max(a["left"] - x, 0, x - a["right"]), max(a["top"] - y, 0, y - a["bottom"])
-            assert math.hypot(*beside) > radius - 3, (name, a, wheel)
-    assert len(drawn["grips"]) > 10
-    for grip in drawn["grips"]:
-        assert min(grip["right"] - grip["left"], grip["bottom"] - grip["top"]) >= 24 - 1e-3

@@ -149,8 +149,8 @@ def test_what_cannot_be_done_is_status_1(tmp_path: Path) -> None:
     ("points", "method", "told"),
     [
         ("[[0, 0], [0.1, 0], [0.1, 0.1], [2, 0.1]]", "path",
-         "the first flat stretch is too short; needs length 0.238 m, has 0.100 m, at x = 0.05 m"),
-        ("[[-1, 0], [0, 0], [0, 1], [2, 1]]", "nominal", "needs friction 0.804, has 0.6)"),
+         "needs length 0.238 m, has 0.1 m: no place to stand at the start, the first flat "),
+        ("[[-1, 0], [0, 0], [0, 1], [2, 1]]", "nominal", "needs friction 0.804, has 0.6: "),
     ],
 )  # fmt: skip
 def test_what_stops_the_robot_is_told_with_place_and_amount(

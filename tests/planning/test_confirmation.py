@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from stairwright.planning.attempt import Blocked, Solved
 from stairwright.planning.infeasibility.bracket import Bracket
 from stairwright.planning.infeasibility.confirmation import _settled, alone
+from stairwright.planning.problem import Limit
 from stairwright.planning.strategy import AT_ONCE, FINER, solve
 from stairwright.planning.threads import in_this_thread
 
@@ -128,3 +129,14 @@ def test_where_any_path_will_do_a_thin_one_is_not_compared(margin, compared):
         assert isinstance(found, Solved)
         assert made == [AT_ONCE]
         assert len(asked()[1]) == compared
+
+
+def test_what_is_missing_is_told_in_words():
+    legs = Limit(
+        needed=0.5, available=0.4, quantity="leg length", unit="m", given={"friction": 1.5}
+    )
+    assert str(legs) == "needs leg length 0.5 m with friction 1.5, has 0.4 m"
+    trunk = Limit(needed=0.1, available=0.1787, quantity="trunk height", unit="m")
+    assert str(trunk) == "needs trunk height of at most 0.1 m, has 0.179 m"
+    motor = Limit(needed=36.28, available=33.5, quantity="leg torque", unit="Nm")
+    assert str(motor) == "needs leg torque 36.3 Nm, has 33.5 Nm"

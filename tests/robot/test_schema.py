@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from functools import reduce
 
 import mujoco
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 
 from stairwright import _core
 from stairwright.errors import InputError
-from stairwright.library import load_robot
+from stairwright.library import load_robot, robots
 from stairwright.robot import kinematics, spatial
 from stairwright.robot.description import LEGS, Robot
 from stairwright.robot.mujoco_model import build_model
@@ -24,7 +25,7 @@ def test_documents_of_the_first_schema_stay_as_they_were():
     assert FIRST["schema"] == "stairwright/robot/1"
     assert set(FIRST["trunk"]) == {"size", "mass", "inertia"}
     assert set(FIRST["actuators"]) == {"leg", "wheel"}
-    assert {"rear", "payload", "source", "assumed", "abduction"}.isdisjoint(FIRST)
+    assert {"rear", "payload", "source", "assumed", "assumed_fields", "abduction"}.isdisjoint(FIRST)
     assert Robot.model_validate(FIRST).hash == load_robot("a1_wheeled").hash
     unnamed = {key: value for key, value in FIRST.items() if key != "schema"}
     assert Robot.model_validate(unnamed) == load_robot("a1_wheeled")
@@ -62,6 +63,7 @@ def test_what_is_new_needs_the_second_schema(path, value):
          "points"),
         (("rear",), {"wheel": FIRST["wheel"] | {"radius": 0.06}}, "radius"),
         (("actuators",), {"wheel": FIRST["actuators"]["wheel"]}, "thigh"),
+        (("assumed_fields",), {"wheel.radius": 0}, "wheel.radius"),
     ],
 )  # fmt: skip
 def test_bad_documents_name_the_field(path, value, field):
@@ -73,6 +75,14 @@ def test_bad_documents_name_the_field(path, value, field):
     with pytest.raises(InputError) as error:
         load_robot(data)
     assert error.value.field[-1] == field
+
+
+@pytest.mark.parametrize("name", robots())
+def test_fields_that_are_assumed_are_there(name):
+    robot = load_robot(name)
+    for path in robot.assumed_fields:
+        assert reduce(getattr, path.split("."), robot) is not None
+    assert set(robot.assumed_fields.values()) == set(range(len(robot.assumed)))
 
 
 @pytest.mark.parametrize("seed", SEEDS)

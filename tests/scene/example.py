@@ -6,7 +6,8 @@ import numpy as np
 
 from stairwright.control.settings import ControllerSettings
 from stairwright.library import load_robot
-from stairwright.planning.plan import Limit, Margins, Plan, Pose, Problem, Timing, plan_id
+from stairwright.planning.plan import Margins, Plan, Pose, Timing, plan_id
+from stairwright.planning.problem import Limit, Problem
 from stairwright.robot import kinematics
 from stairwright.robot.spatial import lift
 from stairwright.scene.clearance import clearance

@@ -1,4 +1,4 @@
-"""Motors, governor, verdicts, deviations, trials and the flat-ground drive."""
+"""Motors, governor, verdicts, deviations and trials."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ from stairwright.errors import InputError
 from stairwright.planning.poses.interpolation import reference
 from stairwright.robot.mujoco_model import build_spec
 from stairwright.simulation.disturbance import Disturbance
-from stairwright.simulation.drive import drive
 from stairwright.simulation.governor import follower, track
 from stairwright.simulation.intervals import clopper_pearson, wilson
 from stairwright.simulation.outcome import Ending, LinkLoads, ProgressWatch, fallen, judge
@@ -27,8 +26,6 @@ from stairwright.simulation.sensors import Sensors
 from stairwright.simulation.trials import trials
 from stairwright.simulation.world import disturb_trunk, real_terrain
 from stairwright.terrain.wheel_path import wheel_path
-
-A1S = ("a1_wheeled", "a1_wheeled_x")
 
 FLAT = {"name": "short-flat", "points": [[-0.6, 0.0], [0.6, 0.0]], "friction": 0.6}
 SHORTEST = {"points": [[-0.35, 0.0], [0.35, 0.0]], "friction": 0.6}
@@ -260,22 +257,3 @@ def test_workers_change_nothing(solver: str) -> None:
     settings = {"solver": solver, "speed": 1.0}
     alone, shared = (trials(plan, 2, seed=1, workers=w, controller=settings) for w in (1, 2))
     assert alone.trials == shared.trials
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("name", "form"), list(zip(A1S, ("contact", "paper"), strict=True)))
-def test_drive_tracks_speed_and_yaw_rate(name: str, form: str) -> None:
-    robot = sw.load_robot(name)
-
-    def command(t: float) -> tuple[float, float]:
-        return (0.4, 0.0) if t < 1.5 else (0.4, 0.4)
-
-    settings = ControllerSettings(form=form)  # type: ignore[arg-type]
-    found = drive(robot, command, 5.0, settings=settings)
-    straight = (found.time > 0.9) & (found.time < 1.5)
-    turning = found.time > 4.0
-    assert found.speed[straight].mean() == pytest.approx(0.4, abs=0.07)
-    assert found.yaw_rate[straight].mean() == pytest.approx(0.0, abs=0.02)
-    assert found.speed[turning].mean() == pytest.approx(0.4, abs=0.04)
-    assert found.yaw_rate[turning].mean() == pytest.approx(0.4, abs=0.04)
-    assert np.abs(found.pitch).max() < 0.12

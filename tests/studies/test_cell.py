@@ -11,7 +11,7 @@ import stairwright as sw
 from stairwright.errors import InputError
 from stairwright.planning.smoothing.path_document import PathPoses
 from stairwright.studies import cell
-from stairwright.studies.grid import coarse_first, levels, number, place, point
+from stairwright.studies.grid import coarse_first, levels, place, point
 from stairwright.studies.question import Questions
 from stairwright.studies.resolve import load_study
 from stairwright.studies.variables import DONE, FAILED, REFUSED
@@ -211,5 +211,4 @@ def test_a_coarse_picture_comes_first() -> None:
     first = np.array([place((31, 27), cell) for cell in order[:25]])
     assert np.ptp(first, axis=0).tolist() == [30, 26]  # all over the map
     assert levels(1).tolist() == [0]
-    assert number((31, 27), (3, 4)) == 3 * 27 + 4
     assert point(load_study(STEP), 3) == (0.3, 0.6)

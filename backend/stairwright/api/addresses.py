@@ -8,6 +8,7 @@ from urllib.parse import urlsplit
 
 from stairwright.errors import InputError
 
+MOST_PORT = 65535
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
 
 _NAME = re.compile(r"[a-z0-9_]([\w-]*[a-z0-9_])?(\.[a-z0-9_]([\w-]*[a-z0-9_])?)*", re.ASCII)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from prometheus_client import (
     CollectorRegistry,
@@ -24,48 +25,20 @@ class Metrics:
 
     def __init__(self) -> None:
         self.registry = CollectorRegistry()
-        self._requests = Counter(
-            "stairwright_requests",
-            "Requests",
-            ("method", "route", "status"),
-            registry=self.registry,
+        counter = partial(Counter, namespace="stairwright", registry=self.registry)
+        times = partial(Histogram, namespace="stairwright", registry=self.registry)
+        answering, working = "Time to answer", "Time that a worker was at a task"
+        self._requests = counter("requests", "Requests", ("method", "route", "status"))
+        self._seconds = times("request_seconds", answering, ("route",), buckets=_SECONDS)
+        self.plans = counter("plans", "Answered plan questions", ("cached",))
+        self._work_seconds = times("work_seconds", working, ("pool",), buckets=_LONG)
+        self._waiting_seconds = times(
+            "waiting_seconds", "Time that a task waited for its turn", ("queue",), buckets=_LONG
         )
-        self._seconds = Histogram(
-            "stairwright_request_seconds",
-            "Time to answer",
-            ("route",),
-            buckets=_SECONDS,
-            registry=self.registry,
-        )
-        self.plans = Counter(
-            "stairwright_plans", "Answered plan questions", ("cached",), registry=self.registry
-        )
-        self._work_seconds = Histogram(
-            "stairwright_work_seconds",
-            "Time that a worker was at a task: plans, rollouts, uploads",
-            ("pool",),
-            buckets=_LONG,
-            registry=self.registry,
-        )
-        self._waiting_seconds = Histogram(
-            "stairwright_waiting_seconds",
-            "Time that a task waited for its turn",
-            ("queue",),
-            buckets=_LONG,
-            registry=self.registry,
-        )
-        self._work = Counter(
-            "stairwright_work",
-            "Tasks by what became of them: done, or the kind of the problem",
-            ("pool", "outcome"),
-            registry=self.registry,
-        )
-        self._outcomes = Counter(
-            "stairwright_outcomes",
-            "New results by what they say: a plan's status, a rollout's outcome",
-            ("kind", "outcome"),
-            registry=self.registry,
-        )
+        done = "Tasks by what became of them: done, or the kind of the problem"
+        self._work = counter("work", done, ("pool", "outcome"))
+        said = "New results by what they say: a plan's status, a rollout's outcome"
+        self._outcomes = counter("outcomes", said, ("kind", "outcome"))
         ProcessCollector(registry=self.registry)
 
     def observe(self, method: str, route: str, status: int, seconds: float) -> None:

@@ -21,7 +21,7 @@ from starlette.responses import Response
 
 from stairwright.complaints import SEVERAL, foremost, wording
 from stairwright.errors import InputError
-from stairwright.jobs.failures import Failure
+from stairwright.jobs.failures import Failure, problem
 from stairwright.storage.opening import is_damage
 
 MEDIA_TYPE = "application/problem+json"
@@ -72,13 +72,8 @@ class Problem(Exception):
     @property
     def document(self) -> dict[str, Any]:
         """The problem as plain data."""
-        return {
-            "type": f"urn:stairwright:problem:{self.kind}" if self.kind else "about:blank",
-            "title": HTTPStatus(self.status).phrase,
-            "status": self.status,
-            "detail": printable(self.detail),
-            "errors": [error.model_dump() for error in self.errors],
-        }
+        errors = [error.model_dump() for error in self.errors]
+        return problem(self.status, self.kind, printable(self.detail), errors)
 
     def response(self) -> Response:
         """The answer to send."""

@@ -119,8 +119,8 @@ class Settings:
             raise InputError("STAIRWRIGHT_TOKEN must be at least 8 ASCII characters")
         if self.log_level not in ("debug", "info", "warning", "error"):
             raise InputError("STAIRWRIGHT_LOG_LEVEL must be debug, info, warning or error")
-        if self.port > 65535:
-            raise InputError("STAIRWRIGHT_PORT must be at most 65535")
+        if self.port > addresses.MOST_PORT:
+            raise InputError(f"STAIRWRIGHT_PORT must be at most {addresses.MOST_PORT}")
         for each in fields(self):
             low, value = each.metadata["low"], getattr(self, each.name)
             if low is not None and not value >= low:

@@ -137,7 +137,7 @@ class Controller:
         )  # fmt: skip
         forces = np.einsum("nij,nj->ni", frames, self.forces.reshape(4, 2))
         speeds = target.wheel_speed[LEG_PAIR] + settings.wheel_sync * (planned - self.places)
-        rates = rolling.wheel_rates(speeds, radius) + self._yaw(state, target)
+        rates = rolling.wheel_rates(speeds, radius) + self._yaw(state)
         driven = np.array([wheel_traction(row, *f) for row, f in zip(held, forces, strict=True)])
         wheel = radius * driven + rolling.wheel_torques(
             self.gains.wheel_damping, rates, state.rolling_rates
@@ -149,7 +149,7 @@ class Controller:
         normals = self.path.normals(self.places)
         frames = rigid_body.contact_frames(normals)
         rates = rolling.wheel_rates(target.wheel_speed[LEG_PAIR], radius)
-        rates = rates + self._yaw(state, target)
+        rates = rates + self._yaw(state)
         wheel = rolling.wheel_torques(self.gains.wheel_damping, rates, state.wheel_rates)
         driven = np.zeros(8)
         driven[0::2] = rigid_body.traction(wheel, radius)
@@ -176,9 +176,9 @@ class Controller:
         C, d = balance.force_limits(self.gains.force_limit, friction)
         return qp.solve(self.settings.solver, H, g, C, d, self.forces)
 
-    def _yaw(self, state: Measurement, target: Setpoint) -> Floats:
+    def _yaw(self, state: Measurement) -> Floats:
         settings = self.settings
-        desired = target.yaw_rate - settings.heading_stiffness * state.heading
+        desired = -settings.heading_stiffness * state.heading
         scale = self.robot.hips.half_track / self.robot.wheel.radius
         return rolling.yaw_difference(settings.yaw_damping, desired, state.yaw_rate, scale)
 

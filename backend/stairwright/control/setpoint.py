@@ -43,7 +43,6 @@ class Setpoint:
         accelerations: (11,) of the first eleven, in the order of a row.
         friction_share: part of the friction that the static forces need.
         leans: (2,) what each wheel pair leans on in a corner, see `contact`.
-        yaw_rate: commanded [rad/s].
     """
 
     wheel_progress: Floats
@@ -60,10 +59,9 @@ class Setpoint:
     accelerations: Floats
     friction_share: float = 0.0
     leans: tuple[int, int] = (BOTH, BOTH)
-    yaw_rate: float = 0.0
 
     @classmethod
-    def from_row(cls, row: Floats, yaw_rate: float = 0.0) -> Setpoint:
+    def from_row(cls, row: Floats) -> Setpoint:
         """The set point held by a row (41,) in the module's order."""
         rates = row[RATES : 2 * RATES]
         return cls(
@@ -81,5 +79,4 @@ class Setpoint:
             accelerations=row[ACCELERATIONS : ACCELERATIONS + RATES],
             friction_share=float(row[SHARE]),
             leans=(int(row[LEANS][0]), int(row[LEANS][1])),
-            yaw_rate=yaw_rate,
         )

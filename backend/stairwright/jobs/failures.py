@@ -31,14 +31,12 @@ class QueueFull(Failure):
 class DeadlineExceeded(Failure):
     """The work took longer than it may."""
 
-    status = 503
     kind = "deadline"
 
 
 class WorkerDied(Failure):
     """The process that did the work is gone: killed, out of memory, or crashed."""
 
-    status = 503
     kind = "worker-died"
 
 
@@ -49,7 +47,6 @@ class GivenUp(WorkerDied):
 class Unreachable(Failure):
     """The cluster that was to do the work cannot be reached, or has no workers."""
 
-    status = 503
     kind = "unreachable"
 
 
@@ -70,7 +67,6 @@ class OutOfMemory(Failure, MemoryError):
 class Interrupted(Failure):
     """The service ended while it was at the work, and cannot go on with it."""
 
-    status = 503
     kind = "interrupted"
 
 
@@ -101,9 +97,9 @@ def problem_of(error: BaseException) -> dict[str, Any]:
 def problem(
     status: int, kind: str, detail: str, errors: Sequence[Mapping[str, str]] = ()
 ) -> dict[str, Any]:
-    """A problem document as plain data."""
+    """A problem document as plain data; without a kind it says no more than its status."""
     return {
-        "type": f"urn:stairwright:problem:{kind}",
+        "type": f"urn:stairwright:problem:{kind}" if kind else "about:blank",
         "title": HTTPStatus(status).phrase,
         "status": status,
         "detail": detail,

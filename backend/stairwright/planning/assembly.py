@@ -7,7 +7,8 @@ from time import perf_counter
 from stairwright.documents import Model
 from stairwright.planning.binding import binding_of
 from stairwright.planning.certificate.certify import certify
-from stairwright.planning.plan import Method, Plan, Pose, Problem, Timing, plan_id
+from stairwright.planning.plan import Method, Plan, Pose, Timing, plan_id
+from stairwright.planning.problem import Problem
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 

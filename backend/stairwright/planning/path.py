@@ -14,7 +14,8 @@ from stairwright.planning.certificate.certify import with_dynamics
 from stairwright.planning.courses import courses
 from stairwright.planning.infeasibility.diagnosis import no_standing_pose
 from stairwright.planning.path_planner import PathPlanner
-from stairwright.planning.plan import Plan, PlanTiming, Problem
+from stairwright.planning.plan import Plan, PlanTiming
+from stairwright.planning.problem import Problem
 from stairwright.planning.smoothing.path_document import make_plan
 from stairwright.planning.standing import NoStandingPose
 from stairwright.planning.strategy import solve
@@ -71,9 +72,7 @@ def plan_path(
     except NoStandingPose as error:
         return document(robot, problem=no_standing_pose(terrain, robot, error))
     except InputError as error:
-        at = terrain.points[0]
-        problem = Problem(kind="start", at=at, progress=0.0, message=str(error))
-        return document(robot, problem=problem)
+        return document(robot, problem=Problem.told("start", terrain.points[0], 0.0, str(error)))
     planner, found = _best(planners)
     robot = planner.robot
     if isinstance(found, Solved) and tolerance:

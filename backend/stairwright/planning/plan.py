@@ -12,14 +12,13 @@ from pydantic import Field, PlainSerializer, model_validator
 from stairwright.arguments import MOST_FRICTION
 from stairwright.documents import Deferred, Model, content_hash, deferrable, save
 from stairwright.errors import InputError
+from stairwright.planning.problem import Problem, Vector2
 from stairwright.planning.tolerance import Tolerance
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
 Method = Literal["path", "critical", "nominal"]
 PlanTiming = Literal["steady", "fast"]
-Vector2 = tuple[float, float]
-ProblemKind = Literal["reach", "clearance", "statics", "torque", "joint_limit", "start", "goal"]
 Vector4 = tuple[float, float, float, float]
 
 
@@ -52,30 +51,6 @@ class Pose(Model):
         None, description="static (tangential, normal) force of each wheel pair [N]"
     )
     margins: Margins
-
-
-class Limit(Model):
-    """The quantity that is missing: what would be needed, and what there is."""
-
-    needed: float
-    available: float
-    quantity: str = ""
-    unit: str = ""
-    confirmed: tuple[float, float] | None = Field(
-        None,
-        description="values asked of all of planning: with the first there is no plan, with the "
-        "second there is one, with everything else as it is",
-    )
-
-
-class Problem(Model):
-    """What stops the robot, where, and by how much."""
-
-    kind: ProblemKind
-    at: Vector2 = Field(description="place on the terrain [m]")
-    progress: float = Field(description="how far the plan gets [m]")
-    message: str
-    limit: Limit | None = None
 
 
 class Timing(Model):

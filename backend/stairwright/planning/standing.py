@@ -11,7 +11,7 @@ import numpy as np
 from stairwright import _core
 from stairwright.arguments import MOST_FRICTION
 from stairwright.arrays import Floats, Ints
-from stairwright.planning.plan import Limit
+from stairwright.planning.problem import Limit
 from stairwright.robot import kinematics
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain

@@ -17,7 +17,8 @@ from stairwright.planning.certificate.certify import tolerated
 from stairwright.planning.certificate.tolerance.checks import NAMES
 from stairwright.planning.extra_margins import NO_EXTRA, ExtraMargins
 from stairwright.planning.path_planner import PathPlanner
-from stairwright.planning.plan import Check, Limit, Problem, ProblemKind
+from stairwright.planning.plan import Check
+from stairwright.planning.problem import Limit, Problem, ProblemKind
 from stairwright.planning.strategy import keeping_extra_margins
 from stairwright.planning.tolerance import Tolerance
 
@@ -103,14 +104,9 @@ def tolerance_problem(fallen: Fallen, tolerance: Tolerance) -> Problem:
     motion = planner.motion(nodes)
     k = int(np.abs(motion.progress - progress).argmin())
     x, z = planner.path.contacts(nodes.s[k : k + 1, 0])[0].tolist()
-    return Problem(
-        kind=kind,
-        at=(x, z),
-        progress=progress,
-        message=f"Within the tolerance ({asked}) {words}; {low:.0%} of it is stood. "
-        "Without a tolerance there is a plan.",
-        limit=Limit(needed=1.0, available=low, quantity="share of the tolerance", unit="1"),
-    )
+    limit = Limit(needed=1.0, available=low, quantity="share of the tolerance", unit="1")
+    what = f"with no tolerance there is a plan, with {asked} {words}"
+    return Problem.told(kind, (x, z), progress, what, limit)
 
 
 def _checks(planner: PathPlanner, found: Solved, tolerance: Tolerance) -> list[Check]:

@@ -23,6 +23,10 @@ def _weight(default: float, low: float, high: float, unit: str, title: str, text
     )
 
 
+def _share(title: str, text: str) -> Any:
+    return _weight(1.0, 0.01, 100.0, "1", title, text)
+
+
 def _speed(**extra: str) -> Any:
     return Field(
         0.12,
@@ -58,47 +62,27 @@ class CriticalWeights(Model):
 class PathWeights(Model):
     """What the path planner trades off along the course."""
 
-    com_margin: float = _weight(
-        1.0,
-        0.01,
-        100.0,
-        "1",
+    com_margin: float = _share(
         "CoM margin",
         "Makes small what the centre of mass lacks to 60 mm of margin where a wheel may be 20 mm "
         "late [m, rms along the path, for legs of 0.4 m]",
     )
-    clearance: float = _weight(
-        1.0,
-        0.01,
-        100.0,
-        "1",
+    clearance: float = _share(
         "Clearance",
         "Makes small what the trunk lacks to 60 mm above the terrain, and links to what level "
         "ground gives them [m, rms along the path, for legs of 0.4 m]",
     )
-    torque: float = _weight(
-        1.0,
-        0.01,
-        100.0,
-        "1",
+    torque: float = _share(
         "Torque",
         "Makes static torque of the leg joints small "
         "[share of the motors' torque, rms along the path]",
     )
-    smoothness: float = _weight(
-        1.0,
-        0.01,
-        100.0,
-        "1",
+    smoothness: float = _share(
         "Smoothness",
         "Makes motion of the trunk small: travel per travel of the wheels, bends included "
         "[1, rms along the path]",
     )
-    pitch: float = _weight(
-        1.0,
-        0.01,
-        100.0,
-        "1",
+    pitch: float = _share(
         "Pitch",
         "Makes small how far the pitch is off 0.8 of the slope between the wheels "
         "[rad, rms along the path]",

@@ -49,11 +49,13 @@ _ROS_NAME = re.compile(r"[A-Za-z][\w/.-]{0,99}", re.ASCII)
 FOLDED = 3.1  # rad; a calf lies on its thigh at pi
 # Fields that documents of the first schema do not have.
 _NEW_IN_2: tuple[tuple[str, ...], ...] = (
-    ("source",), ("assumed",), ("payload",), ("rear",), ("abduction",), ("joint_frames",),
+    ("source",), ("assumed",), ("assumed_fields",), ("payload",), ("rear",), ("abduction",),
+    ("joint_frames",),
     ("trunk", "com"), ("trunk", "outline"), ("thigh", "shape"), ("calf", "shape"),
     ("wheel", "friction"), ("wheel", "rolling_resistance"),
     ("actuators", "thigh"), ("actuators", "calf"),
 )  # fmt: skip
+_TEXTS = {"description", "source", "assumed", "assumed_fields"}
 PLANAR_JOINTS = ("front_thigh", "front_calf", "rear_thigh", "rear_calf")
 
 
@@ -97,6 +99,12 @@ class Robot(Model):
     source: str = optional("", max_length=2000, description="where the numbers are from")
     assumed: list[str] = optional(
         [], max_length=200, description="numbers that nobody publishes, and what was taken"
+    )
+    assumed_fields: dict[str, Annotated[int, Field(ge=0)]] = optional(
+        {},
+        max_length=200,
+        description="which sentence of `assumed`, from 0, tells a field, by its path: "
+        "wheel.radius, rear.actuators.calf.torque",
     )
     nominal_height: Positive = Field(description="trunk centre above the ground, standing [m]")
     trunk: Trunk
@@ -161,6 +169,13 @@ class Robot(Model):
         return self
 
     @model_validator(mode="after")
+    def _check_assumed(self) -> Robot:
+        for path, sentence in self.assumed_fields.items():
+            if sentence >= len(self.assumed):
+                raise InputError("`assumed` has no such sentence", ("assumed_fields", path))
+        return self
+
+    @model_validator(mode="after")
     def _check_geometry(self) -> Robot:
         if self.hips.front[0] <= self.hips.rear[0]:
             raise InputError("the front hip must lie ahead of the rear hip", ("hips", "front"))
@@ -188,9 +203,7 @@ class Robot(Model):
     @cached_property
     def hash(self) -> str:
         """Hash of everything but the texts."""
-        return content_hash(
-            self.model_dump(mode="json", exclude={"description", "source", "assumed"})
-        )
+        return content_hash(self.model_dump(mode="json", exclude=_TEXTS))
 
     def save(self, path: str) -> None:
         """Write the robot; the ending of `path` picks the format (yaml, json, urdf, mjcf)."""

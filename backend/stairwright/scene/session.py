@@ -2,36 +2,29 @@
 
 from __future__ import annotations
 
-import logging
 import threading
 import time as clock
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import rich
 
-from stairwright.documents import parse
 from stairwright.errors import InputError
-from stairwright.library import load_robot
-from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
 from . import camera as cameras
 from . import client_page
-from .motion import Moment, Motion, from_plan, from_rollout
+from .motion import Moment
 from .palette import palette
 from .panel import Panel
 from .player import Player
 from .private_server import PrivateServer
+from .shown import Document, Shown
 from .stage import Stage, check_layers
 from .viewers import Viewers
 
-log = logging.getLogger(__name__)
 Replan = Callable[[dict[str, float]], None]
-
-_END = 0.05  # s before its last sample, from when on a rollout that failed is marked
 
 
 class SceneSession:
@@ -52,10 +45,8 @@ class SceneSession:
         self.id = session_id
         self.last_used = clock.monotonic()
         self._lock = threading.RLock()
-        self._plan: Mapping[str, Any] | None = None
-        self._rollout: Mapping[str, Any] | None = None
-        self._compared: Mapping[str, Any] | None = None
-        self._motion: Motion | None = None
+        self._shown = Shown()
+        self._compared: Document | None = None
         self._terrain_name: str | None = None
         self._closed = False
         # viser announces each server on the terminal; a service that opens many must not.
@@ -97,8 +88,8 @@ class SceneSession:
 
     def show(
         self,
-        plan: Mapping[str, Any] | None = None,
-        rollout: Mapping[str, Any] | None = None,
+        plan: Document | None = None,
+        rollout: Document | None = None,
         theme: str | None = None,
         layers: Mapping[str, bool] | None = None,
     ) -> None:
@@ -121,18 +112,16 @@ class SceneSession:
                 self._apply_theme(colours.theme)
                 self._draw_compared()
             self._stage.show_layers(wanted)
-            if plan is None and rollout is not None:
-                plan = rollout.get("plan")
-            self._plan, self._rollout = plan, rollout
+            self._shown = shown = Shown(plan, rollout)
             self._redraw()
-            duration = 0.0 if self._motion is None else self._motion.duration
+            duration = 0.0 if shown.motion is None else shown.motion.duration
             # With the plan, in one batch: viewers draw once, and never one plan's robot on another.
             self._draw_moment(min(self._player.time, duration))
-            self._panel.show(plan, rollout, self._motion, self._stage.colours)
+            self._panel.show(shown.plan, rollout, shown.motion, self._stage.colours)
             self._panel.show_layers(wanted)
         self._player.set(duration=duration)
 
-    def compare(self, plan: Mapping[str, Any] | None) -> None:
+    def compare(self, plan: Document | None) -> None:
         """Show a second plan's robot beside the first, at the same place; None shows none."""
         self._touch()
         with self._lock, self._server.atomic():
@@ -141,9 +130,9 @@ class SceneSession:
         self._player.set()  # draws the present moment anew
 
     @property
-    def plan(self) -> Mapping[str, Any] | None:
+    def plan(self) -> Document | None:
         """The plan that is shown."""
-        return self._plan
+        return self._shown.plan
 
     @property
     def compared(self) -> str | None:
@@ -152,7 +141,7 @@ class SceneSession:
 
     def set_view(self, theme: str | None = None, layers: Mapping[str, bool] | None = None) -> None:
         """Change theme or layers and keep what is shown."""
-        self.show(self._plan, self._rollout, theme, layers)
+        self.show(self._shown.plan, self._shown.rollout, theme, layers)
 
     def set_layers(self, layers: Mapping[str, bool]) -> None:
         """Show or hide layers and leave everything else.
@@ -191,7 +180,7 @@ class SceneSession:
             raise InputError("must be above 0 and at most 20", ("speed",))
         self._touch()
         with self._lock:
-            motion = self._motion
+            motion = self._shown.motion
         if time is None and progress is not None and motion is not None:
             time = motion.time_at(progress)
         self._player.set(time=time, playing=playing, speed=speed)
@@ -205,7 +194,7 @@ class SceneSession:
         preset = cameras.check(name)
         self._touch()
         with self._lock:
-            motion = self._motion
+            motion = self._shown.motion
         self._viewers.look(preset, None if motion is None else motion.position)
 
     def close(self) -> None:
@@ -234,42 +223,26 @@ class SceneSession:
         )
 
     def _draw_compared(self) -> None:
-        plan = self._compared
-        robot = None if plan is None else _robot_of(plan)
-        motion = None if plan is None or robot is None else from_plan(plan, robot)
-        self._stage.draw_rival(robot, motion)
+        rival = Shown(self._compared)
+        self._stage.draw_rival(rival.robot, rival.planned)
 
     def _redraw(self) -> None:
-        plan, rollout = self._plan, self._rollout
-        source = plan or rollout
-        if source is None:
-            self._motion = None
-            self._stage.draw_terrain(None)
-            self._stage.draw_plan(None, None)
-            return
-        terrain = parse(Terrain, source["terrain"])
-        robot = _robot_of(source)
-        self._stage.draw_terrain(terrain, source.get("friction"))
-        self._viewers.floor = float(terrain.vertices[:, 1].min())
-        self._stage.set_robot(robot)
-        planned = None if plan is None else from_plan(plan, robot)
-        run = None if rollout is None else from_rollout(rollout)
-        self._motion = run or planned
-        self._stage.draw_plan(plan, planned)
-        if terrain.name != self._terrain_name:
+        shown, stage = self._shown, self._stage
+        stage.draw_terrain(shown.terrain, shown.friction)
+        if shown.terrain is not None:
+            self._viewers.floor = float(shown.terrain.vertices[:, 1].min())
+        if shown.robot is not None:
+            stage.set_robot(shown.robot)
+        stage.draw_plan(shown.plan, shown.planned)
+        if shown.terrain is not None and shown.terrain.name != self._terrain_name:
             # A new course is looked at afresh; an edited one keeps the user's camera.
-            self._look_at_course(terrain, plan)
+            self._look_at_course(shown.terrain)
 
-    def _look_at_course(self, terrain: Terrain, plan: Mapping[str, Any] | None) -> None:
-        if self._motion is not None:
-            course = self._motion.position
-            robot = self._motion.at(self._player.time).position
-        elif plan is not None and plan.get("problem") is not None:
-            x, z = plan["problem"]["at"]  # no pose was found: where one should be
-            robot = np.array([x, 0.0, z])
-            course = robot[None]
-        else:
+    def _look_at_course(self, terrain: Terrain) -> None:
+        robot, motion = self._shown.place(self._player.time), self._shown.motion
+        if robot is None:
             return
+        course = robot[None] if motion is None else motion.position
         self._terrain_name = terrain.name
         self._viewers.look_afresh(robot, cameras.following_direction(course, terrain.vertices))
 
@@ -285,20 +258,8 @@ class SceneSession:
             self._panel.tick(time)
 
     def _draw_moment(self, time: float) -> Moment | None:
-        motion = self._motion
+        motion = self._shown.motion
         moment = None if motion is None else motion.at(time)
         progress = 0.0 if motion is None else motion.progress_at(time)
-        self._stage.draw_moment(progress, moment, self._failed_by(time))
+        self._stage.draw_moment(progress, moment, self._shown.failed_by(time))
         return moment
-
-    def _failed_by(self, time: float) -> bool:
-        """Whether the rollout that is shown has ended by `time` [s] without success."""
-        if self._rollout is None or self._motion is None:
-            return False
-        return self._rollout["outcome"] != "success" and time >= self._motion.duration - _END
-
-
-def _robot_of(document: Mapping[str, Any]) -> Robot:
-    """The robot that a document was made with: embedded, else by name."""
-    embedded = document.get("robot_description")
-    return parse(Robot, embedded) if embedded is not None else load_robot(document["robot"])

@@ -19,6 +19,7 @@ from stairwright.robot.legs import LinkForm
 from stairwright.robot.parts import Outline
 
 HALF_WIDTH = 0.5  # m, of the extruded terrain
+_STEEP = 1.0  # rad; faces that are steeper count as risers
 
 
 class Mesh(NamedTuple):
@@ -94,7 +95,7 @@ def disc(radius: float, width: float, chamfer: float, segments: int = 24) -> Mes
     return revolved(rings, segments, capped=True)
 
 
-def ring(outer: float, inner: float, width: float, chamfer: float, segments: int = 28) -> Mesh:
+def ring(outer: float, inner: float, width: float, chamfer: float) -> Mesh:
     """A tyre about y: a ring of rectangular section with chamfered shoulders [m]."""
     section = [
         (inner, -width / 2),
@@ -105,7 +106,7 @@ def ring(outer: float, inner: float, width: float, chamfer: float, segments: int
         (inner, width / 2),
         (inner, -width / 2),
     ]
-    return revolved(section, segments, capped=False)
+    return revolved(section, 28, capped=False)
 
 
 def revolved(section: list[tuple[float, float]], segments: int, capped: bool) -> Mesh:
@@ -199,13 +200,12 @@ def tyre(robot: Robot) -> Mesh:
     return ring(r, 0.72 * r, robot.wheel.width, 0.10 * r)
 
 
-def rim(robot: Robot, spokes: int = 5) -> Mesh:
+def rim(robot: Robot) -> Mesh:
     """Hub and spokes, so that the wheel's rotation can be seen."""
     r, w = robot.wheel.radius, robot.wheel.width
     parts = [disc(0.30 * r, 1.10 * w, 0.05 * r, 24), ring(0.76 * r, 0.66 * r, 0.9 * w, 0.02 * r)]
     bar = rounded_box((0.13 * r, 0.55 * w, 0.50 * r), 0.02 * r)
-    for k in range(spokes):
-        a = 2 * math.pi * k / spokes
+    for a in np.linspace(0.0, 2 * math.pi, 5, endpoint=False):
         c, s = math.cos(a), math.sin(a)
         turn = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
         parts.append(Mesh((bar.vertices + np.array([0, 0, 0.47 * r])) @ turn.T, bar.faces))
@@ -230,10 +230,10 @@ class Extrusion(NamedTuple):
     edges: Floats
 
 
-def extrude(vertices: Floats, half_width: float, depth: float, steep: float = 1.0) -> Extrusion:
+def extrude(vertices: Floats, half_width: float, depth: float) -> Extrusion:
     """Solid below the profile `vertices` (n, 2), from y = -half_width to half_width [m].
 
-    Faces steeper than `steep` [rad] count as risers. The floor lies `depth` below the lowest point.
+    The floor lies `depth` below the lowest point.
     """
     floor = float(vertices[:, 1].min()) - depth
     a, b = vertices[:-1], vertices[1:]
@@ -246,7 +246,7 @@ def extrude(vertices: Floats, half_width: float, depth: float, steep: float = 1.
         (a[:, 0], a[:, 1], w), (a[:, 0], a[:, 1], -w), (b[:, 0], b[:, 1], -w), (b[:, 0], b[:, 1], w)
     )
     step = np.abs(b - a)
-    is_riser = np.arctan2(step[:, 1], step[:, 0]) > steep
+    is_riser = np.arctan2(step[:, 1], step[:, 0]) > _STEEP
     level = np.full(len(a), floor)
     right = quad(
         (a[:, 0], level, -w), (b[:, 0], level, -w), (b[:, 0], b[:, 1], -w), (a[:, 0], a[:, 1], -w)

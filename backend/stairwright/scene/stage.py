@@ -39,6 +39,7 @@ LAYERS = {
 DEPTH = 0.25  # m, of solid below its lowest point
 GHOST_SPACING = 0.20  # m between trunks; nearer ghosts hide one another
 MAX_GHOSTS = 20
+DASH = 0.022  # m
 
 
 def check_layers(layers: Mapping[str, Any]) -> dict[str, bool]:
@@ -289,11 +290,11 @@ def _apart(moments: list[Moment], spacing: float) -> list[Moment]:
     return kept
 
 
-def _dashes(course: Floats, dash: float = 0.022) -> Floats:
+def _dashes(course: Floats) -> Floats:
     """Every second piece (k, 2, 3) of a polyline (n, 3) cut evenly by arc length."""
     step = np.hypot(*np.diff(course[:, [0, 2]], axis=0).T)
     s = np.concatenate([[0.0], np.cumsum(step)])
-    grid = np.arange(0.0, s[-1], dash)
+    grid = np.arange(0.0, s[-1], DASH)
     points = np.column_stack([np.interp(grid, s, column) for column in course.T])
     count = len(points) // 2 * 2
     return points[:count].reshape(-1, 2, 3)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 
 import numpy as np
 
@@ -56,13 +55,3 @@ def coarse_first(axes: Sequence[Axis]) -> Ints:
     cells = np.arange(level.size).reshape(shape).transpose(friction_last).ravel()
     ordered: Ints = cells[np.argsort(-level.ravel()[cells], kind="stable")]
     return ordered
-
-
-@lru_cache(maxsize=8)
-def _strides(shape: tuple[int, ...]) -> tuple[int, ...]:
-    return tuple(int(np.prod(shape[k + 1 :], dtype=np.int64)) for k in range(len(shape)))
-
-
-def number(shape: tuple[int, ...], indices: Sequence[int]) -> int:
-    """The number of the cell at `indices`."""
-    return sum(i * step for i, step in zip(indices, _strides(shape), strict=True))

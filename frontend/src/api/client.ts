@@ -30,6 +30,10 @@ export class ApiError extends Error {
 /** The service did not answer at all: stopped, restarting, or the network is gone. */
 export class Offline extends Error {}
 
+/** What went wrong, in a sentence. */
+export const reasonOf = (error: unknown) =>
+  error instanceof Error ? error.message : String(error);
+
 function sentence(problem: ProblemDetail, status: number): string {
   const first = problem.errors?.[0];
   if (first) return first.field ? `${first.field}: ${first.message}` : first.message;
@@ -61,7 +65,7 @@ export async function call(
   throw new ApiError(response.status, problem);
 }
 
-export async function json<T>(
+export async function callJson<T>(
   method: string,
   path: string,
   body?: unknown,
@@ -70,17 +74,14 @@ export async function json<T>(
   return (await (await call(method, path, body, signal)).json()) as T;
 }
 
-/** For calls that one workspace alone makes. */
-export { call as callService, json as callJson };
-
-export const getTerrains = () => json<TerrainDocument[]>("GET", "terrains");
-export const getRobots = () => json<RobotDocument[]>("GET", "robots");
-export const getSettings = () => json<Settings>("GET", "settings");
-export const getPlan = (id: string) => json<Plan>("GET", `plans/${id}`);
-export const getRollout = (id: string) => json<Rollout>("GET", `rollouts/${id}`);
-export const getJob = (id: string) => json<Job>("GET", `jobs/${id}`);
+export const getTerrains = () => callJson<TerrainDocument[]>("GET", "terrains");
+export const getRobots = () => callJson<RobotDocument[]>("GET", "robots");
+export const getSettings = () => callJson<Settings>("GET", "settings");
+export const getPlan = (id: string) => callJson<Plan>("GET", `plans/${id}`);
+export const getRollout = (id: string) => callJson<Rollout>("GET", `rollouts/${id}`);
+export const getJob = (id: string) => callJson<Job>("GET", `jobs/${id}`);
 export const postPlan = (request: PlanRequest, signal?: AbortSignal) =>
-  json<Plan>("POST", "plans", request, signal);
+  callJson<Plan>("POST", "plans", request, signal);
 
 export async function ping(): Promise<number> {
   const started = performance.now();
@@ -90,14 +91,14 @@ export async function ping(): Promise<number> {
 
 export const putTerrain = (terrain: TerrainDocument) => {
   const { readonly: _, ...document } = terrain;
-  return json<TerrainDocument>("PUT", `terrains/${encodeURIComponent(terrain.name)}`, document);
+  return callJson<TerrainDocument>("PUT", `terrains/${encodeURIComponent(terrain.name)}`, document);
 };
 
 export const deleteTerrain = (name: string) =>
   call("DELETE", `terrains/${encodeURIComponent(name)}`);
 
 export const putRobot = (robot: SentRobot) =>
-  json<RobotDocument>("PUT", `robots/${encodeURIComponent(robot.name)}`, robot);
+  callJson<RobotDocument>("PUT", `robots/${encodeURIComponent(robot.name)}`, robot);
 
 export const deleteRobot = (name: string) => call("DELETE", `robots/${encodeURIComponent(name)}`);
 
@@ -109,7 +110,7 @@ function sent(file: File, fields: Record<string, string>): FormData {
 }
 
 export const importRobot = (file: File, abort?: AbortSignal) =>
-  json<ImportedRobot>("POST", "robots/import", sent(file, {}), abort);
+  callJson<ImportedRobot>("POST", "robots/import", sent(file, {}), abort);
 
 /** A robot as a file for other tools, whether it is saved or not. */
 export async function robotFile(robot: SentRobot, format: string): Promise<Blob> {
@@ -117,15 +118,15 @@ export async function robotFile(robot: SentRobot, format: string): Promise<Blob>
 }
 
 export const generateTerrain = (parameters: Record<string, unknown>) =>
-  json<TerrainDocument>("POST", "terrains/generate", parameters);
+  callJson<TerrainDocument>("POST", "terrains/generate", parameters);
 
 export function importTerrain(file: File, fields: Record<string, string>, abort?: AbortSignal) {
-  return json<TerrainDocument>("POST", "terrains/import", sent(file, fields), abort);
+  return callJson<TerrainDocument>("POST", "terrains/import", sent(file, fields), abort);
 }
 
 /** A mesh from above, in units of the file. */
 export const lookAtMesh = (file: File, up: "z" | "y") =>
-  json<MeshHeights>("POST", "terrains/import/heights", sent(file, { up }));
+  callJson<MeshHeights>("POST", "terrains/import/heights", sent(file, { up }));
 
 export interface RolloutRequest {
   plan_id: string;
@@ -135,7 +136,7 @@ export interface RolloutRequest {
   disturbance: SettingValues;
 }
 
-export const postRollout = (request: RolloutRequest) => json<Job>("POST", "rollouts", request);
+export const postRollout = (request: RolloutRequest) => callJson<Job>("POST", "rollouts", request);
 
 export interface TrialsRequest extends Omit<RolloutRequest, "disturbance"> {
   count: number;
@@ -143,8 +144,8 @@ export interface TrialsRequest extends Omit<RolloutRequest, "disturbance"> {
   bundle: string;
 }
 
-export const postTrials = (request: TrialsRequest) => json<Job>("POST", "trials", request);
-export const getTrials = (id: string) => json<Trials>("GET", `trials/${id}`);
+export const postTrials = (request: TrialsRequest) => callJson<Job>("POST", "trials", request);
+export const getTrials = (id: string) => callJson<Trials>("GET", `trials/${id}`);
 export const cancelJob = (id: string) => call("DELETE", `jobs/${id}`);
 export const jobEvents = (id: string) => new EventSource(`${BASE}/jobs/${id}/events`);
 
@@ -153,7 +154,7 @@ export interface Session {
   scene: string;
 }
 
-export const postSession = () => json<Session>("POST", "sessions");
+export const postSession = () => callJson<Session>("POST", "sessions");
 export const putScene = (id: string, body: Record<string, unknown>) =>
   call("PUT", `sessions/${id}/scene`, body);
 export const putPlayback = (id: string, body: Record<string, unknown>) =>

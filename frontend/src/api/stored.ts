@@ -1,6 +1,6 @@
 /** Lists of stored plans, rollouts and sets of trials; what users note about them. */
 
-import { call, json } from "./client";
+import { call, callJson } from "./client";
 import type { components } from "./schema";
 import type {
   Facing,
@@ -76,6 +76,6 @@ export async function listStored(
 }
 
 export const patchStored = async ({ kind, id }: Entry, changes: EntryChanges): Promise<Entry> => ({
-  ...(await json<Omit<Entry, "kind">>("PATCH", `${kind}/${id}`, changes)),
+  ...(await callJson<Omit<Entry, "kind">>("PATCH", `${kind}/${id}`, changes)),
   kind,
 });

@@ -48,47 +48,11 @@ export type Plan = Omit<Schemas["Plan"], "terrain" | "problem" | "certificate" |
   poses: Pose[];
 };
 
-export type Outcome =
-  | "success"
-  | "fell"
-  | "stuck"
-  | "collided"
-  | "diverged"
-  | "timeout"
-  | "stopped";
-
-export interface Metrics {
-  duration: number;
-  pitch_error_max: number;
-  pitch_error_rms: number;
-  joint_error_rms: number;
-  torque_peak: number;
-  wheel_torque_peak: number;
-  torque_rms?: number | null;
-  continuous_share?: number | null;
-  energy: number;
-  link_contacts: number;
-  speed_mean: number;
-  speed_stairs?: number | null;
-  cost_of_transport?: number | null;
-  real_time_factor: number;
-}
-
-export interface Series {
-  time: number[];
-  base_position: number[][];
-  base_quaternion: number[][];
-  q: number[][];
-  q_desired: number[][];
-  /** Speeds, torques and forces come with the end of a rollout. */
-  dq?: number[][];
-  torque?: number[][];
-  pitch: number[];
-  pitch_desired: number[];
-  progress: number[];
-  progress_desired?: number[];
-  contact_force?: number[][][];
-}
+export type Outcome = Schemas["Rollout"]["outcome"];
+export type Metrics = Schemas["Metrics"];
+/** Speeds, torques and forces come with the end of a rollout. */
+type AtTheEnd = "dq" | "torque" | "progress_desired" | "contact_force";
+export type Series = Omit<Schemas["Series"], AtTheEnd> & Partial<Pick<Schemas["Series"], AtTheEnd>>;
 
 /** What can be played: a rollout, or as much of it as there is yet. */
 export interface Drive {
@@ -100,18 +64,7 @@ export interface Drive {
 export const hasFailed = (drive: Drive | null): boolean =>
   drive !== null && drive.outcome !== "success" && drive.outcome !== "running";
 
-export interface Rollout extends Drive {
-  schema: string;
-  id: string;
-  plan_id?: string;
-  outcome: Outcome;
-  seed?: number;
-  controller?: Schemas["ControllerSettings"];
-  reason?: string | null;
-  metrics: Metrics;
-  series: Series;
-}
-
+export type Rollout = Schemas["Rollout"];
 export type Trials = Schemas["Trials"];
 export type Trial = Schemas["Trial"];
 
@@ -123,12 +76,7 @@ export type MeshHeights = Omit<Schemas["MeshHeights"], "low" | "high"> & {
 };
 
 /** RFC 9457. */
-export interface ProblemDetail {
-  title?: string;
-  status?: number;
-  detail?: string;
-  errors?: { field: string; message: string }[];
-}
+export type ProblemDetail = Partial<Schemas["ProblemDocument"]>;
 
 export type ExportFormat = Schemas["ExportFormat"];
 

@@ -1,8 +1,9 @@
 /** What designs reach: two aims against each other, or one aim over the designs as they were tried. */
 
 import { signal } from "@preact/signals";
-import { useLayoutEffect, useRef } from "preact/hooks";
+import { useRef } from "preact/hooks";
 import { roundStep } from "../map/scale";
+import { useMeasured } from "../ui/measured";
 import { useRoving } from "../ui/roving";
 import { openDesign } from "./open-robot";
 import { across, aimName, type Candidate, front, inView, pointAt, search } from "./state";
@@ -73,17 +74,9 @@ interface Point {
 }
 
 export function Front() {
-  const holder = useRef<HTMLDivElement>(null);
-  useLayoutEffect(() => {
-    const element = holder.current!;
-    const measure = () => {
-      room.value = { width: element.clientWidth, height: element.clientHeight };
-    };
-    measure();
-    const observer = new ResizeObserver(measure);
-    observer.observe(element);
-    return () => observer.disconnect();
-  }, []);
+  const holder = useMeasured((element) => {
+    room.value = { width: element.clientWidth, height: element.clientHeight };
+  });
   return (
     <div class="design-front" ref={holder}>
       <Drawing />

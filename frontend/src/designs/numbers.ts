@@ -1,5 +1,7 @@
 /** Numbers of a robot's file that a search may vary, and the bounds that it begins with. */
 
+import { numberAt } from "../robot/quantity";
+
 export interface Varied {
   /** As the search calls it: the path in the robot's file. */
   name: string;
@@ -26,14 +28,9 @@ export const NUMBERS: readonly Varied[] = [
   { name: "robot.trunk.mass", title: "Trunk mass", unit: "kg", digits: 2, shares: [0.7, 1.3] },
 ];
 
-/** A number of a robot's file by its path, such as `robot.calf.length`; null where there is none. */
-export function numberOf(robot: unknown, name: string): number | null {
-  let at: unknown = robot;
-  for (const part of name.replace(/^robot\./, "").split(".")) {
-    at = at && typeof at === "object" ? (at as Record<string, unknown>)[part] : undefined;
-  }
-  return typeof at === "number" ? at : null;
-}
+/** A number of a robot's file by its name, such as `robot.calf.length`. */
+export const numberOf = (robot: unknown, name: string): number | null =>
+  numberAt(robot, name.replace(/^robot\./, ""));
 
 /** Bounds round the robot's own number, as they are shown. */
 export function boundsRound(number: Varied, value: number): [number, number] {

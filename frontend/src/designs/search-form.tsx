@@ -5,6 +5,7 @@ import { Segments } from "../inspector/segments";
 import { manner } from "../map/form";
 import { drawing } from "../state/drawing";
 import { robotName } from "../state/setup";
+import { CountField } from "../ui/count-field";
 import { NumberField } from "../ui/number-field";
 import type { AimChoice } from "./aims";
 import {
@@ -194,15 +195,7 @@ function Count({ label, before, after, value, most, set }: CountProps) {
   return (
     <div class="range count">
       <span>{before}</span>
-      <NumberField
-        label={label}
-        value={value}
-        min={1}
-        max={most}
-        step={1}
-        format={(v) => fixed(v, 0)}
-        onChange={(next) => set(Math.round(next))}
-      />
+      <CountField label={label} value={value} max={most} onChange={set} />
       <span>{after}</span>
     </div>
   );

@@ -1,7 +1,7 @@
 /** Design searches of this service: which there are, the one that is shown, the design in view. */
 
 import { batch, computed, effect, signal } from "@preact/signals";
-import { ApiError, BASE, call, callJson } from "../api/client";
+import { ApiError, BASE, call, callJson, reasonOf } from "../api/client";
 import type { components } from "../api/schema";
 import { report } from "../state/connection";
 import { readFlag, kept as remembered } from "../state/kept";
@@ -82,7 +82,7 @@ function show(found: Search): void {
 
 function say(error: unknown): void {
   report(error);
-  trouble.value = error instanceof Error ? error.message : String(error);
+  trouble.value = reasonOf(error);
 }
 
 /** The search that was asked for last: answers about others come too late. */
@@ -132,12 +132,7 @@ async function submit(document: unknown): Promise<void> {
     await Promise.all([readList(), openSearch(begun.id)]);
   } catch (error) {
     report(error);
-    refusal.value =
-      error instanceof ApiError
-        ? refused(error)
-        : error instanceof Error
-          ? error.message
-          : String(error);
+    refusal.value = error instanceof ApiError ? refused(error) : reasonOf(error);
   }
 }
 

@@ -15,7 +15,7 @@ import {
   slices,
   study,
 } from "./state";
-import { contents, shownAxes } from "./view";
+import { shownAxes } from "./view";
 
 export interface CellFacts {
   /** Number in the study. */
@@ -140,11 +140,3 @@ export function spoken(place: Place): string {
   const told = row ? `, ${row.name.toLowerCase()} ${row.value} ${row.unit}` : "";
   return `${facts.title}: feasible${told}${binds ? `, ${binds.value} binds` : ""}`;
 }
-
-/** Number in the study that the colour of a place comes from. */
-export const valueAt = (place: Place): number => {
-  const content = contents.value.list[place.panel];
-  return content
-    ? (content.values[place.j * content.field.nx + place.i] ?? Number.NaN)
-    : Number.NaN;
-};

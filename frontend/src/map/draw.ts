@@ -3,8 +3,8 @@
 import { fixed } from "../geometry/format";
 import { CODES, outline } from "./codes";
 import { contour, smoothed } from "./contours";
-import { type Field, PASSES, STOPPED, UNKNOWN } from "./cube";
-import { type Frame, type Panel, toX, toY } from "./frame";
+import { type Field, STOPPED, UNKNOWN } from "./cube";
+import { type Panel, toX, toY } from "./frame";
 import { type Ink, inkOn, shade, side } from "./palette";
 import { type AxisKind, type Quantity, reasonWords } from "./quantities";
 import { borders, regions } from "./regions";
@@ -285,8 +285,3 @@ function codeShapes(panel: Panel, look: Look): Shape[] {
   }
   return [...out, ...tags];
 }
-
-/** Whether anything of a field can be drawn. */
-export const anyKnown = (frame: Frame, fields: readonly Field[]): boolean =>
-  frame.panels.length > 0 &&
-  fields.some((field) => field.verdict.some((v) => v === PASSES || v === STOPPED));

@@ -1,7 +1,7 @@
 /** A cell as a plan in the editor: all that it was asked with. */
 
 import { batch } from "@preact/signals";
-import { callJson } from "../api/client";
+import { callJson, reasonOf } from "../api/client";
 import type {
   FacingChoice,
   Method,
@@ -72,7 +72,7 @@ export async function openCell(place: Place): Promise<void> {
     fit(question.terrain.points);
   } catch (error) {
     report(error);
-    toast.value = { text: error instanceof Error ? error.message : String(error) };
+    toast.value = { text: reasonOf(error) };
   }
 }
 

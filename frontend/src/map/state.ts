@@ -1,7 +1,7 @@
 /** The study that the Map shows: asked, followed as its cells come, cancelled, opened again. */
 
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
-import { ApiError } from "../api/client";
+import { ApiError, reasonOf } from "../api/client";
 import { report } from "../state/connection";
 import { removal } from "../state/removal";
 import { decode, encode, given, kept } from "../state/share";
@@ -91,7 +91,7 @@ function say(error: unknown): void {
   report(error);
   if (error instanceof ApiError && error.status === 501) {
     missing.value = error.problem.detail ?? error.message;
-  } else refusal.value = error instanceof Error ? error.message : String(error);
+  } else refusal.value = reasonOf(error);
 }
 
 /** Ask what the form says, or go on with it: the same question is the same study. */

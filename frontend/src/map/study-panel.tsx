@@ -4,6 +4,7 @@ import { RoomTabs } from "../designs/room-tabs";
 import { fixed } from "../geometry/format";
 import { drawing } from "../state/drawing";
 import { robotName, robots } from "../state/setup";
+import { CountField } from "../ui/count-field";
 import { Icon } from "../ui/icon";
 import { Menu, MenuItem } from "../ui/menu";
 import { NumberField } from "../ui/number-field";
@@ -124,9 +125,18 @@ function Presets() {
 function AxisFields({ which, range }: { which: "x" | "y"; range: Range }) {
   const kind = axisKind(range.name);
   const set = (part: Partial<Range>) => change({ [which]: { ...range, ...part } });
-  const format = (v: number) => fixed(v, kind.digits);
   const [least, most] = kind.limits;
-  const step = 10 ** -Math.min(2, kind.digits);
+  const end = (part: "from" | "to") => (
+    <NumberField
+      label={`${kind.title} ${part}`}
+      value={range[part]}
+      min={least}
+      max={most}
+      step={10 ** -Math.min(2, kind.digits)}
+      format={(v) => fixed(v, kind.digits)}
+      onChange={(value) => set({ [part]: value })}
+    />
+  );
   return (
     <div class="axis">
       <div class="pick">
@@ -144,35 +154,17 @@ function AxisFields({ which, range }: { which: "x" | "y"; range: Range }) {
         </select>
       </div>
       <div class="range">
-        <NumberField
-          label={`${kind.title} from`}
-          value={range.from}
-          min={least}
-          max={most}
-          step={step}
-          format={format}
-          onChange={(from) => set({ from })}
-        />
+        {end("from")}
         <span>to</span>
-        <NumberField
-          label={`${kind.title} to`}
-          value={range.to}
-          min={least}
-          max={most}
-          step={step}
-          format={format}
-          onChange={(to) => set({ to })}
-        />
+        {end("to")}
         <span class="unit">{kind.unit}</span>
-        <NumberField
+        <CountField
           label={`${kind.title}, number of values`}
           value={range.count}
           min={2}
           max={200}
-          step={1}
           class="few"
-          format={(v) => fixed(v, 0)}
-          onChange={(count) => set({ count: Math.round(count) })}
+          onChange={(count) => set({ count })}
         />
         <span>values</span>
       </div>
@@ -206,15 +198,12 @@ function Steps() {
   return (
     <div class="range steps">
       <span>Steps</span>
-      <NumberField
+      <CountField
         label="Number of steps"
         value={form.value.steps}
-        min={1}
         max={50}
-        step={1}
         class="few"
-        format={(v) => fixed(v, 0)}
-        onChange={(steps) => change({ steps: Math.round(steps) })}
+        onChange={(steps) => change({ steps })}
       />
     </div>
   );

@@ -4,7 +4,8 @@ import uPlot from "uplot";
 import { fixed } from "../geometry/format";
 import { decimate } from "./decimate";
 import { type LimitLine, limitText } from "./limits";
-import type { Color, Line, Panel } from "./lines";
+import type { Line, Panel } from "./lines";
+import type { Palette } from "./palette";
 
 export const LEFT = 34;
 export const RIGHT = 8;
@@ -13,28 +14,6 @@ const BOTTOM = 20;
 const FONT = "10px InterVariable, Inter, system-ui, sans-serif";
 /** Share of the height that each of two halves takes. */
 const HALF = 0.46;
-
-export type Palette = Record<Color | "line" | "bad" | "badSoft" | "acSoft" | "s0" | "bg", string>;
-
-export function palette(): Palette {
-  const css = getComputedStyle(document.documentElement);
-  const of = (name: string) => css.getPropertyValue(name).trim();
-  return {
-    tx: of("--tx"),
-    tx2: of("--tx2"),
-    tx3: of("--tx3"),
-    front: of("--front"),
-    rear: of("--rear"),
-    third: of("--third"),
-    fourth: of("--fourth"),
-    line: of("--line"),
-    bad: of("--bad"),
-    badSoft: of("--bad-soft"),
-    acSoft: of("--ac-soft"),
-    s0: of("--s0"),
-    bg: of("--bg1"),
-  };
-}
 
 /** A stretch of time with a tint: what has run, where it fell, what is not planned. */
 export interface Tint {

@@ -19,6 +19,15 @@ import {
 
 const NOSE_UP = -1;
 
+/** A line whose value the header tells. */
+const line = (
+  label: string,
+  color: Color,
+  values: Float64Array,
+  name: string,
+  digits: number,
+): Line => ({ label, color, kind: "line", values, read: { name, digits } });
+
 function pitchPanel(source: Source, time: Float64Array): Panel {
   const { run, runB } = source;
   const nose = (v: number) => NOSE_UP * degrees(v);
@@ -52,20 +61,24 @@ function pitchPanel(source: Source, time: Float64Array): Panel {
   }
   if (run) {
     const { pitch, pitch_desired } = run.series;
-    top.push({
-      label: "actual",
-      color: "tx",
-      kind: "line",
-      values: sampled(time, run, (i) => nose(pitch[i]!)),
-      read: { name: "", digits: 1 },
-    });
-    error.push({
-      label: "error",
-      color: "tx2",
-      kind: "line",
-      values: sampled(time, run, (i) => nose(pitch[i]! - pitch_desired[i]!)),
-      read: { name: "err", digits: 1 },
-    });
+    top.push(
+      line(
+        "actual",
+        "tx",
+        sampled(time, run, (i) => nose(pitch[i]!)),
+        "",
+        1,
+      ),
+    );
+    error.push(
+      line(
+        "error",
+        "tx2",
+        sampled(time, run, (i) => nose(pitch[i]! - pitch_desired[i]!)),
+        "err",
+        1,
+      ),
+    );
   }
   return {
     id: "pitch",
@@ -99,13 +112,15 @@ function jointPanel(id: "thigh" | "calf", source: Source, time: Float64Array): P
     ];
     if (source.run) {
       const { q } = source.run.series;
-      lines.push({
-        label: `${color} actual`,
-        color,
-        kind: "line",
-        values: sampled(time, source.run, (i) => degrees(planar(q[i]!)[joint]!)),
-        read: { name: color, digits: 0 },
-      });
+      lines.push(
+        line(
+          `${color} actual`,
+          color,
+          sampled(time, source.run, (i) => degrees(planar(q[i]!)[joint]!)),
+          color,
+          0,
+        ),
+      );
     }
     return lines;
   };
@@ -131,27 +146,9 @@ function torquePanel(source: Source, time: Float64Array): Panel {
     if (source.limits) limits = limitLines(source.limits, ["thigh", "calf", "wheel"]);
     const of = (columns: number[]) => sampled(time, run, (i) => largest(torque[i]!, columns));
     lines.push(
-      {
-        label: "front leg",
-        color: "front",
-        kind: "line",
-        values: of([0, 1, 3, 4]),
-        read: { name: "", digits: 1 },
-      },
-      {
-        label: "rear leg",
-        color: "rear",
-        kind: "line",
-        values: of([6, 7, 9, 10]),
-        read: { name: "", digits: 1 },
-      },
-      {
-        label: "wheel",
-        color: "third",
-        kind: "line",
-        values: of([2, 5, 8, 11]),
-        read: { name: "", digits: 1 },
-      },
+      line("front leg", "front", of([0, 1, 3, 4]), "", 1),
+      line("rear leg", "rear", of([6, 7, 9, 10]), "", 1),
+      line("wheel", "third", of([2, 5, 8, 11]), "", 1),
     );
   } else if (plan) {
     // A plan tells how far the motor with least to spare is from its limit.
@@ -260,39 +257,22 @@ function wheelPanel(source: Source, time: Float64Array): Panel {
     const mean = (a: number, b: number) =>
       sampled(time, run, (i) => (torque[i]![a]! + torque[i]![b]!) / 2);
     lines.push(
-      {
-        label: "front wheels",
-        color: "front",
-        kind: "line",
-        values: mean(2, 5),
-        read: { name: "front", digits: 2 },
-      },
-      {
-        label: "rear wheels",
-        color: "rear",
-        kind: "line",
-        values: mean(8, 11),
-        read: { name: "rear", digits: 2 },
-      },
+      line("front wheels", "front", mean(2, 5), "front", 2),
+      line("rear wheels", "rear", mean(8, 11), "rear", 2),
     );
   }
   return { id: "wheel", title: PANELS.wheel, unit: "Nm", time, halves: [lines], spans: [2] };
 }
 
-export function buildPanel(id: PanelId, source: Source, time: Float64Array): Panel {
-  switch (id) {
-    case "pitch":
-      return pitchPanel(source, time);
-    case "thigh":
-    case "calf":
-      return jointPanel(id, source, time);
-    case "torque":
-      return torquePanel(source, time);
-    case "margins":
-      return marginPanel(source, time);
-    case "force":
-      return forcePanel(source, time);
-    case "wheel":
-      return wheelPanel(source, time);
-  }
-}
+const BUILT: Record<PanelId, (source: Source, time: Float64Array) => Panel> = {
+  pitch: pitchPanel,
+  thigh: (source, time) => jointPanel("thigh", source, time),
+  calf: (source, time) => jointPanel("calf", source, time),
+  torque: torquePanel,
+  margins: marginPanel,
+  force: forcePanel,
+  wheel: wheelPanel,
+};
+
+export const buildPanel = (id: PanelId, source: Source, time: Float64Array): Panel =>
+  BUILT[id](source, time);

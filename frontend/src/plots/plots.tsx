@@ -1,7 +1,6 @@
 /** The row of plots, all on one clock. */
 
 import { computed, type ReadonlySignal } from "@preact/signals";
-import { useLayoutEffect, useRef } from "preact/hooks";
 import { hasFailed } from "../api/types";
 import { live, livePlan } from "../state/live";
 import { plan, robotOf } from "../state/planning";
@@ -10,6 +9,7 @@ import { progress, run, runB, running, runPlan } from "../state/rollouts";
 import { compare } from "../state/setup";
 import type { IconName } from "../ui/icon";
 import { IconButton } from "../ui/icon-button";
+import { useMeasured } from "../ui/measured";
 import type { Tint } from "./chart";
 import { PANELS, type Panel, type PanelId, type Source, timeAxis } from "./lines";
 import { buildPanel } from "./panels";
@@ -85,15 +85,9 @@ function Turn({ to, steps, icon }: { to: readonly PanelId[]; steps: number; icon
 }
 
 export function Plots() {
-  const box = useRef<HTMLDivElement>(null);
-  useLayoutEffect(() => {
-    const element = box.current!;
-    const observer = new ResizeObserver(() => {
-      rowWidth.value = element.clientWidth;
-    });
-    observer.observe(element);
-    return () => observer.disconnect();
-  }, []);
+  const box = useMeasured((element) => {
+    rowWidth.value = element.clientWidth;
+  });
   if (nothing.value) {
     return (
       <div class="plots none" ref={box}>

@@ -4,9 +4,9 @@ import { fixed } from "../geometry/format";
 import { plan } from "../state/planning";
 import { runPlan } from "../state/rollouts";
 import { saveFile } from "../ui/save-file";
-import { palette } from "./chart";
 import { limitText } from "./limits";
 import type { Line, Panel } from "./lines";
+import { palette } from "./palette";
 import { timeWindow } from "./window";
 
 /** Size of the saved picture, and room for its axes [px]. */

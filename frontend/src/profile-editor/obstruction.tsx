@@ -1,4 +1,4 @@
-/** What stops the robot: the sentence, the numbers, and a line to the place. */
+/** What stops the robot: the sentence, how far it comes, and a line to the place. */
 
 import { computed } from "@preact/signals";
 import type { Problem } from "../api/types";
@@ -10,34 +10,16 @@ import { lastEdit } from "./last-edit";
 import { around, overlap, type Rect } from "./place";
 import { canvasBox, centreOn, projection, size, tight } from "./viewport";
 
-/** Needed amounts above this mean: no amount is enough. */
-const HOPELESS = 100;
-const LENGTHS = new Set(["clearance", "reach"]);
-
-const angle = (radians: number) => `${fixed(degrees(radians), 1)}°`;
-
-/** The service's sentence with the units of the numbers below it. */
+/** The service's sentence, its angles in degrees. */
 const inDegrees = (sentence: string) =>
-  sentence.replace(/(\d+(?:\.\d+)?) rad\b/g, (_, radians: string) => angle(Number(radians)));
+  sentence.replace(
+    /(\d+(?:\.\d+)?) rad\b/g,
+    (_, radians: string) => `${fixed(degrees(Number(radians)), 1)}°`,
+  );
 
 /** No line ends between a number, what it is equal to, and its unit. */
 const unbroken = (sentence: string) =>
   sentence.replace(/ = | (?=(?:m|Nm)\b)/g, (space) => space.replaceAll(" ", "\u00a0"));
-
-/** Whether the sentence says itself what is needed and what there is. */
-const told = (sentence: string) => /\d.*\bhas\b.*\d/.test(sentence);
-
-/** A limit in the problem's own unit; lengths below 1 m in mm. */
-function quantity({ limit, kind }: Problem, value: number): string {
-  const unit = limit?.unit;
-  if (Math.abs(value) >= HOPELESS) return "more than any";
-  if (unit === "m" || (!unit && LENGTHS.has(kind))) {
-    return Math.abs(value) < 0.1 ? `${fixed(value * 1000, 0)} mm` : `${fixed(value, 3)} m`;
-  }
-  if (unit === "rad") return angle(value);
-  if (unit === "Nm" || kind === "torque") return `${fixed(value, 1)} Nm`;
-  return fixed(value, 2) + (unit && unit !== "1" ? ` ${unit}` : "");
-}
 
 /** Poses that were found since are newer than the problem. */
 const problem = computed(() => (preview.value ? null : (plan.value?.problem ?? null)));
@@ -51,6 +33,8 @@ const PADDING = 12;
 const LINE = 18;
 const BUTTONS = 36;
 const NUMBERS = 44;
+/** Letters for which a line may end early: a number stays with its unit. */
+const UNBROKEN = 14;
 /** Of a letter of the sentence, and left of it [px]. */
 const LETTER = 7.2;
 const ICON = 24;
@@ -74,7 +58,7 @@ const robotBox = computed<Rect | null>(() => {
 
 function heightOf(stop: Problem, width: number): number {
   const letters = (width - 2 * PADDING - ICON) / LETTER;
-  const lines = Math.ceil(stop.message.length / letters);
+  const lines = Math.ceil((stop.message.length + UNBROKEN) / letters);
   const more = tight.value ? 0 : NUMBERS;
   return 2 * PADDING + lines * LINE + more + BUTTONS;
 }
@@ -145,7 +129,14 @@ export function Obstruction() {
           <Icon name="warning" />
           {unbroken(inDegrees(capital(stop.message)))}
         </h4>
-        {!(tight.value && told(stop.message)) && <Numbers stop={stop} />}
+        <dl>
+          <dt>where</dt>
+          <dd>
+            x {fixed(stop.at[0], 2)}, z {fixed(stop.at[1], 2)} m
+          </dd>
+          <dt>progress</dt>
+          <dd>{fixed(stop.progress, 2)} m</dd>
+        </dl>
         {sentence && <p>{sentence}</p>}
         <div class="acts">
           {canUndo.value && (
@@ -159,27 +150,5 @@ export function Obstruction() {
         </div>
       </section>
     </>
-  );
-}
-
-/** Where it is, and what is needed of what there is where the sentence does not say so. */
-function Numbers({ stop }: { stop: Problem }) {
-  return (
-    <dl>
-      <dt>where</dt>
-      <dd>
-        x {fixed(stop.at[0], 2)}, z {fixed(stop.at[1], 2)} m
-      </dd>
-      <dt>progress</dt>
-      <dd>{fixed(stop.progress, 2)} m</dd>
-      {stop.limit && !told(stop.message) && (
-        <>
-          <dt>needed</dt>
-          <dd>{quantity(stop, stop.limit.needed)}</dd>
-          <dt>has</dt>
-          <dd class="x">{quantity(stop, stop.limit.available)}</dd>
-        </>
-      )}
-    </dl>
   );
 }

@@ -3,7 +3,7 @@
 import { signal } from "@preact/signals";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Plan, Rollout } from "../api/types";
-import { fixed } from "../geometry/format";
+import { capital, fixed } from "../geometry/format";
 import { robotOf } from "../state/planning";
 import {
   failureB,
@@ -25,7 +25,7 @@ export function Explanation({ result }: { result: Rollout }) {
   return (
     <>
       {result.reason && result.outcome !== "success" && <p>{result.reason}</p>}
-      {motion && <p class="warn">{motion.message}</p>}
+      {motion && <p class="warn">{capital(motion.message)}</p>}
       <WithoutB />
     </>
   );

@@ -44,7 +44,7 @@ function Content() {
   return (
     <>
       <h2>Results</h2>
-      {motion && <p>{motion.message}</p>}
+      {motion && <p>{capital(motion.message)}</p>}
       <p>
         {plan.value
           ? "Run the rollout to see outcome, pitch error, peak torque and speed. The plots show the plan."

@@ -19,9 +19,6 @@ export const TITLES: Record<Mark, string> = {
   edited: "edited",
 };
 
-/** What a sentence is about: the part before its reason, as in "thigh speed 20 rad/s: usual". */
-const subject = (text: string) => /^('.*?': )?[^:]*/.exec(text)![0];
-
 export function markOf(q: Quantity, show: (value: number) => string): Marked {
   const file = robotDocument.value;
   const before = base.value;
@@ -30,8 +27,10 @@ export function markOf(q: Quantity, show: (value: number) => string): Marked {
     const was = value === null ? "new" : `was ${show(value)}`;
     return { mark: "edited", note: was, text: `Edited here, ${was}` };
   }
-  const sentence = file?.assumed?.find((text) => q.words.test(subject(text)));
-  if (sentence) return { mark: "assumed", note: "assumed", text: `Assumed: ${sentence}` };
+  const sentence = file?.assumed_fields?.[q.path];
+  if (sentence !== undefined) {
+    return { mark: "assumed", note: "assumed", text: `Assumed: ${file!.assumed![sentence]}` };
+  }
   return {
     mark: "source",
     note: "",

@@ -39,62 +39,51 @@ function loadPlace(axis: 0 | 1, label: string): Quantity {
     "Masses",
     label,
     OFFSET,
-    /payload|load/i,
-    (f) => (f.payload ? (f.payload.place ?? [0, 0])[axis]! : null),
+    "payload.place",
     (f, v) => {
       if (!f.payload) return f;
       const place = [...(f.payload.place ?? [0, 0])] as [number, number];
       place[axis] = v;
       return { ...f, payload: { ...f.payload, place } };
     },
+    (f) => (f.payload ? (f.payload.place ?? [0, 0])[axis]! : null),
   );
 }
 
 export const MASSES: Quantity[] = [
-  quantity(
-    "trunk.mass",
-    "Masses",
-    "Trunk",
-    MASS,
-    /(trunk|body).*mass/i,
-    (f) => f.trunk.mass,
-    (f, v) => ({ ...f, trunk: heavier(f.trunk, v) }),
-  ),
+  quantity("trunk.mass", "Masses", "Trunk", MASS, "trunk.mass", (f, v) => ({
+    ...f,
+    trunk: heavier(f.trunk, v),
+  })),
   quantity(
     "com.x",
     "Masses",
     "Trunk CoM, x",
     OFFSET,
-    /\bcom\b|mass centre/i,
-    (f) => com(f)[0]!,
+    "trunk.com",
     (f, v) => withCom(f, 0, v),
+    (f) => com(f)[0]!,
   ),
   quantity(
     "com.z",
     "Masses",
     "Trunk CoM, z",
     OFFSET,
-    /\bcom\b|mass centre/i,
-    (f) => com(f)[2]!,
+    "trunk.com",
     (f, v) => withCom(f, 2, v),
+    (f) => com(f)[2]!,
   ),
-  quantity(
-    "wheel.mass",
-    "Masses",
-    "Wheel",
-    MASS,
-    /wheel.*mass/i,
-    (f) => f.wheel.mass,
-    (f, v) => wheels(f, (w) => heavier(w, v)),
+  quantity("wheel.mass", "Masses", "Wheel", MASS, "wheel.mass", (f, v) =>
+    wheels(f, (w) => heavier(w, v)),
   ),
   quantity(
     "payload.mass",
     "Masses",
     "Payload",
     { ...MASS, min: 0, step: 0.5 },
-    /payload|load/i,
-    (f) => f.payload?.mass ?? 0,
+    "payload.mass",
     withLoad,
+    (f) => f.payload?.mass ?? 0,
   ),
   loadPlace(0, "Payload, x"),
   loadPlace(1, "Payload, z"),

@@ -1,7 +1,7 @@
 /** A and B on the terrain of the top bar: how far each comes, and what is tightest. */
 
 import { signal } from "@preact/signals";
-import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
+import { useEffect } from "preact/hooks";
 import type { Plan, RobotDocument } from "../api/types";
 import { fixed, maybe, took } from "../geometry/format";
 import { planFrame, poseTimes } from "../geometry/frames";
@@ -14,6 +14,7 @@ import { plan, preview, refusal, stale } from "../state/planning";
 import { robotName } from "../state/setup";
 import { slow } from "../state/waiting";
 import { Icon } from "../ui/icon";
+import { useMeasured } from "../ui/measured";
 import { Menu, MenuItem } from "../ui/menu";
 import { rivalName, rivalPending, rivalPlan, rivalRequest, rivals, swap } from "./rival";
 import { fitted, previewSize } from "./stage";
@@ -178,15 +179,9 @@ function Facts({ of, refused }: { of: Plan | null; refused: string | null }) {
 const GHOSTS = 6;
 
 function Stage({ of }: { of: Plan | null }) {
-  const box = useRef<HTMLDivElement>(null);
-  useLayoutEffect(() => {
-    const element = box.current!;
-    const watch = new ResizeObserver(() => {
-      previewSize.value = { width: element.clientWidth, height: element.clientHeight };
-    });
-    watch.observe(element);
-    return () => watch.disconnect();
-  }, []);
+  const box = useMeasured((element) => {
+    previewSize.value = { width: element.clientWidth, height: element.clientHeight };
+  });
   const { width, height } = previewSize.value;
   return (
     <div class="stage" ref={box}>

@@ -3,17 +3,7 @@
 import type { RobotDocument } from "../api/types";
 import { capital } from "../geometry/format";
 import { MASSES, wheels } from "./masses";
-import {
-  ANGLE,
-  type Kind,
-  MASS,
-  METRES,
-  type Quantity,
-  quantity,
-  ROTOR,
-  SPEED,
-  TORQUE,
-} from "./quantity";
+import { ANGLE, MASS, METRES, type Quantity, quantity, ROTOR, SPEED, TORQUE } from "./quantity";
 import { bigger, heavier, heights, longer, resized } from "./stretch";
 
 export { GROUPS, type Group, type Quantity } from "./quantity";
@@ -34,25 +24,13 @@ function withLink(file: RobotDocument, end: End, name: LinkName, link: RobotDocu
 /** Rear links have rows of their own where they differ from the front ones. */
 function linkRows(end: End, name: LinkName): Quantity[] {
   const label = end === "front" ? capital(name) : `Rear ${name}`;
-  const words = (what: string) => new RegExp(`\\b${name}\\b.*\\b${what}`, "i");
+  const path = end === "front" ? name : `rear.${name}`;
   return [
-    quantity(
-      `${end}.${name}.length`,
-      "Geometry",
-      label,
-      METRES,
-      words("length"),
-      (f) => linkOf(f, end, name)?.length ?? null,
-      (f, v) => withLink(f, end, name, longer(linkOf(f, end, name)!, v)),
+    quantity(`${end}.${name}.length`, "Geometry", label, METRES, `${path}.length`, (f, v) =>
+      withLink(f, end, name, longer(linkOf(f, end, name)!, v)),
     ),
-    quantity(
-      `${end}.${name}.mass`,
-      "Masses",
-      label,
-      MASS,
-      words("mass"),
-      (f) => linkOf(f, end, name)?.mass ?? null,
-      (f, v) => withLink(f, end, name, heavier(linkOf(f, end, name)!, v)),
+    quantity(`${end}.${name}.mass`, "Masses", label, MASS, `${path}.mass`, (f, v) =>
+      withLink(f, end, name, heavier(linkOf(f, end, name)!, v)),
     ),
   ];
 }
@@ -62,110 +40,66 @@ const LINKS = (["front", "rear"] as const).flatMap((end) =>
 );
 
 const GEOMETRY: Quantity[] = [
-  quantity(
-    "wheel.radius",
-    "Geometry",
-    "Wheel radius",
-    METRES,
-    /wheel.*radius|radius.*wheel/i,
-    (f) => f.wheel.radius,
-    (f, v) => wheels(f, (w) => bigger(w, v)),
+  quantity("wheel.radius", "Geometry", "Wheel radius", METRES, "wheel.radius", (f, v) =>
+    wheels(f, (w) => bigger(w, v)),
   ),
-  quantity(
-    "wheel.width",
-    "Geometry",
-    "Wheel width",
-    METRES,
-    /wheel.*width|width.*wheel/i,
-    (f) => f.wheel.width,
-    (f, v) => wheels(f, (w) => ({ ...w, width: v })),
+  quantity("wheel.width", "Geometry", "Wheel width", METRES, "wheel.width", (f, v) =>
+    wheels(f, (w) => ({ ...w, width: v })),
   ),
   quantity(
     "hips",
     "Geometry",
     "Hip distance",
     { ...METRES, min: 0.02 },
-    /\bhip/i,
-    (f) => f.hips.front[0]! - f.hips.rear[0]!,
+    "hips.front",
     (f, v) => ({
       ...f,
       hips: { ...f.hips, front: [v / 2, f.hips.front[1]!], rear: [-v / 2, f.hips.rear[1]!] },
     }),
+    (f) => f.hips.front[0]! - f.hips.rear[0]!,
   ),
-  quantity(
-    "half_track",
-    "Geometry",
-    "Half track",
-    METRES,
-    /track/i,
-    (f) => f.hips.half_track,
-    (f, v) => ({ ...f, hips: { ...f.hips, half_track: v } }),
-  ),
+  quantity("half_track", "Geometry", "Half track", METRES, "hips.half_track", (f, v) => ({
+    ...f,
+    hips: { ...f.hips, half_track: v },
+  })),
   ...(["length", "width", "height"] as const).map((name, axis) =>
     quantity(
       `trunk.${name}`,
       "Geometry",
       `Trunk ${name}`,
       METRES,
-      /(trunk|body).*(size|box|shape)/i,
-      (f) => f.trunk.size[axis]!,
+      "trunk.size",
       (f, v) => resized(f, axis as 0 | 1 | 2, v),
+      (f) => f.trunk.size[axis]!,
     ),
   ),
-  quantity(
-    "height",
-    "Geometry",
-    "Standing height",
-    METRES,
-    /height|stand/i,
-    (f) => f.nominal_height,
-    (f, v) => {
-      const { least, most } = heights(f);
-      return { ...f, nominal_height: Math.min(most, Math.max(least, v)) };
-    },
-  ),
+  quantity("height", "Geometry", "Standing height", METRES, "nominal_height", (f, v) => {
+    const { least, most } = heights(f);
+    return { ...f, nominal_height: Math.min(most, Math.max(least, v)) };
+  }),
 ];
-
-type MotorName = "leg" | "thigh" | "calf" | "wheel";
-type MotorField = "torque" | "speed" | "armature";
 
 const MOTORS: Quantity[] = (["leg", "thigh", "calf", "wheel"] as const).flatMap((name) =>
   (
     [
-      ["torque", TORQUE, "torque", "torque"],
-      ["speed", SPEED, "top speed", "speed"],
-      ["armature", ROTOR, "rotor inertia", "rotor|armature"],
+      ["torque", TORQUE, "torque"],
+      ["speed", SPEED, "top speed"],
+      ["armature", ROTOR, "rotor inertia"],
     ] as const
-  ).map(([field, kind, text, words]) => motorRow(name, field, kind, text, about(name, words))),
+  ).map(([field, kind, text]) =>
+    quantity(
+      `${name}.${field}`,
+      "Motors",
+      `${capital(name)} ${text}`,
+      kind,
+      `actuators.${name}.${field}`,
+      (f, v) => ({
+        ...f,
+        actuators: { ...f.actuators, [name]: { ...f.actuators[name]!, [field]: v } },
+      }),
+    ),
+  ),
 );
-
-/** Sentences that begin with another part's name are about that part alone. */
-function about(name: MotorName, words: string): RegExp {
-  const others = name === "leg" ? ["wheel"] : ["thigh", "calf", "wheel"].filter((n) => n !== name);
-  return new RegExp(`^(?!(${others.join("|")})\\b).*(${words})`, "i");
-}
-
-function motorRow(
-  name: MotorName,
-  field: MotorField,
-  kind: Kind,
-  text: string,
-  words: RegExp,
-): Quantity {
-  const label = name === "leg" ? "Leg" : capital(name);
-  return quantity(
-    `${name}.${field}`,
-    "Motors",
-    `${label} ${text}`,
-    kind,
-    words,
-    (f) => f.actuators[name]?.[field] ?? null,
-    (f, v) => ({
-      ...f,
-      actuators: { ...f.actuators, [name]: { ...f.actuators[name]!, [field]: v } },
-    }),
-  );
-}
 
 /** A range keeps this much, so that its ends never meet [rad]. */
 const LEAST_RANGE = 0.02;
@@ -176,8 +110,7 @@ function rangeEnd(end: End, joint: LinkName, side: 0 | 1): Quantity {
     "Joint ranges",
     `${capital(end)} ${joint}, ${side === 0 ? "lower" : "upper"}`,
     ANGLE,
-    /range|limit/i,
-    (f) => f.joints[end][joint][side]!,
+    `joints.${end}.${joint}`,
     (f, v) => {
       const range = [...f.joints[end][joint]] as [number, number];
       range[side] =
@@ -185,6 +118,7 @@ function rangeEnd(end: End, joint: LinkName, side: 0 | 1): Quantity {
       const joints = { ...f.joints, [end]: { ...f.joints[end], [joint]: range } };
       return { ...f, joints };
     },
+    (f) => f.joints[end][joint][side]!,
   );
 }
 

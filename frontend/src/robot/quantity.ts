@@ -22,8 +22,8 @@ export interface Quantity {
   /** Null where this robot has no such number. */
   read: (file: RobotDocument) => number | null;
   write: (file: RobotDocument, value: number) => RobotDocument;
-  /** Found in the sentences of `assumed` that speak of it. */
-  words: RegExp;
+  /** Of its field in the robot's document. */
+  path: string;
 }
 
 type Write = Quantity["write"];
@@ -47,15 +47,24 @@ export const ANGLE: Kind = {
 /** A document of the first schema says all that one of the second does. */
 const latest = (file: RobotDocument): RobotDocument => ({ ...file, schema: "stairwright/robot/2" });
 
+/** A number of a robot's document by its path, such as `calf.length`; null where there is none. */
+export function numberAt(file: unknown, path: string): number | null {
+  let at: unknown = file;
+  for (const part of path.split(".")) {
+    at = at && typeof at === "object" ? (at as Record<string, unknown>)[part] : undefined;
+  }
+  return typeof at === "number" ? at : null;
+}
+
 /** One number; writing it keeps the robot on its feet. */
 export function quantity(
   id: string,
   group: Group,
   label: string,
   kind: Kind,
-  words: RegExp,
-  read: Quantity["read"],
+  path: string,
   write: Write,
+  read: Quantity["read"] = (file) => numberAt(file, path),
 ): Quantity {
-  return { id, group, label, ...kind, words, read, write: (f, v) => standing(write(latest(f), v)) };
+  return { id, group, label, ...kind, path, read, write: (f, v) => standing(write(latest(f), v)) };
 }

@@ -1,7 +1,7 @@
 /** Saving, deleting, reading and writing robots. */
 
 import { batch, signal } from "@preact/signals";
-import { deleteRobot, getRobots, importRobot, putRobot, robotFile } from "../api/client";
+import { deleteRobot, getRobots, importRobot, putRobot, reasonOf, robotFile } from "../api/client";
 import type { ImportedRobot, RobotDocument } from "../api/types";
 import { report } from "../state/connection";
 import { commitChoices } from "../state/drawing";
@@ -21,11 +21,9 @@ export interface Reading {
 export const reading = signal<Reading | null>(null);
 let newest: AbortController | null = null;
 
-const why = (error: unknown) => (error instanceof Error ? error.message : String(error));
-
 function fail(error: unknown): void {
   report(error);
-  shelfError.value = why(error);
+  shelfError.value = reasonOf(error);
 }
 
 function without(name: string) {
@@ -98,7 +96,7 @@ export async function readFile(file: File): Promise<void> {
   } catch (error) {
     report(error);
     if (newest === abort) {
-      const refused = why(error).replace(/^file: /, "");
+      const refused = reasonOf(error).replace(/^file: /, "");
       reading.value = { file: file.name, imported: null, refused };
     }
   }
@@ -145,6 +143,6 @@ export async function download(format: string): Promise<void> {
     setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
   } catch (error) {
     fail(error);
-    toast.value = { text: `No ${format.toUpperCase()}: ${why(error)}` };
+    toast.value = { text: `No ${format.toUpperCase()}: ${reasonOf(error)}` };
   }
 }

@@ -1,9 +1,9 @@
 /** The robot from the side: its outline to scale, and every dimension where a hand can pull it. */
 
-import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Vec2 } from "../api/types";
 import { collisionPoints, Details, Figure } from "../profile-editor/figure";
 import { robotAsBuilt, robotDocument } from "../state/setup";
+import { useMeasured } from "../ui/measured";
 import { Ranges } from "./captions";
 import { type Dimension, dimensions } from "./dimensions";
 import { hold, letGo, pull } from "./drag";
@@ -15,15 +15,9 @@ import { reachOutlines } from "./reach";
 import { bones, frame, projection, shown, size } from "./view";
 
 export function SideView() {
-  const box = useRef<HTMLDivElement>(null);
-  useLayoutEffect(() => {
-    const element = box.current!;
-    const watch = new ResizeObserver(() => {
-      size.value = { width: element.clientWidth, height: element.clientHeight };
-    });
-    watch.observe(element);
-    return () => watch.disconnect();
-  }, []);
+  const box = useMeasured((element) => {
+    size.value = { width: element.clientWidth, height: element.clientHeight };
+  });
   return (
     <div class="side-view" ref={box}>
       <svg

@@ -1,7 +1,7 @@
 /** A stored result back in Plan: its terrain, robot and settings as they were. */
 
 import { batch } from "@preact/signals";
-import { getPlan, getRollout } from "../api/client";
+import { getPlan, getRollout, reasonOf } from "../api/client";
 import type { Entry } from "../api/stored";
 import type { Plan, SettingSchema, SettingValues } from "../api/types";
 import { fit } from "../profile-editor/viewport";
@@ -78,7 +78,7 @@ export async function openInPlan(entry: Entry): Promise<void> {
   } catch (error) {
     report(error);
     toast.value = {
-      text: `${title(entry)} cannot be opened: ${error instanceof Error ? error.message : error}`,
+      text: `${title(entry)} cannot be opened: ${reasonOf(error)}`,
     };
   }
 }

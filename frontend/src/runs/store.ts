@@ -1,6 +1,7 @@
 /** The stored results on screen: which are listed, which are pinned, and what changes them. */
 
 import { batch, computed, effect, signal } from "@preact/signals";
+import { reasonOf } from "../api/client";
 import { type Entry, type EntryChanges, type Kind, listStored, patchStored } from "../api/stored";
 import { report } from "../state/connection";
 import { removal } from "../state/removal";
@@ -71,7 +72,7 @@ export async function refresh(): Promise<void> {
   } catch (error) {
     if (mine !== asked) return;
     report(error);
-    trouble.value = error instanceof Error ? error.message : String(error);
+    trouble.value = reasonOf(error);
   } finally {
     if (mine === asked) loading.value = false;
   }
@@ -138,7 +139,7 @@ export async function change(entry: Entry, changes: EntryChanges): Promise<void>
   } catch (error) {
     put(entry);
     report(error);
-    toast.value = { text: `Not saved: ${error instanceof Error ? error.message : error}` };
+    toast.value = { text: `Not saved: ${reasonOf(error)}` };
   }
 }
 

@@ -1,5 +1,6 @@
 /** The scene as a picture: what its canvas showed in the frame that was just drawn. */
 
+import { reasonOf } from "../api/client";
 import { plan } from "../state/planning";
 import { toast } from "../state/toast";
 import { saveFile } from "../ui/save-file";
@@ -65,7 +66,7 @@ export async function saveScene(): Promise<void> {
   try {
     saveFile(sceneFileName("png"), await grab(drawn.frame, drawn.canvas));
   } catch (error) {
-    const why = error instanceof Error ? error.message : String(error);
+    const why = reasonOf(error);
     toast.value = { text: `No picture was saved: ${why}` };
   }
 }

@@ -4,7 +4,7 @@
  */
 
 import { batch, computed, effect, type ReadonlySignal, type Signal, signal } from "@preact/signals";
-import { postPlan } from "../api/client";
+import { postPlan, reasonOf } from "../api/client";
 import { connectLive, livePlan } from "../api/live";
 import { NewestWins } from "../api/newest-wins";
 import type { Plan, PlanRequest } from "../api/types";
@@ -203,7 +203,7 @@ function fail(error: unknown, question: Question, newest: boolean): void {
   stopWaiting();
   if (!connected.peek()) return;
   batch(() => {
-    refusal.value = error instanceof Error ? error.message : String(error);
+    refusal.value = reasonOf(error);
     preview.value = null;
   });
 }

@@ -12,6 +12,7 @@ import {
   postPlan,
   postRollout,
   type RolloutRequest,
+  reasonOf,
 } from "../api/client";
 import type { Job, Plan, PlanRequest, Rollout } from "../api/types";
 import { report } from "./connection";
@@ -211,7 +212,7 @@ const LOST = "The connection to the service broke and the run is lost. It can be
 
 function sentence(error: unknown): string {
   if (error instanceof Offline) return LOST;
-  return error instanceof Error ? error.message : String(error);
+  return reasonOf(error);
 }
 
 const over = (job: Job) => job.state !== "queued" && job.state !== "running";

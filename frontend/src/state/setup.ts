@@ -147,33 +147,30 @@ export function setDisturbance(name: string, value: SettingChange): void {
   disturbance.value = withValue(disturbance.peek(), disturbanceSchema.peek()[name], name, value);
 }
 
+const CHOSEN = {
+  robotName,
+  robotEdits,
+  method,
+  timing,
+  chosenFacing,
+  seed,
+  weights,
+  tolerance,
+  controller,
+  disturbance,
+};
+type Chosen = typeof CHOSEN;
+export type Choices = { [Name in keyof Chosen]: Chosen[Name]["value"] };
+
 /** All that undo brings back besides the drawing. */
-export const choices = computed(() => ({
-  robotName: robotName.value,
-  robotEdits: robotEdits.value,
-  method: method.value,
-  timing: timing.value,
-  chosenFacing: chosenFacing.value,
-  seed: seed.value,
-  weights: weights.value,
-  tolerance: tolerance.value,
-  controller: controller.value,
-  disturbance: disturbance.value,
-}));
-export type Choices = typeof choices.value;
+export const choices = computed(
+  () =>
+    Object.fromEntries(Object.entries(CHOSEN).map(([name, { value }]) => [name, value])) as Choices,
+);
 
 export function choose(again: Choices): void {
   batch(() => {
-    robotName.value = again.robotName;
-    robotEdits.value = again.robotEdits;
-    method.value = again.method;
-    timing.value = again.timing;
-    chosenFacing.value = again.chosenFacing;
-    seed.value = again.seed;
-    weights.value = again.weights;
-    tolerance.value = again.tolerance;
-    controller.value = again.controller;
-    disturbance.value = again.disturbance;
+    for (const [name, each] of Object.entries(CHOSEN)) each.value = again[name as keyof Chosen];
   });
 }
 

@@ -1,7 +1,7 @@
 /** A set of trials of the shown plan: start, follow, cancel, and replay one of them. */
 
 import { batch, computed, signal } from "@preact/signals";
-import { cancelJob, getJob, getTrials, Offline, postTrials } from "../api/client";
+import { cancelJob, getJob, getTrials, Offline, postTrials, reasonOf } from "../api/client";
 import type { Job, SettingValues, Trial, Trials } from "../api/types";
 import { report } from "./connection";
 import { plan, settled, stale } from "./planning";
@@ -79,7 +79,7 @@ export async function startTrials(under?: string): Promise<void> {
   } catch (error) {
     if (stop.aborted) return;
     report(error);
-    trialsFailure.value = error instanceof Error ? error.message : String(error);
+    trialsFailure.value = reasonOf(error);
     if (error instanceof Offline) return;
   } finally {
     if (!stop.aborted) job.value = null;

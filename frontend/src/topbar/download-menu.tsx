@@ -1,6 +1,6 @@
 /** Every export of the profile, of the plan and of the rollout. */
 
-import { callService, exportPath, exportUrl } from "../api/client";
+import { call, exportPath, exportUrl, reasonOf } from "../api/client";
 import type { ExportFormat, Plan } from "../api/types";
 import { report } from "../state/connection";
 import { drawing, isEmpty, terrainDocument } from "../state/drawing";
@@ -108,13 +108,13 @@ function fileName(kind: "plans" | "rollouts"): string {
 /** Download an export under that name, with the ending that the service gives it. */
 async function saveExport(path: string, name: string): Promise<void> {
   try {
-    const answer = await callService("GET", path);
+    const answer = await call("GET", path);
     const given = /filename="[^"]*?((?:\.[a-z0-9]+)+)"/i;
     const ending = given.exec(answer.headers.get("content-disposition") ?? "")?.[1] ?? "";
     saveFile(name + ending, await answer.blob());
   } catch (error) {
     report(error);
-    toast.value = { text: `Not downloaded: ${error instanceof Error ? error.message : error}` };
+    toast.value = { text: `Not downloaded: ${reasonOf(error)}` };
   }
 }
 

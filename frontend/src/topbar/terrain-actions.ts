@@ -1,7 +1,7 @@
 /** Opening, saving and making terrains. */
 
 import { signal } from "@preact/signals";
-import { deleteTerrain, generateTerrain, getTerrains, putTerrain } from "../api/client";
+import { deleteTerrain, generateTerrain, getTerrains, putTerrain, reasonOf } from "../api/client";
 import type { TerrainDocument } from "../api/types";
 import { fit } from "../profile-editor/viewport";
 import { report } from "../state/connection";
@@ -37,8 +37,6 @@ export async function readTerrains(): Promise<void> {
   }
 }
 
-const reason = (error: unknown) => (error instanceof Error ? error.message : String(error));
-
 /** Save the drawing; what it replaces can be brought back. */
 export async function saveAs(name: string, description: string): Promise<boolean> {
   try {
@@ -56,7 +54,7 @@ export async function saveAs(name: string, description: string): Promise<boolean
     return true;
   } catch (error) {
     report(error);
-    saveError.value = reason(error);
+    saveError.value = reasonOf(error);
     return false;
   }
 }
@@ -89,7 +87,7 @@ export async function removeStored(terrain: TerrainDocument): Promise<void> {
     toast.value = { text: `${name} is deleted.`, undo: () => void putBack(terrain, opened) };
   } catch (error) {
     report(error);
-    toast.value = { text: `${name} is not deleted: ${reason(error)}` };
+    toast.value = { text: `${name} is not deleted: ${reasonOf(error)}` };
   }
 }
 
@@ -100,7 +98,7 @@ async function putBack(terrain: TerrainDocument, opened: boolean): Promise<void>
     if (opened && drawing.peek().name === terrain.name) origin.value = terrain;
   } catch (error) {
     report(error);
-    toast.value = { text: `${terrain.name} is not back: ${reason(error)}` };
+    toast.value = { text: `${terrain.name} is not back: ${reasonOf(error)}` };
   }
 }
 
@@ -111,7 +109,7 @@ export async function generate(parameters: Record<string, unknown>): Promise<boo
     return true;
   } catch (error) {
     report(error);
-    generateError.value = reason(error);
+    generateError.value = reasonOf(error);
     return false;
   }
 }

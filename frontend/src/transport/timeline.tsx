@@ -1,7 +1,6 @@
 /** The clock as a slider, with the key poses on it. */
 
 import { computed, signal } from "@preact/signals";
-import { useLayoutEffect, useRef } from "preact/hooks";
 import { hasFailed, type Rollout } from "../api/types";
 import { fixed } from "../geometry/format";
 import {
@@ -17,6 +16,7 @@ import {
   togglePlay,
 } from "../state/playback";
 import { progress, running } from "../state/rollouts";
+import { useMeasured } from "../ui/measured";
 import { axisKind, cursor, ends, shareOf, shareOfTime, ticks, timeAt } from "./axis";
 
 const STEP = 0.1;
@@ -38,20 +38,10 @@ const keyMarks = computed<[number, number][]>(() => {
   return out;
 });
 
-function useWidth() {
-  const bar = useRef<HTMLDivElement>(null);
-  useLayoutEffect(() => {
-    const observer = new ResizeObserver(() => {
-      width.value = bar.current?.clientWidth ?? 0;
-    });
-    observer.observe(bar.current!);
-    return () => observer.disconnect();
-  }, []);
-  return bar;
-}
-
 export function Timeline() {
-  const bar = useWidth();
+  const bar = useMeasured((element) => {
+    width.value = element.clientWidth;
+  });
   const end = plannedEnd.value;
   const percent = (share: number) => `${share * 100}%`;
   const growing = running.value === "a";

@@ -111,12 +111,11 @@ Torques drive(const Command& c, const std::array<double, 12>& joints, const std:
     return out;
 }
 
-Torques Controller::step(const RobotState& state, const Reference& target, double yaw_rate,
-                         const std::optional<std::array<double, 4>>& places) {
-    return drive(command(state, target, yaw_rate, places), state.joints, state.joint_rates);
+Torques Controller::step(const RobotState& state, const Reference& target) {
+    return drive(command(state, target), state.joints, state.joint_rates);
 }
 
-Command Controller::command(const RobotState& state, const Reference& target, double yaw_rate,
+Command Controller::command(const RobotState& state, const Reference& target,
                             const std::optional<std::array<double, 4>>& places) {
     const Gains& g = gains_;
     const Measurement m = measure(robot_, mass_, state);
@@ -142,7 +141,7 @@ Command Controller::command(const RobotState& state, const Reference& target, do
     solve_within_motors(qp, motors, robot_, state.joint_rates, g.force_weight, forces_);
 
     // Torques: forces, weight and inertia, tracking (eq 27), rolling (eqs 14-16) with the traction fed forward.
-    const double turn = yaw_rate - g.heading_stiffness * m.heading;
+    const double turn = -g.heading_stiffness * m.heading;
     const double difference = robot_.half_track / path_.radius() * (turn + g.yaw_damping * (turn - m.yaw_rate));
     Command out;
     for (int i = 0; i < 4; ++i) {

@@ -11,7 +11,8 @@ import pytest
 
 import stairwright as sw
 from stairwright.planning.certificate.joining import motion_problem
-from stairwright.planning.plan import Certificate, Plan, Problem
+from stairwright.planning.plan import Certificate, Plan
+from stairwright.planning.problem import Problem
 
 STOP = Problem(kind="clearance", at=(1.0, 0.2), progress=0.5, message="too close")
 WAYS: dict[str, Callable[[Certificate], object]] = {

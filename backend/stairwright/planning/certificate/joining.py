@@ -7,9 +7,10 @@ import numpy as np
 from stairwright import _core
 from stairwright.planning.certificate.certify import judge
 from stairwright.planning.certificate.motion import Motion
-from stairwright.planning.plan import Certificate, Check, Plan, Problem, ProblemKind
+from stairwright.planning.plan import Certificate, Check, Plan
 from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.poses.pose_reference import Reference
+from stairwright.planning.problem import Problem, ProblemKind, between_poses
 from stairwright.terrain.wheel_path import wheel_path
 
 # Room for the centre of mass: of 490 random stairs climbed with more every rollout succeeds, of
@@ -76,9 +77,4 @@ def _stopped(kind: ProblemKind, what: str, plan: Plan, samples: Reference, i: in
     x, z = samples.contacts[i, 0].tolist()
     progress = float(samples.progress[i])
     before = sum(pose.progress <= progress for pose in plan.poses[:-1])
-    return Problem(
-        kind=kind,
-        at=(x, z),
-        progress=progress,
-        message=f"Between poses {before} and {before + 1} {what}: only the poses are certified.",
-    )
+    return between_poses(kind, (x, z), progress, before, what)

@@ -9,7 +9,7 @@ import numpy as np
 
 from stairwright import _core
 from stairwright.arrays import Flags, Floats
-from stairwright.planning.plan import Limit, Pose, Problem
+from stairwright.planning.plan import Pose
 from stairwright.planning.poses.pose_search import (
     CLEARANCE,
     LEGS_DISTANCE,
@@ -17,6 +17,7 @@ from stairwright.planning.poses.pose_search import (
     PoseSearch,
     Rules,
 )
+from stairwright.planning.problem import Limit, Problem, ProblemKind
 from stairwright.planning.standing import NoStandingPose
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -28,28 +29,16 @@ _ENDLESS = 100.0  # margins beyond it, friction or m, stand for what no value me
 def no_standing_pose(terrain: Terrain, robot: Robot, error: NoStandingPose) -> Problem:
     """The problem of a course without room to stand at an end."""
     path = wheel_path(terrain, robot.wheel.radius)
-    x, z = map(float, path.contacts(np.array([min(max(error.s, 0.0), path.length)]))[0])
-    message, limit = f"No place to stand at the {error.kind}: {error}", error.limit
-    if limit is not None:
-        message += f"; needs {limit.quantity} {limit.needed:.3f} m, has {limit.available:.3f} m"
-    message += f", at x = {x:.2f} m, z = {z:.2f} m"
-    return Problem(kind=error.kind, at=(x, z), progress=0.0, message=message, limit=limit)
+    x, z = path.contacts(np.array([min(max(error.s, 0.0), path.length)]))[0].tolist()
+    what = f"no place to stand at the {error.kind}, {error},"
+    return Problem.told(error.kind, (x, z), 0.0, what, error.limit)
 
 
 def statics_problem(search: PoseSearch, pose: Pose) -> Problem:
     """The problem of a pose whose centre of mass has no equilibrium inside the friction cones."""
-    return Problem(
-        kind="statics",
-        at=pose.contacts[0],
-        progress=pose.progress,
-        message=(
-            "The ground cannot hold the robot here: the centre of mass lies "
-            f"{-pose.margins.com * 1e3:.0f} mm outside what friction {search.friction:g} allows."
-            if pose.margins.com > -_ENDLESS
-            else f"No centre of mass is held here with friction {search.friction:g}."
-        ),
-        limit=statics_limit(search.friction, pose),
-    )
+    limit = statics_limit(search.friction, pose)
+    hold = f"the ground cannot hold the robot with friction {search.friction:g}"
+    return Problem.told("statics", pose.contacts[0], pose.progress, hold, limit)
 
 
 def statics_limit(friction: float, pose: Pose) -> Limit | None:
@@ -84,29 +73,24 @@ def diagnose(search: PoseSearch, place: ContactPair) -> Problem:
         if amount is not None:
             found.append((amount / most, kind, amount))
     if not found:
-        return Problem(
-            kind="reach",
-            at=at,
-            progress=0.0,
-            message=(
-                "The legs do not reach: no pose puts the front wheel here and the rear wheel "
-                "behind its hip, whatever single limit gives way."
-            ),
-        )
+        return _stop(at, "reach", "whatever limit gives way, the legs do not reach")
     _, kind, amount = min(found)
     if kind == "clearance":
-        text = f"Trunk or links would have to come {amount * 1e3:.0f} mm closer to the ground"
-        limit = Limit(
-            needed=CLEARANCE, available=CLEARANCE - amount, quantity="clearance", unit="m"
-        )
-        return Problem(kind="clearance", at=at, progress=0.0, message=text + ".", limit=limit)
+        available = CLEARANCE - amount
+        limit = Limit(needed=CLEARANCE, available=available, quantity="clearance", unit="m")
+        return _stop(at, "clearance", "trunk or links come too close to the ground", limit)
     if kind == "joint_limit":
-        text = f"A joint would have to turn {amount:.2f} rad beyond its limit."
         limit = Limit(needed=amount, available=0.0, quantity="joint range beyond limit", unit="rad")
-        return Problem(kind="joint_limit", at=at, progress=0.0, message=text, limit=limit)
-    text = f"The rear wheel cannot stay behind its hip (eq 20): {amount * 1e3:.0f} mm are missing."
+        return _stop(at, "joint_limit", "a joint would pass its limit", limit)
     limit = Limit(needed=amount, available=0.0, quantity="rear hip behind contact", unit="m")
-    return Problem(kind="reach", at=at, progress=0.0, message=text, limit=limit)
+    return _stop(at, "reach", "the rear wheel cannot stay behind its hip (eq 20)", limit)
+
+
+def _stop(
+    at: tuple[float, float], kind: ProblemKind, what: str, limit: Limit | None = None
+) -> Problem:
+    """The problem of a first pose that does not exist, front wheel at `at`."""
+    return Problem.told(kind, at, 0.0, f"{what} with the front wheel", limit)
 
 
 def _no_rear_place(search: PoseSearch, place: ContactPair, at: tuple[float, float]) -> Problem:
@@ -130,51 +114,22 @@ def _no_rear_place(search: PoseSearch, place: ContactPair, at: tuple[float, floa
         for _ in range(12):
             middle = (low + high) / 2
             low, high = (low, middle) if holds(middle)[near].any() else (middle, high)
-        return Problem(
-            kind="statics",
-            at=at,
-            progress=0.0,
-            message=(
-                f"The ground is too slippery: on this slope the wheels need friction {high:.2f}, "
-                f"there is {friction:g}."
-            ),
-            limit=Limit(needed=high, available=friction, quantity="friction", unit="1"),
-        )
+        limit = Limit(needed=high, available=friction, quantity="friction", unit="1")
+        return _stop(at, "statics", "the slope is too slippery", limit)
+    least, most = search.span
     held = gap[holds(friction)]
-    if len(held) and held.max() < search.span[0]:
-        return Problem(
-            kind="reach",
-            at=at,
-            progress=0.0,
-            message=(
-                f"Too narrow: with the front wheel here only ground within {held.max():.2f} m "
-                f"holds the rear wheel, and the two need {search.span[0]:.2f} m between them."
-            ),
-            limit=Limit(
-                needed=search.span[0], available=float(held.max()),
-                quantity="distance of the wheels", unit="m",
-            ),
-        )  # fmt: skip
-    if len(held) and held.min() <= search.span[1]:
-        return Problem(
-            kind="reach",
-            at=at,
-            progress=0.0,
-            message="With the front wheel here no place of the rear wheel is any good.",
-        )
-    needed = float(held.min()) if len(held) else float(gap.min())
-    return Problem(
-        kind="reach",
-        at=at,
-        progress=0.0,
-        message=(
-            f"Too high: with the front wheel here the rear wheel has nowhere to stand within "
-            f"{search.span[1]:.2f} m; the nearest ground that holds it is {needed:.2f} m away."
-        ),
-        limit=Limit(
-            needed=needed, available=search.span[1], quantity="distance of the wheels", unit="m"
-        ),
-    )
+
+    def apart(needed: float, available: float, what: str) -> Problem:
+        quantity = "distance of the wheels"
+        limit = Limit(needed=needed, available=available, quantity=quantity, unit="m")
+        return _stop(at, "reach", what, limit)
+
+    if len(held) and held.max() < least:
+        return apart(least, float(held.max()), "what holds the rear wheel is too near")
+    if len(held) and held.min() <= most:
+        return _stop(at, "reach", "no place of the rear wheel is any good")
+    nearest = float(held.min()) if len(held) else float(gap.min())
+    return apart(nearest, most, "what holds the rear wheel is too far away")
 
 
 def _slope(search: PoseSearch, s: float) -> float:

@@ -36,7 +36,7 @@ from stairwright.planning.infeasibility.relaxation import (
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
 from stairwright.planning.path_planner import PathPlanner
-from stairwright.planning.plan import Limit, Problem
+from stairwright.planning.problem import Limit, Problem
 from stairwright.planning.smoothing.path_document import PathPoses
 from stairwright.planning.threads import race, search_threads
 
@@ -211,41 +211,32 @@ def _whole(planner: PathPlanner, places: list[Place]) -> bool:
 def undiagnosed(planner: PathPlanner, blocked: Blocked) -> Problem:
     """Where the wheels end, without looking for what would open the way."""
     at, progress, stop = _end(planner, blocked.reached)
-    return Problem(kind="reach", at=at, progress=progress, message=f"{stop}; not looked into")
+    return Problem.told("reach", at, progress, f"not looked into: {stop}")
 
 
 def _end(planner: PathPlanner, reached: Place | None) -> tuple[tuple[float, float], float, str]:
-    """Where the wheels end: the place (x, z) and the progress up to there [m], and in words."""
+    """Where the wheels end: the place (x, z) and the progress up to there [m], and which do."""
     begin, end = planner.ends
     front, rear = reached or begin.wheels
     stopped, wheel = (rear, "rear") if front >= end.wheels[0] - 1e-6 else (front, "front")
     x, z = planner.path.contacts(np.array([stopped]))[0].tolist()
     progress = max(0.0, 0.5 * (front + rear - sum(begin.wheels)))
-    return (x, z), progress, f"the {wheel} wheels stop at x = {x:.2f} m, z = {z:.2f} m"
+    return (x, z), progress, f"the {wheel} wheels stop"
 
 
 def _problem(planner: PathPlanner, reached: Place | None, cause: Cause | None) -> Problem:
-    """In words: what stops the wheels where they end, and what would be enough."""
+    """What stops the wheels where they end, and what would be enough."""
     at, progress, stop = _end(planner, reached)
     if cause is None:
-        message = (
-            f"{stop}, and neither legs of {LONGEST:g} times the length with friction {AMPLE:g} nor "
-            "a profile of a fiftieth of the height would change that"
+        what = (
+            f"neither legs of {LONGEST:g} times the length with friction {AMPLE:g} nor a profile "
+            f"of a fiftieth of the height would do: {stop}"
         )
-        return Problem(kind="reach", at=at, progress=progress, message=message)
+        return Problem.told("reach", at, progress, what)
     candidate = cause.candidate
-    value = candidate.at(cause.upper)
-    unit = "" if candidate.unit == "1" else f" {candidate.unit}"
-    bound = "of at most " if value < candidate.available else ""
-    message = (
-        f"needs {candidate.quantity} {bound}{value:.3g}{unit}{candidate.given}, "
-        f"has {candidate.available:.3g}{unit}: {stop}"
-    )
-    return Problem(
-        kind=candidate.kind, at=at, progress=progress, message=message,
-        limit=Limit(
-            needed=value, available=candidate.available,
-            quantity=candidate.quantity + candidate.given, unit=candidate.unit,
-            confirmed=(candidate.at(cause.lower), candidate.at(cause.upper)),
-        ),
+    limit = Limit(
+        needed=candidate.at(cause.upper), available=candidate.available,
+        quantity=candidate.quantity, unit=candidate.unit, given=dict(candidate.given),
+        confirmed=(candidate.at(cause.lower), candidate.at(cause.upper)),
     )  # fmt: skip
+    return Problem.told(candidate.kind, at, progress, stop, limit)

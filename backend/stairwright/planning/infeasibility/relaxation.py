@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
@@ -41,7 +41,7 @@ class Candidate:
     available: float
     limit: float
     change: Callable[[PathPlanner, float], PathPlanner]
-    given: str = ""  # what else the change needs
+    given: Mapping[str, float] = field(default_factory=dict, compare=False)  # what else it needs
     # Questions asked last, by their factor: what is tried anew has its tables.
     changed: dict[float, PathPlanner] = field(default_factory=dict, compare=False, repr=False)
     # What came of attempts at all of them.
@@ -188,7 +188,7 @@ def _legs_with_grip(planner: PathPlanner) -> Candidate:
     return Candidate(
         "reach", "leg length", "m", legs, LONGEST * legs,
         lambda c, v: replace(_with_robot(c, _longer(robot, v / legs)), friction=grip),
-        f" with friction {grip:.2g}",
+        {"friction": grip},
     )  # fmt: skip
 
 

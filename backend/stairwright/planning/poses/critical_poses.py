@@ -21,11 +21,12 @@ from stairwright.arrays import Floats
 from stairwright.planning.assembly import assemble
 from stairwright.planning.certificate.joining import motion_problem
 from stairwright.planning.infeasibility.diagnosis import diagnose, no_standing_pose, statics_problem
-from stairwright.planning.plan import Certificate, Plan, Pose, Problem
+from stairwright.planning.plan import Certificate, Plan, Pose
 from stairwright.planning.poses.paper_timing import pose_times
 from stairwright.planning.poses.pose_documents import complete_poses
 from stairwright.planning.poses.pose_locations import Obstacle, find_obstacles, front_places
 from stairwright.planning.poses.pose_search import ContactPair, Found, PoseSearch
+from stairwright.planning.problem import Problem, between_poses
 from stairwright.planning.standing import (
     NoStandingPose,
     StandingPose,
@@ -233,9 +234,4 @@ def _tipping(search: PoseSearch, knots: list[_Knot], poses: list[Pose]) -> Probl
         if math.isfinite(lost[k])
         else f"friction {search.friction:g} holds the robot nowhere"
     )
-    return Problem(
-        kind="statics",
-        at=poses[k].contacts[0],
-        progress=poses[k].progress,
-        message=f"Between poses {k + 1} and {k + 2} {what}: only the poses are certified.",
-    )
+    return between_poses("statics", poses[k].contacts[0], poses[k].progress, k + 1, what)

@@ -11,9 +11,10 @@ import numpy as np
 from stairwright.arrays import Floats
 from stairwright.planning.assembly import assemble
 from stairwright.planning.infeasibility.diagnosis import no_standing_pose, statics_limit
-from stairwright.planning.plan import Limit, Plan, Pose, Problem
+from stairwright.planning.plan import Plan, Pose
 from stairwright.planning.poses.paper_timing import pose_times
 from stairwright.planning.poses.pose_documents import complete_poses
+from stairwright.planning.problem import Limit, Problem
 from stairwright.planning.standing import NoStandingPose, find_standing_poses
 from stairwright.planning.weights import NominalWeights
 from stairwright.robot import kinematics
@@ -127,35 +128,18 @@ def _poses(
 
 def _first_problem(friction: float, poses: list[Pose]) -> Problem | None:
     for pose in poses:
+        place = (pose.contacts[0], pose.progress)
         if pose.margins.clearance < 0.0:
             depth = -pose.margins.clearance
-            return Problem(
-                kind="clearance",
-                at=pose.contacts[0],
-                progress=pose.progress,
-                message=f"The standing pose reaches {depth * 1e3:.0f} mm into the terrain here.",
-                limit=Limit(needed=depth, available=0.0, quantity="clearance", unit="m"),
-            )
+            limit = Limit(needed=depth, available=0.0, quantity="clearance", unit="m")
+            what = "the standing pose reaches into the terrain"
+            return Problem.told("clearance", *place, what, limit)
         if pose.margins.com < 0.0:
-            limit = statics_limit(friction, pose)
-            return Problem(
-                kind="statics",
-                at=pose.contacts[0],
-                progress=pose.progress,
-                message=(
-                    f"The standing pose slips or tips here: it needs friction {limit.needed:.2f}."
-                    if limit is not None and limit.quantity == "friction"
-                    else "The standing pose slips or tips here whatever the friction."
-                ),
-                limit=limit,
-            )
+            what = "the standing pose slips or tips"
+            return Problem.told("statics", *place, what, statics_limit(friction, pose))
     return None
 
 
 def _out_of_reach(last: Pose) -> Problem:
-    return Problem(
-        kind="reach",
-        at=last.contacts[0],
-        progress=last.progress,
-        message="The standing pose cannot keep both wheels on the ground beyond this place.",
-    )
+    what = "the standing pose cannot keep both wheels on the ground, and stops"
+    return Problem.told("reach", last.contacts[0], last.progress, what)

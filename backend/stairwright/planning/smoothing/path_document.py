@@ -12,16 +12,8 @@ import numpy as np
 from stairwright.arrays import Floats
 from stairwright.documents import Deferred
 from stairwright.planning import binding
-from stairwright.planning.plan import (
-    Binding,
-    Margins,
-    Plan,
-    Pose,
-    Problem,
-    Quantity,
-    Timing,
-    plan_id,
-)
+from stairwright.planning.plan import Binding, Margins, Plan, Pose, Quantity, Timing, plan_id
+from stairwright.planning.problem import Problem
 from stairwright.planning.smoothing.path_timing import path_parameter, pose_times
 from stairwright.planning.smoothing.refine import Refined
 from stairwright.planning.tolerance import Tolerance

@@ -109,7 +109,11 @@ def assemble(
     if locked:
         notes.assume(f"abduction joints are locked [rad]: {', '.join(locked)}")
     _note_maps(legs, notes)
+    _note_ranges(source, legs, notes)
     document["assumed"] = notes.assumed
+    document["assumed_fields"] = {
+        path: sentence for path, sentence in notes.assumed_fields.items() if _stands(path, document)
+    }
     try:
         robot = parse(Robot, document)
     except InputError as error:
@@ -144,6 +148,7 @@ def _wheels(
 ) -> tuple[float, list[float]]:
     """One radius for all wheels, and the widths in front and behind [m]."""
     known = [pair.wheel.radius for pair in pairs if pair.wheel.radius is not None]
+    fields = [f"{pair.path}wheel.radius" for pair in pairs]
     if given is not None:
         radius = given
     elif len(known) == 2 and abs(known[0] - known[1]) > _MOST_UNLIKE_RADII:
@@ -155,18 +160,19 @@ def _wheels(
     elif alike is not None:
         radius = alike.robot.wheel.radius
         notes.assume(f"wheel radius {radius:.4g} m: no shape of a wheel was sent; as the preset "
-                     f"{alike.robot.name}, which has the same legs")  # fmt: skip
+                     f"{alike.robot.name}, which has the same legs", *fields)  # fmt: skip
     else:
         discs = [math.sqrt(2 * pair.wheel.inertia[1] / pair.wheel.mass) for pair in pairs]
         radius = max(*discs, *(pair.wheel.least for pair in pairs))
         notes.assume(f"wheel radius {radius:.4g} m: no shape of a wheel was sent; that of a disc "
-                     "with its inertia")  # fmt: skip
+                     "with its inertia", *fields)  # fmt: skip
         notes.warn(f"the wheels' radius of {radius:.4g} m is a guess: give it, or send the meshes")
     widths = []
     for pair in pairs:
         width = pair.wheel.width or (alike.robot.wheel.width if alike else 0.5 * radius)
         if pair.wheel.width is None:
-            notes.assume(f"width of the {pair.name} wheels {width:.4g} m: their shape does not say")
+            text = f"width of the {pair.name} wheels {width:.4g} m: their shape does not say"
+            notes.assume(text, f"{pair.path}wheel.width")
         widths.append(width)
     return radius, widths
 
@@ -213,6 +219,14 @@ def _document(
         "joints": {pair.name: {"thigh": pair.limits[0], "calf": pair.limits[1]} for pair in pairs},
     }
     return document, centre
+
+
+def _stands(path: str, document: dict[str, Any]) -> bool:
+    """Whether a document has a field: of rear legs it has what they have unlike the front ones."""
+    here: Any = document
+    for name in path.split("."):
+        here = (here or {}).get(name)
+    return here is not None
 
 
 def _same(a: Any, b: Any) -> bool:
@@ -267,3 +281,12 @@ def _note_maps(legs: dict[str, SideLeg], notes: Notes) -> None:
             "plans and recordings are in our angles: the file's = sign * (ours - offset); ROS "
             "messages and URDF are in the file's"
         )
+
+
+def _note_ranges(source: Source, legs: dict[str, SideLeg], notes: Notes) -> None:
+    for name, leg in legs.items():
+        end = "front" if name.startswith("F") else "rear"
+        for part, joint in (("thigh", leg.chain.thigh), ("calf", leg.chain.calf)):
+            if not source.model.jnt_limited[joint]:
+                text = f"{source.joint(joint)!r} has no range: once round each way taken"
+                notes.assume(text, f"joints.{end}.{part}")

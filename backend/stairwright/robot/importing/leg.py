@@ -109,7 +109,6 @@ def _range(
     """A joint's range in our angles, and its offset less whole turns."""
     model, name = source.model, source.joint(joint)
     if not model.jnt_limited[joint]:
-        notes.assume(f"{name!r} has no range: once round each way taken")
         return -2 * math.pi, 2 * math.pi, _wrapped(offset)
     ends = sorted(sign * value + offset for value in model.jnt_range[joint].tolist())
     if ends[0] >= ends[1]:

@@ -149,7 +149,8 @@ def _wheel(
         if math.dist(own.mean(axis=0)[[0, 2]], centre) < 0.2 * side.lengths[1]:
             least = max(least, float(np.hypot(*(own[:, [0, 2]] - centre).T).max()) * 0.99)
     if not shapes:
-        notes.assume(f"{name!r}: its plane is taken at its mass centre, y {lateral:.4g} m")
+        text = f"{name!r}: its plane is taken at its mass centre, y {lateral:.4g} m"
+        notes.assume(text, "hips.half_track")
         return WheelPart(whole.mass, inertia, None, None, least, lateral, drive)
     radius = max(_radius(shape, side, centre) for shape in shapes)
     across = np.concatenate([shape.cloud @ side.axes[1] for shape in shapes])

@@ -22,7 +22,6 @@ _DEFAULTS = (
     "damper", "cylinder", "muscle", "adhesion", "tendon", "equality",
 )  # fmt: skip
 _BODY = ("body", "frame", "joint", "freejoint", "geom", "inertial", "site")
-_LOOKS = ("material", "hfield")  # attributes of geoms
 _DEEPEST_INCLUDE = 5
 
 

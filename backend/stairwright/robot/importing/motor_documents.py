@@ -37,29 +37,33 @@ def actuators(
     for part in ("thigh", "calf", "wheel"):
         drive: Drive = getattr(pair, part).drive
         arm = radius if part == "wheel" else 0.7 * sum(pair.lengths)
-        made[part] = _motor(part, drive, arm * mass * GRAVITY / 2, kind, known, notes)
+        path = f"{pair.path}actuators.{part}"
+        made[part] = _motor(part, path, drive, arm * mass * GRAVITY / 2, kind, known, notes)
     return made
 
 
 def _motor(
-    part: str, drive: Drive, plenty: float, kind: str, known: dict[str, Any], notes: Notes
-) -> dict[str, Any]:
+    part: str, path: str, drive: Drive, plenty: float, kind: str, known: dict[str, Any],
+    notes: Notes,
+) -> dict[str, Any]:  # fmt: skip
     own, name = known.get(part, {}), known.get("name")
     torque, speed = drive.torque, drive.speed
     if torque is None:
         torque = own.get("torque") or plenty
         plain = f"what holds half the weight at {_LEVERS[part]}"
         why = f"as the preset {name}, which has the same legs" if own else plain
-        notes.assume(f"{part} torque {torque:.4g} Nm: the file has none; {why}")
+        notes.assume(f"{part} torque {torque:.4g} Nm: the file has none; {why}", f"{path}.torque")
     if speed is None:
         speed = own.get("speed") or _SPEEDS[part]
         why = f"as the preset {name}, which has the same legs" if own else "usual for such motors"
-        notes.assume(f"{part} speed {speed:.4g} rad/s: {kind.upper()} names none; {why}")
+        text = f"{part} speed {speed:.4g} rad/s: {kind.upper()} names none; {why}"
+        notes.assume(text, f"{path}.speed")
     armature = drive.armature
     if kind == "urdf" and armature == 0.0:
         armature = own.get("armature") or _ROTOR * torque
         why = f"as the preset {name}" if own else "in the A1's ratio to its torque"
-        notes.assume(f"{part} rotor inertia {armature:.3g} kg m^2: URDF has no place for it; {why}")
+        text = f"{part} rotor inertia {armature:.3g} kg m^2: URDF has no place for it; {why}"
+        notes.assume(text, f"{path}.armature")
     if drive.friction > 0:
         notes.assume(f"{part}: dry friction of {drive.friction:.3g} Nm in the joint is left out")
     if drive.damping > _MOST_DAMPING:

@@ -55,12 +55,12 @@ def area(polygon: Floats) -> float:
     return float(x @ np.roll(z, -1) - z @ np.roll(x, -1)) / 2
 
 
-def covers(polygon: Floats, points: Floats, slack: float = 1e-6) -> bool:
-    """Whether all of `points` lie in a counter-clockwise convex polygon, give or take `slack`."""
+def covers(polygon: Floats, points: Floats) -> bool:
+    """Whether all of `points` lie in a counter-clockwise convex polygon, give or take rounding."""
     edge = np.roll(polygon, -1, axis=0) - polygon
     normal = np.column_stack([edge[:, 1], -edge[:, 0]]) / np.linalg.norm(edge, axis=1)[:, None]
     beyond = points @ normal.T - (polygon * normal).sum(axis=1)
-    return bool(beyond.max() <= slack)
+    return bool(beyond.max() <= 1e-6)
 
 
 def _thick(polygon: Floats) -> Floats:

@@ -43,6 +43,11 @@ class Pair:
     limits: tuple[tuple[float, float], tuple[float, float]]
     name: str
 
+    @property
+    def path(self) -> str:
+        """Where a document has what these legs have unlike the others."""
+        return "rear." if self.name == "rear" else ""
+
 
 def pair_of(left: Measured, right: Measured, where: str, notes: Notes) -> Pair:
     """The mean of two legs.

@@ -40,11 +40,13 @@ class Notes:
 
     def __init__(self) -> None:
         self.assumed: list[str] = []
+        self.assumed_fields: dict[str, int] = {}
         self.warnings: list[str] = []
 
-    def assume(self, text: str) -> None:
-        """A number that was taken because the file gives none."""
-        _add(self.assumed, text)
+    def assume(self, text: str, *fields: str) -> None:
+        """A number that was taken because the file gives none, and where the document has it."""
+        if (sentence := _add(self.assumed, text)) is not None:
+            self.assumed_fields |= dict.fromkeys(fields, sentence)
 
     def warn(self, text: str) -> None:
         """Something that was read and may not be what was meant."""
@@ -57,7 +59,11 @@ def listed(names: list[str] | Mapping[str, object]) -> str:
     return ", ".join(every[:4]) + (f" and {len(every) - 4} more" if len(every) > 4 else "")
 
 
-def _add(remarks: list[str], text: str) -> None:
+def _add(remarks: list[str], text: str) -> int | None:
+    """Which of the remarks it is; None where there are too many."""
     text = " ".join(text.split())[:_LONGEST]
-    if text not in remarks and len(remarks) < _MOST:
+    if text not in remarks:
+        if len(remarks) == _MOST:
+            return None
         remarks.append(text)
+    return remarks.index(text)

@@ -31,7 +31,8 @@ def nominal_height(
     height = min(heights) + radius
     notes.assume(
         f"nominal_height {height:.4g} m: wheels under the hips, knees bent by {_KNEE:g} rad or as "
-        "far as they can"
+        "far as they can",
+        "nominal_height",
     )
     return height
 
@@ -70,7 +71,8 @@ def _of_keyframe(
         above = _hip_heights(pairs)
         height = float(wheels.mean()) - sum(above) / 2 + radius
         name = model.key(key).name or str(key)
-        notes.assume(f"nominal_height {height:.4g} m: as in the keyframe {name!r}")
+        text = f"nominal_height {height:.4g} m: as in the keyframe {name!r}"
+        notes.assume(text, "nominal_height")
         return height
     return None
 

@@ -45,7 +45,8 @@ def trunk_document(
     if products > 0.05 * np.diag(whole.inertia).max():
         notes.assume(
             f"the trunk's products of inertia (up to {products:.3g} kg m^2) are left out: the "
-            "model's axes are the principal ones"
+            "model's axes are the principal ones",
+            "trunk.inertia",
         )
     com = whole.com - centre
     inertia = possible(np.diag(whole.inertia).tolist())
@@ -108,7 +109,8 @@ def _guessed(
     size = [max(_THINNEST, math.sqrt(max(0.0, 12 * (half - own) / mass))) for own in inertia]
     shown = " x ".join(f"{value:.3g}" for value in size)
     why = "its collision mesh was not sent" if source.unseen else "it has no collision shape"
-    notes.assume(f"{name!r}: {why}; a box of {shown} m taken, which has its moments of inertia")
+    text = f"{name!r}: {why}; a box of {shown} m taken, which has its moments of inertia"
+    notes.assume(text, "trunk.size", "trunk.outline")
     x, z = size[0] / 2, size[2] / 2
     corners = np.array([(-x, -z), (x, -z), (x, z), (-x, z)])
     return corners + com[[0, 2]], size[1]

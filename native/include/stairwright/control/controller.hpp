@@ -83,13 +83,12 @@ class Controller {
     // `friction` is the one the plan was made for.
     Controller(Robot robot, WheelPath path, double friction, const Gains& gains);
 
-    // What the drives are to do; `yaw_rate` is commanded. `places` of the wheels on the wheel-centre curve [m]
-    // are those nearest to where the state puts the wheels, unless they are given.
-    Command command(const RobotState& state, const Reference& target, double yaw_rate = 0.0,
+    // What the drives are to do. `places` of the wheels on the wheel-centre curve [m] are those nearest to where
+    // the state puts the wheels, unless they are given.
+    Command command(const RobotState& state, const Reference& target,
                     const std::optional<std::array<double, 4>>& places = {});
     // The torques of that command at the same state, before the motors' limits.
-    Torques step(const RobotState& state, const Reference& target, double yaw_rate = 0.0,
-                 const std::optional<std::array<double, 4>>& places = {});
+    Torques step(const RobotState& state, const Reference& target);
 
     // To stand as the robot does at `state`, its wheels at `places`: still, with the forces that hold it there.
     Reference standing(const RobotState& state, const std::array<double, 4>& places) const;

@@ -49,9 +49,3 @@ def upgrade() -> None:
         sa.Column("result", sa.String(), nullable=True),
         sa.Column("created", sa.Float(), nullable=False),
     )
-
-
-def downgrade() -> None:
-    """Remove everything."""
-    for table in ("idempotency", "jobs", "documents", "terrains"):
-        op.drop_table(table)

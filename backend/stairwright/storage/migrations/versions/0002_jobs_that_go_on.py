@@ -23,13 +23,3 @@ def upgrade() -> None:
         jobs.add_column(sa.Column("revision", sa.Integer(), nullable=False, server_default="1"))
         jobs.create_index("ix_jobs_question", ["question"])
         jobs.create_index("ix_jobs_created", ["created"])
-
-
-def downgrade() -> None:
-    """Forget it again."""
-    with op.batch_alter_table("jobs") as jobs:
-        jobs.drop_index("ix_jobs_created")
-        jobs.drop_index("ix_jobs_question")
-        for column in ("question", "owner", "deaths", "losses", "revision"):
-            jobs.drop_column(column)
-    op.drop_table("job_questions")

@@ -15,8 +15,3 @@ def upgrade() -> None:
         sa.Column("document", sa.String(), nullable=False),
         sa.Column("updated", sa.Float(), nullable=False),
     )
-
-
-def downgrade() -> None:
-    """Forget them."""
-    op.drop_table("robots")

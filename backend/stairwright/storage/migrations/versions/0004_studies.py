@@ -26,9 +26,3 @@ def upgrade() -> None:
         sa.Column("used", sa.Float(), nullable=False),
     )
     op.create_index("ix_studies_used", "studies", ["used"])
-
-
-def downgrade() -> None:
-    """Forget it again."""
-    op.drop_index("ix_studies_used", "studies")
-    op.drop_table("studies")

@@ -13,10 +13,3 @@ def upgrade() -> None:
         documents.add_column(sa.Column("name", sa.String(), nullable=False, server_default=""))
         documents.add_column(sa.Column("note", sa.String(), nullable=False, server_default=""))
         documents.add_column(sa.Column("pinned", sa.Boolean(), nullable=False, server_default="0"))
-
-
-def downgrade() -> None:
-    """Forget it again."""
-    with op.batch_alter_table("documents") as documents:
-        for column in ("name", "note", "pinned"):
-            documents.drop_column(column)
