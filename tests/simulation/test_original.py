@@ -114,7 +114,8 @@ def test_what_does_not_fit_is_refused() -> None:
 def test_a_flight_is_climbed_by_the_original(odd: bool, form: str) -> None:
     text, machine = robot(odd, form)
     plan = sw.plan({"points": [(-0.5, 0), (0, 0), (0, 0.2), (0.5, 0.2)]}, machine)
-    ours, theirs = sw.rollout(plan), sw.rollout(plan, model=text)
+    settings = {"speed": 1.0}
+    ours, theirs = (sw.rollout(plan, controller=settings, model=m) for m in (None, text))
     assert ours.success
     assert theirs.success, theirs.reason
     assert theirs.metrics.link_contacts == 0
