@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import socket
 
 from stairwright.errors import InputError
@@ -22,6 +23,7 @@ def serve(host: str | None = None, port: int | None = None) -> int:
     _check_address(settings.host, settings.port)
     descriptors = _raise_descriptor_limit()
     launch()  # gets ready while this process imports what follows
+    gc.disable()  # all of which stays: to look for garbage in it is a tenth of a start
     import uvicorn
 
     from . import logs
@@ -35,8 +37,11 @@ def serve(host: str | None = None, port: int | None = None) -> int:
         total=descriptors // 2,  # the other half is for files, workers and scenes
         proxies=settings.trusted_proxies,
     )
+    app = create_app(settings)
+    gc.freeze()
+    gc.enable()
     uvicorn.run(
-        create_app(settings),
+        app,
         host=settings.host,
         port=settings.port,
         http=bounded(bounds),
