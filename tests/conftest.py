@@ -11,6 +11,7 @@ import ssl
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -85,13 +86,15 @@ def pytest_configure() -> None:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Quick tests first, then the slow ones, then the browser's.
 
-    Playwright leaves an event loop behind that others would stumble over.
+    Playwright leaves an event loop behind that others would stumble over. Large modules come first
+    of these last ones, so that processes that share the work end about together.
     """
+    sizes = Counter(item.path for item in items if item.get_closest_marker("browser"))
 
-    def rank(item: pytest.Item) -> int:
+    def rank(item: pytest.Item) -> tuple[int, int]:
         if item.get_closest_marker("browser"):
-            return 2
-        return 1 if item.get_closest_marker("slow") else 0
+            return 2, -sizes[item.path]
+        return (1, 0) if item.get_closest_marker("slow") else (0, 0)
 
     items.sort(key=rank)
 
