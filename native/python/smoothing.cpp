@@ -120,7 +120,8 @@ void bind_smoothing(nb::module_& m) {
         .def(nb::init<double, double, double, double, double>(), nb::arg("com_margin"), nb::arg("clearance"),
              nb::arg("torque"), nb::arg("smoothness"), nb::arg("pitch"));
     nb::class_<NodeSpacing>(m, "NodeSpacing")
-        .def(nb::init<double, double, double>(), nb::arg("softness"), nb::arg("spacing"), nb::arg("swing"));
+        .def(nb::init<double, double, double, bool>(), nb::arg("softness"), nb::arg("spacing"), nb::arg("swing"),
+             nb::arg("thorough") = false);
     nb::class_<ExtraMargins>(m, "ExtraMargins", "What a path keeps beyond its bounds, for ground that is not as drawn.")
         .def(nb::init<double, double, double, double, double>(), nb::arg("trunk") = 0.0, nb::arg("links") = 0.0, nb::arg("legs") = 0.0,
              nb::arg("reach") = 0.0, nb::arg("joints") = 0.0);

@@ -106,4 +106,5 @@ def test_a_saw_of_many_teeth_is_planned_on_a_lattice_of_bounded_size():
     samples = sample_wheel_places(planner.path, *planner.ends, 0.05, 1.0)
     assert len(samples) < 300
     assert np.diff(samples).max() <= 0.05 + 1e-9
+    assert len(sample_wheel_places(planner.path, *planner.ends, 0.05, 1.0, brinks=True)) < 300
     assert sw.plan(saw).feasible

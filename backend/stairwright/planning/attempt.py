@@ -25,6 +25,9 @@ class Attempt:
             smoothing makes as good a path from it.
         bounds: What lattice poses keep.
         roll_back: Whether wheels may roll back.
+        brinks: Whether wheels are sampled where they begin and end to roll round an edge, too. Down
+            steep stairs the rear wheels have to stand there, to a centimetre, while the front ones
+            land: farther back the legs are too short, farther on the edge is too slippery.
         probe: Only ask whether a search comes through.
     """
 
@@ -32,6 +35,7 @@ class Attempt:
     bounds: Bounds
     roll_back: bool = False
     probe: bool = False
+    brinks: bool = False
 
 
 @dataclass(frozen=True)

@@ -75,9 +75,10 @@ class PathPlanner(PathProblem):
         cheap: bool = True,
         roll_back: bool = False,
         partial: bool = False,
+        brinks: bool = False,
     ) -> LatticePath:
         """Search once; see `Search.find`."""
-        return find_path(self, bounds, fine, cheap, roll_back, partial, self.searches)
+        return find_path(self, bounds, fine, cheap, roll_back, partial, self.searches, brinks)
 
     def passes(self, piece: Piece, fine: float, bounds: Bounds, roll_back: bool = False) -> bool:
         """Whether a search leads through a piece of the terrain; see `pieces.passes`."""
@@ -99,20 +100,22 @@ class PathPlanner(PathProblem):
         is to be driven fast, each is smoothed in two ways, and the soonest is taken.
         """
         still_wanted()
-        finding = self.find(how.fine, how.bounds, not how.probe, how.roll_back)
+        finding = self.find(how.fine, how.bounds, not how.probe, how.roll_back, brinks=how.brinks)
         if how.probe:
             return Blocked(None, finding.quality > 0)
         if finding.s is None:
             return Blocked(finding.reached, False)
         if self.unweighted is None:
-            return self.finish(finding)
-        usual = self.unweighted.find(how.fine, how.bounds, roll_back=how.roll_back)
+            return self.finish(finding, how.brinks)
+        usual = self.unweighted.find(
+            how.fine, how.bounds, roll_back=how.roll_back, brinks=how.brinks
+        )
         found = [finding] if usual.s is None else [finding, usual]
-        answers = [self.finish(path) for path in found]
+        answers = [self.finish(path, how.brinks) for path in found]
         if self.fast:
-            answers += [self.straighter.finish(path) for path in found]
+            answers += [self.straighter.finish(path, how.brinks) for path in found]
             return min(answers, key=self._slowness)
-        answers += [self.unweighted.finish(path) for path in found[1:]]
+        answers += [self.unweighted.finish(path, how.brinks) for path in found[1:]]
         return min(answers, key=self.cost)
 
     def cost(self, answer: Solved | Blocked) -> float:
@@ -214,7 +217,7 @@ class PathPlanner(PathProblem):
             return None, finding.reached
         return self.poses(found), finding.reached
 
-    def finish(self, finding: LatticePath) -> Solved | Blocked:
+    def finish(self, finding: LatticePath, brinks: bool = False) -> Solved | Blocked:
         """Smooth, repair and certify; where that fails, the arc lengths at the worst place."""
         assert finding.s is not None
         assert finding.body is not None
@@ -231,7 +234,7 @@ class PathPlanner(PathProblem):
                         return solved
                     bad = solved.bad
             if stage is not None:
-                found = repair(self, found, bad, stage)
+                found = repair(self, found, bad, stage, brinks)
         worst = found.s[int(found.margins.least_slack.argmin())]
         weak = found.margins.overloaded
         share = found.margins.torque_share if weak else math.inf

@@ -3,7 +3,8 @@
 1. STRICT: one coarse search with bounds that the finished path keeps. Nine of ten end here.
 2. LOOSE: bounds broken by as much as rounding to the lattice takes; beside it a probe whether even
    the loosest bounds let a search through.
-3. FINE: the loosest bounds, a finer lattice, and wheels that may roll back; the first path counts.
+3. FINE: the loosest bounds, a finer lattice, wheels that may roll back, and places for them at
+   the very edges of treads; the first path counts.
 4. FINEST: where no coarse search comes through. Where the CoM has but a few centimetres, as down
    steep stairs with all knees back, a coarse lattice has no pose in them at all.
 
@@ -36,6 +37,7 @@ POSSIBLE = Attempt(COARSE, LOOSEST, roll_back=True, probe=True)
 MOST_FORGIVING = Attempt(COARSE, LOOSEST)
 FINER = Attempt(1.4, LOOSER)
 ROLLING_BACK = Attempt(COARSE, LOOSE, roll_back=True)
+ON_BRINKS = Attempt(COARSE, LOOSEST, brinks=True)
 FINEST = Attempt(1.0, LOOSE)
 
 Tried = dict[Attempt, Solved | Blocked]
@@ -155,7 +157,8 @@ def _search(
         return forgiving
     if _opened(tried):
         # Where forgiving bounds let a search through, rolling back would be the same path again.
-        last = [MOST_FORGIVING, FINER] + ([] if forgiving.opened else [ROLLING_BACK])
+        back = [] if forgiving.opened else [ROLLING_BACK]
+        last = [MOST_FORGIVING, FINER, *back, ON_BRINKS]
         _make(planner, pool, last, tried, first=True)
         best = _best(tried, thin)
         if best is not None:

@@ -10,7 +10,7 @@ import numpy as np
 from stairwright import _core
 from stairwright.arrays import Floats
 from stairwright.planning.standing import StandingPose
-from stairwright.terrain.wheel_path import WheelPath
+from stairwright.terrain.wheel_path import ARC, WheelPath
 
 CORNER = 0.15  # rad; concave corners with a smaller kink need no samples of their own
 _APART = 5e-5  # m; samples are no closer
@@ -24,15 +24,17 @@ def rolled(s: Floats) -> Floats:
 
 
 def sample_wheel_places(
-    path: WheelPath, begin: StandingPose, end: StandingPose, step: float, size: float
-) -> Floats:
+    path: WheelPath, begin: StandingPose, end: StandingPose, step: float, size: float,
+    brinks: bool = False,
+) -> Floats:  # fmt: skip
     """Arc lengths (n,) of the lattice's wheel positions, rising.
 
     They are at most `step` apart. In a concave corner a wheel touches two faces, a tenth of a
     millimetre beside it one: samples at all three make a pose that stands on one face alone come
     before and after any that leans on both. A saw has more corners than a lattice can hold: there
     only the sharpest of those that lie close together are sampled, and what lies between is left to
-    the smoothing and the certificate.
+    the smoothing and the certificate. With `brinks` there is one where a wheel begins to roll round
+    an edge, too, and where it ends: as far ahead as a tread carries it upright.
     """
     s0, s1 = begin.wheels[1], end.wheels[0]
     marks = [begin.wheels[0], begin.wheels[1], end.wheels[0], end.wheels[1]]
@@ -43,6 +45,8 @@ def sample_wheel_places(
         corners = _sharp_corners(path, s0, s1, apart)
     for corner in corners:
         marks += [corner - _core.BESIDE, corner, corner + _core.BESIDE]
+    if brinks:
+        marks += _brinks(path, s0, s1)
     fixed = set(marks[:4])
     kept: list[float] = []
     for mark in sorted(m for m in marks if s0 <= m <= s1):
@@ -71,6 +75,15 @@ def _sharp_corners(path: WheelPath, s0: float, s1: float, apart: float) -> list[
         if kinks[i] > CORNER and all(abs(corners[i] - one) >= apart for one in kept):
             kept.append(float(corners[i]))
     return kept
+
+
+def _brinks(path: WheelPath, s0: float, s1: float) -> list[float]:
+    """Where a wheel is about to roll round an edge, or has just done so; none on a saw."""
+    arcs = path.pieces[path.pieces[:, 0] == ARC]
+    arcs = arcs[arcs[:, 2] > CORNER * path.radius]
+    ends = np.concatenate([arcs[:, 1], arcs[:, 1] + arcs[:, 2]])
+    out: list[float] = ends[(ends > s0) & (ends < s1)].tolist()
+    return out if len(out) <= 2 * _MOST_CORNERS else []
 
 
 def kink(path: WheelPath, corner: float) -> float:

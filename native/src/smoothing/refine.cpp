@@ -69,6 +69,16 @@ void stop_in_corners(Column& s, const std::vector<double>& corners) {
     }
 }
 
+// A wheel that rolls through a concave corner stops in it: before and after it a leg reaches less far.
+void stop_in_all_corners(Column& s, const std::vector<double>& corners) {
+    for (std::size_t k = 1; k < s.size(); ++k) {
+        const auto corner = std::lower_bound(corners.begin(), corners.end(), std::min(s[k - 1], s[k]));
+        if (corner == corners.end() || *corner > std::max(s[k - 1], s[k])) continue;
+        double& nearer = std::abs(s[k - 1] - *corner) < std::abs(s[k] - *corner) ? s[k - 1] : s[k];
+        nearer = *corner;
+    }
+}
+
 // Smoothing must not make wheels roll back that only rolled forward.
 void keep_rising(Column& s, double first, double last) {
     double highest = first;
@@ -94,6 +104,8 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
     if (rolls_forward(way))
         for (int pair : {kFront, kRear}) keep_rising(smoothed[pair], laid[held - 1].s[pair], laid[n - held].s[pair]);
     for (int pair : {kFront, kRear}) stop_in_corners(smoothed[pair], problem.path.corners());
+    if (spacing.thorough)
+        for (int pair : {kFront, kRear}) stop_in_all_corners(smoothed[pair], problem.path.corners());
     std::vector<Node> nodes = nodes_of(smoothed);
     std::vector<bool> fixed(n, false);
     for (std::size_t k = 0; k < held; ++k)
@@ -109,7 +121,7 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
     const std::vector<std::array<double, 2>> early = early_faces(problem, nodes, intervals);
     const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, loads, early, fixed,
                                      objective(problem, spacing, hop / kUsualSpacing)};
-    smooth(smoothing, bodies, kIterations);
+    smooth(smoothing, bodies, kIterations, spacing.thorough);
     for (std::size_t k = 0; k < n; ++k) nodes[k].body = bodies[k];
 
     RefinedPath out;

@@ -16,6 +16,8 @@ constexpr double kLinear = 1e-4;     // m and rad; a node that has moved by less
 constexpr double kFixed = 1e12;      // stiffness that no node moves against
 constexpr double kGain = 0.01;       // cost of a quarter of a millimetre too little: a smaller gain ends the smoothing
 constexpr double kLongestStep = 0.05;  // m and rad
+constexpr double kFirstDamping = 1e-3, kMostDamping = 1e4;
+constexpr double kWorse = 1.02;      // times what a node cost; a step that makes it dearer is too long there
 constexpr double kNewCost = 1.0 - 1e-12;
 
 // A node as it was when it was last looked at.
@@ -45,11 +47,12 @@ double limited(double step) { return std::min(kLongestStep, std::max(-kLongestSt
 // One run of Levenberg-Marquardt.
 class Smoother {
   public:
-    Smoother(const SmoothingProblem& problem, std::span<Body> nodes)
-        : problem_(problem), nodes_(nodes), radii_(query_radii(problem.objective)),
+    Smoother(const SmoothingProblem& problem, std::span<Body> nodes, bool each)
+        : problem_(problem), each_(each), nodes_(nodes), radii_(query_radii(problem.objective)),
           evenness_(problem.objective.evenness.hessian(nodes.size())), geometry_(nodes.size()),
           residuals_(nodes.size()), fresh_(nodes.size()), seen_(nodes.size()), best_(nodes.begin(), nodes.end()),
-          hessian_(evenness_), uneven_(3 * nodes.size()), gradient_(3 * nodes.size()) {}
+          hessian_(evenness_), uneven_(3 * nodes.size()), gradient_(3 * nodes.size()), damping_(nodes.size(), kFirstDamping),
+          costs_(nodes.size()), least_costs_(nodes.size(), kInfinity) {}
 
     double run(int iterations) {
         for (int k = 0; k < iterations; ++k) {
@@ -60,13 +63,13 @@ class Smoother {
                 const bool settled = least_ - cost < std::max(kGain, 2e-3 * std::min(1.0, 20.0 / n) * least_);
                 least_ = cost;
                 std::copy(nodes_.begin(), nodes_.end(), best_.begin());
-                damping_ = std::max(damping_ * 0.4, 1e-6);
                 if (settled) break;
+                adapt(true);
                 linearise();
             } else {
-                damping_ *= 6.0;
+                adapt(false);
             }
-            if (damping_ > 1e4) break;
+            if (std::ranges::all_of(damping_, [](double d) { return d > kMostDamping; })) break;
             step();
         }
         std::copy(best_.begin(), best_.end(), nodes_.begin());
@@ -74,10 +77,23 @@ class Smoother {
     }
 
   private:
+    // Less damping after a step that has helped, more after one that has not; with `each_` nodes by what they cost themselves.
+    void adapt(bool helped) {
+        const auto worse = [&](std::size_t k) { return costs_[k] > kWorse * least_costs_[k] + kGain * kGain; };
+        bool told = false;
+        for (std::size_t k = 0; each_ && k < damping_.size(); ++k) told = told || worse(k);
+        for (std::size_t k = 0; k < damping_.size(); ++k) {
+            if (told && worse(k)) damping_[k] *= helped ? 2.0 : 6.0;
+            else if (helped) damping_[k] = std::max(damping_[k] * 0.4, 1e-6);
+            else if (!told) damping_[k] *= 6.0;
+        }
+        if (helped) least_costs_ = costs_;
+    }
+
     // Cost of the nodes as they are; once it exceeds the least so far, no more than that is known.
     double evaluate() {
         double cost = problem_.objective.evenness.cost(nodes_, uneven_);
-        for (std::size_t k = 0; k < nodes_.size() && cost < least_ * kNewCost; ++k) {
+        for (std::size_t k = 0; k < nodes_.size() && (each_ || cost < least_ * kNewCost); ++k) {
             fresh_[k] = has_moved(nodes_[k], seen_[k].body);
             if (fresh_[k]) {
                 geometry_[k] = pose_geometry(problem_.terrain, problem_.robot, nodes_[k], problem_.wheels[k], radii_);
@@ -85,7 +101,9 @@ class Smoother {
             } else {
                 residuals_[k] = extrapolate(seen_[k].residuals, seen_[k].jacobian, seen_[k].body, nodes_[k]);
             }
-            for (const double r : residuals_[k]) cost += r * r;
+            costs_[k] = 0.0;
+            for (const double r : residuals_[k]) costs_[k] += r * r;
+            cost += costs_[k];
         }
         return cost;
     }
@@ -117,7 +135,7 @@ class Smoother {
         BandMatrix h = hessian_;
         std::vector<double> delta = gradient_;
         delta.resize(gradient_.size() + kBand);
-        for (std::size_t i = 0; i < gradient_.size(); ++i) h[i][0] += damping_ * (1.0 + h[i][0]);
+        for (std::size_t i = 0; i < gradient_.size(); ++i) h[i][0] += damping_[i / 3] * (1.0 + h[i][0]);
         solve_banded(h, delta);
         for (std::size_t k = 0; k < nodes_.size(); ++k)
             nodes_[k] = {best_[k].x - limited(delta[3 * k]), best_[k].z - limited(delta[3 * k + 1]),
@@ -125,6 +143,7 @@ class Smoother {
     }
 
     const SmoothingProblem& problem_;
+    const bool each_;
     std::span<Body> nodes_;
     QueryRadii radii_;
     BandMatrix evenness_;
@@ -135,13 +154,14 @@ class Smoother {
     std::vector<Body> best_;
     BandMatrix hessian_;
     std::vector<double> uneven_, gradient_;
-    double damping_ = 1e-3, least_ = kInfinity;
+    std::vector<double> damping_, costs_, least_costs_;  // by node
+    double least_ = kInfinity;
 };
 
 }  // namespace
 
-double smooth(const SmoothingProblem& problem, std::span<Body> nodes, int iterations) {
-    return Smoother(problem, nodes).run(iterations);
+double smooth(const SmoothingProblem& problem, std::span<Body> nodes, int iterations, bool each) {
+    return Smoother(problem, nodes, each).run(iterations);
 }
 
 }  // namespace stairwright::smoothing

@@ -14,6 +14,7 @@ from stairwright.planning.planner import plan
 from stairwright.planning.smoothing import repair as repairs
 from stairwright.planning.smoothing.refine import Refined, refine
 from stairwright.planning.smoothing.repair import STAGES, repair
+from stairwright.planning.strategy import MOST_FORGIVING, ON_BRINKS
 from stairwright.planning.weights import PathWeights
 from stairwright.terrain.stairs import stair
 
@@ -40,6 +41,13 @@ def test_a_path_that_the_polish_leaves_bad_is_mended(rise, run, friction):
     answer = planner.attempt(Attempt(1.7, LOOSE))
     assert isinstance(answer, Solved)
     assert answer.certificate.passed
+
+
+def test_down_a_stair_rear_wheels_wait_at_the_edge():
+    """Farther back the front legs do not reach the next tread, farther on the edge is slippery."""
+    planner = flight("down", "d1", 0.6, 0.19, 0.26)
+    assert not isinstance(planner.attempt(MOST_FORGIVING), Solved)
+    assert isinstance(planner.attempt(ON_BRINKS), Solved)
 
 
 def test_between_nodes_wheels_keep_to_both_faces_of_a_corner():

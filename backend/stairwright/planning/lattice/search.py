@@ -30,12 +30,13 @@ class Search:
         end: StandingPose,
         lattice: Lattice,
         bounds: Bounds,
+        brinks: bool = False,
     ) -> None:
         path, robot, model = q.path, q.robot, q.robot_model
         self.path, self.robot, self.lattice = path, robot, lattice
         self.bounds = q.extra.within(bounds, q.in_search)
         self.begin, self.end, self.weights, self.model = begin, end, q.weights, model
-        self.s = sample_wheel_places(path, begin, end, lattice.step, scale(robot))
+        self.s = sample_wheel_places(path, begin, end, lattice.step, scale(robot), brinks)
         self.centres = path.centres(self.s)
         close = 2 * path.radius + _core.LEGS_GAP + _APART + q.extra.legs
         ends = (self._index(begin)[0], self._index(end)[1])

@@ -35,10 +35,12 @@ def find_path(
     roll_back: bool = False,
     partial: bool = False,
     searches: Searches | None = None,
+    brinks: bool = False,
 ) -> LatticePath:
     """The path from the first standing pose to the second; see `Search.find` for the arguments.
 
-    With `partial` it is the path as far as it goes where there is none to the end.
+    With `brinks` wheels are sampled at edges, too. With `partial` it is the path as far as it goes
+    where there is none to the end.
     """
     begin, end = q.ends
     size = scale(q.robot)
@@ -47,7 +49,7 @@ def find_path(
         stop = begin.wheels[0] + WINDOW * size
         last = end.wheels[0] - begin.wheels[0] < (_LAST if cheap else _LAST_ASKED) * size
         until = end if last else StandingPose((stop, stop - 0.2 * size), end.body)
-        search = search_between(q, begin, until, bounds, fine, searches)
+        search = search_between(q, begin, until, bounds, fine, searches, brinks)
         found = search.find(
             q.friction, q.reserve, bounds.com, cheap or not last, roll_back, open_end=not last,
             partial=partial, torque=q.torque_share(bounds),
@@ -78,13 +80,14 @@ def search_between(
     bounds: Bounds,
     fine: float,
     searches: Searches | None,
+    brinks: bool = False,
 ) -> Search:
     """A search between two stands; one of `searches` if it is there."""
     kept: Searches = {} if searches is None else searches
-    key = (fine, bounds, begin.wheels, end.wheels, tuple(begin.body.tolist()))
+    key = (fine, bounds, brinks, begin.wheels, end.wheels, tuple(begin.body.tolist()))
     search = kept.get(key)
     if search is None:
-        search = Search(q, begin, end, make_lattice(q.robot, fine), bounds)
+        search = Search(q, begin, end, make_lattice(q.robot, fine), bounds, brinks)
         finest = sum(one[0] <= 1.0 for one in kept.copy())  # other threads search, too
         if len(kept) < _KEPT and (fine > 1.0 or finest < _KEPT_FINE):
             kept[key] = search

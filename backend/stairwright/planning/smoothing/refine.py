@@ -48,11 +48,13 @@ class NodeSpacing(NamedTuple):
         softness: How much they are smoothed before, and bent as little as possible by it.
         spacing: Of nodes, for legs of 0.4 m [m].
         swing: How much a motion of the trunk counts against the same travel of the wheels.
+        thorough: Whether nodes settle each by itself, and wheels stop in every corner.
     """
 
     softness: float
     spacing: float
     swing: float
+    thorough: bool = False
 
 
 COARSE = NodeSpacing(1.0, 0.009, 0.3)

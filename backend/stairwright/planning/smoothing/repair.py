@@ -43,11 +43,16 @@ class Stage(NamedTuple):
 STAGES = (Stage(0.1, None, depth=0.008), Stage(0.15, 1.25), Stage(0.25, 1.0, places=1, longest=0.9))
 _BLEND = 0.08  # m on either side of that, which are smoothed with it
 _HELD = 3  # nodes at the ends of a piece stay, so that it meets the path without a kink
-_SPACINGS = (NodeSpacing(0.5, 0.006, 0.6), NodeSpacing(0.15, 0.006, 0.6))
+_SPACINGS = (NodeSpacing(0.5, 0.006, 0.6), NodeSpacing(0.15, 0.006, 0.6, thorough=True))
 
 
-def repair(q: PathProblem, found: Refined, bad: Ints, stage: Stage) -> Refined:
-    """The path with better pieces round its `bad` nodes; the same one if there are none."""
+def repair(
+    q: PathProblem, found: Refined, bad: Ints, stage: Stage, brinks: bool = False
+) -> Refined:
+    """The path with better pieces round its `bad` nodes; the same one if there are none.
+
+    With `brinks` searches of pieces sample wheels at edges, too; see `Attempt`.
+    """
     u = np.concatenate([[0.0], np.cumsum(rolled(found.s))])
     size = scale(q.robot)
     width, blend = stage.width * size, _BLEND * size
@@ -61,7 +66,7 @@ def repair(q: PathProblem, found: Refined, bad: Ints, stage: Stage) -> Refined:
         if deep or high - low > stage.longest * size:
             continue
         begin, inner = max(begin, last), (max(inner[0], last), inner[1])
-        path = _local_path(q, found, begin, end, *inner, stage.fine)
+        path = _local_path(q, found, begin, end, *inner, stage.fine, brinks)
         if path is None:
             continue
         piece = _smoothed(q, found.part(begin, end + 1), path)
@@ -88,8 +93,9 @@ def _nodes(u: Floats, low: float, high: float) -> tuple[int, int]:
 
 
 def _local_path(
-    q: PathProblem, found: Refined, begin: int, end: int, a: int, b: int, fine: float | None
-) -> tuple[Floats, Floats] | None:
+    q: PathProblem, found: Refined, begin: int, end: int, a: int, b: int, fine: float | None,
+    brinks: bool,
+) -> tuple[Floats, Floats] | None:  # fmt: skip
     """Arc lengths and trunk poses from node `begin` to node `end`, new ones between `a` and `b`."""
     s, body = found.s, found.body
     if fine is None:
@@ -97,8 +103,9 @@ def _local_path(
     if (s[b] < s[a]).any():
         return None
     search = Search(
-        q, found.standing_pose(a), found.standing_pose(b), make_lattice(q.robot, fine), LOOSE
-    )
+        q, found.standing_pose(a), found.standing_pose(b), make_lattice(q.robot, fine), LOOSE,
+        brinks,
+    )  # fmt: skip
     still_wanted()
     new = search.find(q.friction, q.reserve, LOOSE.com, torque=q.torque_share(LOOSE))
     if new.s is None or new.body is None:

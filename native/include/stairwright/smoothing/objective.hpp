@@ -36,6 +36,7 @@ struct NodeSpacing {
     double softness = 1.0;   // how much they are smoothed before, and bent as little as possible by it
     double spacing = 0.009;  // of nodes, for legs of 0.4 m [m]
     double swing = 0.3;      // how much a motion of the trunk counts against the same travel of the wheels
+    bool thorough = false;   // whether nodes settle each by itself, and wheels stop in every corner: for what has not come right
 };
 
 // `share` is the nodes' spacing over kUsualSpacing: weights of a sum over nodes scale with it.

@@ -56,7 +56,8 @@ struct SmoothingProblem {
 };
 
 // Change `nodes` in place; returns the cost left. A node that has hardly moved since it was looked at is not looked at
-// again: its residuals are extrapolated. In most iterations few nodes move.
-double smooth(const SmoothingProblem& problem, std::span<Body> nodes, int iterations);
+// again: its residuals are extrapolated. In most iterations few nodes move. With `each` a step is damped where it makes
+// things worse and not everywhere: it takes longer, but no place keeps another from coming right.
+double smooth(const SmoothingProblem& problem, std::span<Body> nodes, int iterations, bool each = false);
 
 }  // namespace stairwright::smoothing
