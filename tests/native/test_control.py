@@ -39,8 +39,8 @@ def test_native_controller_equals_plain(name: str) -> None:
         plain = Controller(robot, path, 0.6, settings)
         native = native_controller(robot, path, 0.6, settings)
         for _ in range(3):  # memory of forces and places, too
-            expected = plain.step(qpos, qvel, Setpoint.from_row(row, 0.2))
-            torques = native.step(qpos, qvel, row, 0.2)
+            expected = plain.step(qpos, qvel, Setpoint.from_row(row))
+            torques = native.step(qpos, qvel, row)
             np.testing.assert_allclose(native.places, plain.places, atol=1e-9)
             np.testing.assert_allclose(torques, expected, atol=1e-5, rtol=1e-5)
             assert native.pitch_integral == pytest.approx(plain.pitch_integral)

@@ -130,7 +130,7 @@ def calls() -> Iterator[str]:
         friction = float(odd(1)[0])
         control = native_controller(robot, path, friction, ControllerSettings())
         for _ in range(4):
-            control.step(odd(19), odd(18), odd(WIDTH), 0.1)
+            control.step(odd(19), odd(18), odd(WIDTH))
 
     def follower() -> None:
         start, step, lead, dt = odd(4)
