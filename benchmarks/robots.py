@@ -20,12 +20,13 @@ own sensors tell them (`sensing: robot`). All of it is statics and simulation: n
 it.
 "Not run": the trials of that row were left out for want of time, which says nothing about it.
 
-Where trials fail: down a flight `a1_wheeled` (all knees back) falls or collides. At its highest
-wall `go2w` falls also without anything drawn: its front wheels hang on the edge by 0.96 of the
-friction, which its plan counts as enough. Up flights
-`anymal_wheels` collides or falls where its plans leave its centre of mass 2 to 3 cm, which trials
-shift by 2 cm. A ramp of 30 degrees takes a friction of 0.577, and some trials draw less. `d1` has
-no plan down most flights. Ramps of 45 degrees are gone up with a pair of wheels on level ground.
+Where trials fail: down flights `a1_wheeled` (all knees back) and `d1` stop before they start, as
+they find that their mass centre is not where the plan has it and that there is no plan for where
+it is; before robots looked for that, an A1 fell down them. At its highest wall `go2w` falls also
+without anything drawn: its front wheels hang on the edge by 0.96 of the friction, which its plan
+counts as enough. There `m20` touches the wall with a calf, of which its plan keeps 9 mm, and
+`a1_wheeled` tips over backward. A ramp of 30 degrees takes a friction of 0.577, and some trials
+draw less. Ramps of 45 degrees are gone up with a pair of wheels on level ground.
 
 Rows are kept in a folder by the hash of the code and the question, so that a run that was ended
 goes on, and several may share the work.
