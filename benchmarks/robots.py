@@ -28,6 +28,9 @@ counts as enough. There `m20` touches the wall with a calf, of which its plan ke
 `a1_wheeled` tips over backward. A ramp of 30 degrees takes a friction of 0.577, and some trials
 draw less. Ramps of 45 degrees are gone up with a pair of wheels on level ground.
 
+Rows of `a1_wheeled_x` are of the state before robots nodded; `d1` walls of that before its wheels
+could wait at edges.
+
 Rows are kept in a folder by the hash of the code and the question, so that a run that was ended
 goes on, and several may share the work.
 """
