@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import pytest
 
@@ -12,9 +11,6 @@ import stairwright as sw
 
 from .conftest import DESK, PHONE, Product
 from .robot_room import LAPTOP, choose, field, pull, robot_room, state
-
-if TYPE_CHECKING:
-    pass
 
 pytestmark = [pytest.mark.browser]
 

@@ -5,17 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
-from stairwright import _core
 from stairwright.control.setpoint import SHARE
 from stairwright.errors import InputError
+from stairwright.planning.firm_margins import firm_com_margins
 from stairwright.planning.plan import Plan
 from stairwright.planning.planner import plan as make_plan
 from stairwright.robot.description import Robot
 from stairwright.robot.parts import Payload
 from stairwright.terrain.profile import Terrain
-from stairwright.terrain.wheel_path import wheel_path
 
 from .governor import Track
 
@@ -145,19 +142,10 @@ def after_weighing(plan: Plan, mass: float, place: Point, shift: Point) -> Decis
             why=f"the robot weighs {found.mass:.1f} kg, {mass:.1f} kg more than the plan is for, "
             "and there is none for that"
         )
-    lacking = KEPT - _room_left(plan, shift)
+    lacking = KEPT - float(firm_com_margins(plan, shift).min())
     if lacking <= 0.0:
         return Decision()
     return Decision(
         why=f"the robot's mass centre is {1e3 * math.hypot(*shift):.0f} mm from where the plan has "
         f"it, so that it would lack {1e3 * lacking:.0f} mm of balance, and there is none for that"
     )
-
-
-def _room_left(plan: Plan, shift: Point) -> float:
-    """What the plan leaves a mass centre that is shifted, at the least; negative: it tips [m]."""
-    path = wheel_path(plan.terrain, plan.robot_description.wheel.radius)
-    s = np.array([pose.wheel_progress for pose in plan.poses])
-    pitch, x = np.array([(pose.pitch, pose.com[0]) for pose in plan.poses]).T
-    x = x + shift[0] * np.cos(pitch) + shift[1] * np.sin(pitch)
-    return float(_core.firm_com_margins(path.native, s, x, plan.friction).min())

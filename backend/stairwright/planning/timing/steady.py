@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from stairwright import _core
 from stairwright.arrays import Floats
 from stairwright.planning.certificate.dynamics import dynamics_of
+from stairwright.planning.firm_margins import firm_com_margins
 from stairwright.planning.plan import Plan
 from stairwright.planning.smoothing.path_timing import (
     even_times,
@@ -18,7 +18,6 @@ from stairwright.planning.smoothing.path_timing import (
     standing_effort,
     stretched,
 )
-from stairwright.terrain.wheel_path import wheel_path
 
 STRAINED = 0.8  # of a motor's torque for standing, from which on moving is looked at
 _MOST = 0.98  # of the torque that standing and moving may take
@@ -31,12 +30,9 @@ def retimed(plan: Plan, speed: float) -> Plan:
     s = np.array([pose.wheel_progress for pose in plan.poses])
     body = np.array([(pose.x_c, pose.z_c, pose.pitch) for pose in plan.poses])
     q = np.array([pose.q for pose in plan.poses])
-    com_x = np.array([pose.com[0] for pose in plan.poses])
-    path = wheel_path(plan.terrain, plan.robot_description.wheel.radius)
-    margin = _core.firm_com_margins(path.native, s, com_x, plan.friction)
-    robot = plan.robot_description
     effort = standing_effort(plan)
-    times = pose_times(robot, s, body, q, margin, effort, speed)
+    margin = firm_com_margins(plan)
+    times = pose_times(plan.robot_description, s, body, q, margin, effort, speed)
     return slowed_where_strained(_timed(plan, times), effort)
 
 
