@@ -129,6 +129,18 @@ def test_bars_of_margins_reach_as_far_as_the_timeline_at_any_width(product: Prod
         page.set_viewport_size(DESK)
 
 
+def test_the_pose_keeps_to_its_row_at_any_width(product: Product) -> None:
+    page = product.page
+    page.get_by_role("slider", name="Time").press("Home")
+    row = page.get_by_role("region", name="Pose at the cursor")
+    try:
+        for width in (1220, 1280, 1361, 1400, 1440):
+            page.set_viewport_size({"width": width, "height": 900})
+            assert row.evaluate("e => e.scrollWidth <= e.clientWidth"), width
+    finally:
+        page.set_viewport_size(DESK)
+
+
 def test_a_tablet_standing_up_shows_everything_at_once(product: Product) -> None:
     page = product.page
     page.set_viewport_size({"width": 820, "height": 1180})

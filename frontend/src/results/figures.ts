@@ -14,6 +14,9 @@ export const OUTCOMES: Record<Outcome, string> = {
   stopped: "Stopped safely",
 };
 
+/** Beside other figures there is room for a word. */
+const SHORT: Partial<Record<Outcome, string>> = { timeout: "Out of time", stopped: "Stopped" };
+
 /** How it ended, as a class: a robot that stopped stands unharmed, others did not arrive. */
 export const verdict = (outcome: Outcome): "" | "caution" | "bad" =>
   outcome === "success" ? "" : outcome === "stopped" ? "caution" : "bad";
@@ -94,7 +97,7 @@ export function figures(
 ): Figure[] {
   const outcome: Figure = {
     title: "Outcome",
-    of: (_m, r) => OUTCOMES[r.outcome],
+    of: (_m, r) => SHORT[r.outcome] ?? OUTCOMES[r.outcome],
     bad: (_m, r) => hasFailed(r),
   };
   const motors = limits ? legLimits(limits).map((each) => fixed(each, 1)) : [];
