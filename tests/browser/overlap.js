@@ -1,4 +1,5 @@
-// What lies over something else or is cut off, of all text and controls that can be seen.
+// What lies over something else, is hidden by it, or is cut off, of all text and controls that
+// can be seen.
 // Areas that scroll may cut; text that is shortened on purpose has a title that tells it whole.
 () => {
   const seen = e => { const s = getComputedStyle(e); const r = e.getBoundingClientRect(); return s.visibility !== 'hidden' && r.width > 1 && r.height > 1 && s.opacity !== '0' && !e.closest('[aria-hidden=true] svg') };
@@ -15,7 +16,7 @@
   }
   for (const e of document.querySelectorAll('button, input, [role=slider], [role=switch], a[href], select')) if (seen(e) && !e.closest('svg,.sr')) { const r = e.getBoundingClientRect(); const c = clip(e, r); if (c.right - c.left > 1 && c.bottom - c.top > 1) items.push({e, r:c, full:r, control:true, text:name(e)}); }
   const faults = [];
-  const shortened = e => { const s = getComputedStyle(e); return s.textOverflow === 'ellipsis' && e.closest('[title]') !== null; };
+  const shortened = e => { const s = getComputedStyle(e); return s.textOverflow === 'ellipsis' && !/flex|grid/.test(s.display) && e.closest('[title]') !== null; };
   const scrolls = e => { for (let p = e.parentElement; p; p = p.parentElement) { const s = getComputedStyle(p); if (/auto|scroll/.test(s.overflowX + s.overflowY)) return true; } return false; };
   for (const i of items) {
     if (scrolls(i.e) || (!i.control && shortened(i.e))) continue;
@@ -29,5 +30,21 @@
     const w = Math.min(p.r.right, q.r.right) - Math.max(p.r.left, q.r.left), h = Math.min(p.r.bottom, q.r.bottom) - Math.max(p.r.top, q.r.top);
     if (w > 1.5 && h > 2.5) faults.push(`overlap: ${p.text} in ${name(p.e)} / ${q.text} in ${name(q.e)}`);
   }
+  // What floats may let the pointer through to the drawing, but not to what it hides.
+  const through = [...document.querySelectorAll('.through')];
+  for (const e of through) e.style.pointerEvents = 'auto';
+  const layer = e => e.closest('.panel, dialog, .toast');
+  const opaque = e => { const s = getComputedStyle(e); return s.backgroundColor !== 'rgba(0, 0, 0, 0)' || s.backgroundImage !== 'none'; };
+  const hides = (e, i) => { for (let p = e; p && !p.contains(i.e); p = p.parentElement) if (opaque(p)) return true; return i.control; };
+  for (const i of items) {
+    if (getComputedStyle(i.e).pointerEvents === 'none' || i.e.disabled) continue;
+    const { left, right, top, bottom } = i.r;
+    if (Math.min(right - left, bottom - top) < 8) continue;
+    const on = [[left + 4, top + 4], [right - 4, top + 4], [left + 4, bottom - 4], [right - 4, bottom - 4], [(left + right) / 2, (top + bottom) / 2]]
+      .map(([x, y]) => document.elementFromPoint(x, y))
+      .find(e => e && !e.contains(i.e) && !i.e.contains(e) && !(layer(e) && layer(e) !== layer(i.e)) && hides(e, i));
+    if (on) faults.push(`covered: ${i.text} in ${name(i.e)} by ${name(on)}`);
+  }
+  for (const e of through) e.style.pointerEvents = '';
   return [...new Set(faults)];
 }

@@ -10,7 +10,7 @@ import pytest
 from .conftest import DESK, PHONE, TERRAIN, Product
 
 if TYPE_CHECKING:
-    from playwright.sync_api import ViewportSize
+    from playwright.sync_api import Route, ViewportSize
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -64,6 +64,10 @@ def test_the_check_finds_what_is_cut_off_or_covered(product: Product) -> None:
         page.locator(".bar h2").evaluate("(h, style) => { h.style.cssText = style }", style)
         assert any("Profile" in fault for fault in _faults(product))
     page.locator(".bar h2").evaluate("h => { h.style.cssText = '' }")
+    canvas = page.locator(".canvas")
+    canvas.evaluate("e => { e.style.cssText = 'margin-top: -30px; z-index: 9' }")
+    assert any("covered: Profile" in fault for fault in _faults(product))
+    canvas.evaluate("e => { e.style.cssText = '' }")
     assert _faults(product) == []
 
 
@@ -154,7 +158,11 @@ def test_a_refusal_has_no_overlaps(product: Product) -> None:
     field.press("Enter")
     product.planned()
     assert product.status == "infeasible"
+    product.vertex(3).focus()
     assert _everywhere(product) == []
+    product.page.keyboard.press("2")
+    assert _everywhere(product) == []
+    product.page.keyboard.press("1")
 
 
 def test_a_plan_of_minutes_has_no_overlaps(product: Product) -> None:
@@ -162,6 +170,19 @@ def test_a_plan_of_minutes_has_no_overlaps(product: Product) -> None:
     product.draw_flight(25)
     page.get_by_role("slider", name="Time").press("End")
     assert _everywhere(product) == []
+
+
+def test_waiting_for_a_plan_has_no_overlaps(product: Product) -> None:
+    page = product.page
+    product.choose_terrain("stairs-building")
+    held: list[Route] = []
+    page.route("**/api/v1/plans", lambda route: held.append(route))
+    product.vertex(2).press("ArrowUp")
+    page.locator(".plan-veil").wait_for()
+    assert _everywhere(product) == []
+    page.unroute("**/api/v1/plans")
+    for route in held:
+        route.continue_()
 
 
 def test_a_fast_plan_has_no_overlaps(product: Product) -> None:
@@ -190,9 +211,20 @@ def test_a_robot_that_stopped_and_its_disturbances_have_no_overlaps(product: Pro
     friction = page.get_by_label("Friction, value", exact=True).last
     friction.fill("-0.45")
     friction.press("Enter")
+    switch = page.get_by_role("switch", name="Compare A with B")
+    page.get_by_role("radio", name="Plan", exact=True).click()
+    switch.click()
     assert product.run() == "stopped"
     page.get_by_role("heading", name="Stopped safely").wait_for()
+    results = page.get_by_role("region", name="Results", exact=True)
+    results.get_by_role("cell", name="Stopped", exact=True).nth(1).wait_for()
     assert _everywhere(product) == []
+    page.set_viewport_size(SIZES[0])
+    page.evaluate(DRAWN)
+    assert results.evaluate("e => e.scrollWidth <= e.clientWidth")
+    page.set_viewport_size(DESK)
+    switch.click()
+    page.get_by_role("radio", name="Trials").click()
     page.get_by_role("button", name="Clear", exact=True).click()
     page.get_by_role("radio", name="Plan", exact=True).click()
 
@@ -210,9 +242,16 @@ def test_the_other_workspaces_have_no_overlaps(product: Product, key: str, room:
 
 
 def test_a_lost_connection_has_no_overlaps(product: Product) -> None:
+    """Where a corner is in hand and there is no way, too: all of that floats over the canvas."""
     page = product.page
+    field = page.get_by_label("Friction coefficient")
+    field.fill("0.1")
+    field.press("Enter")
+    product.planned()
+    assert product.status == "infeasible"
     page.route("**/api/v1/healthz", lambda route: route.abort())
     page.get_by_text("No connection to the planner.").wait_for()
+    product.vertex(2).focus()
     assert _everywhere(product) == []
     page.unroute("**/api/v1/healthz")
     # It tries again by itself.

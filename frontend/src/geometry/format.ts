@@ -23,6 +23,17 @@ export function took(seconds: number): string {
 
 export const capital = (words: string) => words.charAt(0).toUpperCase() + words.slice(1);
 
+/** A reason of the service as it stands on screen: true minus signs, degrees, whole equations. */
+export const reason = (words: string) =>
+  capital(words)
+    .replace(/-(?=\d)/g, "−")
+    .replace(
+      /(−?)(\d+(?:\.\d+)?) rad\b/g,
+      (_, sign: string, radians: string) => `${sign}${fixed(degrees(Number(radians)), 1)}°`,
+    )
+    // No line ends between a number, what it is equal to, and its unit.
+    .replace(/ = | (?=(?:m|Nm)\b)/g, (space) => space.replaceAll(" ", "\u00a0"));
+
 /** Remaining time, no finer than it is known: about 5 s, about 2 min. */
 export function about(seconds: number): string {
   if (seconds < 60) return `about ${Math.max(1, Math.ceil(seconds / 5) * 5)} s`;

@@ -1,7 +1,7 @@
 /** How far the world may be from what is drawn, and what the plan still keeps there. */
 
 import type { Plan } from "../api/types";
-import { fixed } from "../geometry/format";
+import { fixed, reason } from "../geometry/format";
 import { plan, stale } from "../state/planning";
 import { setTolerance, tolerance, toleranceSchema } from "../state/setup";
 import { SettingRow } from "./setting-row";
@@ -30,7 +30,7 @@ export function Tolerance() {
 function Stood() {
   const now = plan.value;
   if (!now || stale.value) return <p class="effect-wait">Planning with that tolerance …</p>;
-  if (now.problem) return <p class="effect-wait">{now.problem.message}</p>;
+  if (now.problem) return <p class="effect-wait">{reason(now.problem.message)}</p>;
   return (
     <dl aria-label="Least margins within tolerance">
       {checksOf(now).map((check) => (

@@ -1,5 +1,6 @@
 /** What a cell says: its verdict, and the numbers behind it. */
 
+import { reason } from "../geometry/format";
 import { Icon } from "../ui/icon";
 import { type CellFacts, factsAt } from "./cell";
 import { boxOf, type Frame, type Place } from "./frame";
@@ -38,7 +39,7 @@ export function Facts({ facts, short }: { facts: CellFacts; short?: boolean }) {
         <span>{facts.title}</span>
         <Verdict facts={facts} />
       </h4>
-      {facts.message && <p>{facts.message}</p>}
+      {facts.message && <p>{reason(facts.message)}</p>}
       {rows.length > 0 && (
         <dl>
           {rows.map((row) => (

@@ -21,13 +21,14 @@ import {
 } from "./gestures";
 import { Grid, Rulers } from "./grid";
 import { KeyNumbers, pressKey } from "./key-numbers";
-import { Banner, FirstHint, Legend, Refusal, Veil } from "./notices";
-import { Obstruction } from "./obstruction";
+import { Banner, FirstHint, Legend } from "./notices";
+import { Obstruction, Refusal } from "./obstruction";
 import { Current, Ghosts } from "./poses";
 import { Readout } from "./readout";
 import { RibbonPatterns, SpeedRibbon } from "./speed-ribbon";
 import { Dimensions, Ground, WheelPath } from "./terrain-layer";
 import { Toolbar } from "./toolbar";
+import { Veil } from "./veil";
 import { Guides, Stretches, Vertices } from "./vertices";
 import { canvasBox, fit, moved, pan, refit, size, toWorld, zoomAt } from "./viewport";
 

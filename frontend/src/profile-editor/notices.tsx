@@ -1,19 +1,18 @@
-/** What floats over the canvas: the legend, the lost service, a long solve, the first hint. */
+/** What floats over the canvas: the legend, the lost service, the first hint. */
 
 import { connected, retryIn, retryNow } from "../state/connection";
-import { canUndo, drawing, isEmpty, selection } from "../state/drawing";
+import { canUndo, drawing, selection } from "../state/drawing";
 import { ghost } from "../state/effect";
-import { plan, planB, planKept, preview, refusal } from "../state/planning";
+import { plan, planB, planKept } from "../state/planning";
 import { activity, run } from "../state/rollouts";
 import { dismissHint, hintSeen, layers } from "../state/view";
-import { slow } from "../state/waiting";
 import { Icon } from "../ui/icon";
-import type { Rect } from "./place";
+import { legendRect } from "./place";
 import { ribbon } from "./speed-ribbon";
-import { canvasBox, LEGEND_FROM, size } from "./viewport";
+import { size } from "./viewport";
 
 export function Legend() {
-  if (isEmpty.value || size.value.width < LEGEND_FROM) return null;
+  if (!legendRect()) return null;
   return (
     <div class="lg" aria-hidden="true">
       <span class="front">
@@ -58,56 +57,20 @@ export function Legend() {
   );
 }
 
-/** Where the banner lies at most: two lines along the top of a narrow canvas [px]. */
-const BANNER = 92;
-
-export function bannerRect(): Rect | null {
-  if (connected.value) return null;
-  const { left, right, top } = canvasBox.value;
-  return { left, top, width: right - left, height: BANNER };
-}
-
 export function Banner() {
   if (connected.value) return null;
   return (
     <div class="ban">
       <Icon name="offline" />
-      <b>No connection to the planner.</b> Your edits are kept and planned when it is back.
-      <span class="wide"> Trying again in {retryIn.value} s</span>
+      <b>No connection to the planner.</b>
+      <span class="kept-edits">
+        Your edits are kept and planned when it is back.
+        <span class="wide"> Trying again in {retryIn.value} s</span>
+      </span>
       <button type="button" onClick={retryNow}>
         Retry now
       </button>
     </div>
-  );
-}
-
-function veilText(): string {
-  if (!plan.value) return "Planning";
-  if (preview.value) return "Key poses shown; the full path follows";
-  return "Planning the latest edit; the last plan is shown";
-}
-
-export function Veil() {
-  if (!slow.value || !connected.value) return null;
-  return (
-    <div class="plan-veil">
-      <span class="spin" />
-      {veilText()}
-    </div>
-  );
-}
-
-/** The service would not even try: the drawing itself is not a terrain. */
-export function Refusal() {
-  if (!refusal.value || isEmpty.value) return null;
-  return (
-    <section class="tag why refused" aria-label="Not a terrain">
-      <h4>
-        <Icon name="warning" />
-        This profile cannot be planned
-      </h4>
-      <p>{refusal.value}</p>
-    </section>
   );
 }
 

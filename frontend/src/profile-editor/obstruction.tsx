@@ -1,28 +1,32 @@
-/** What stops the robot: the sentence, how far it comes, and a line to the place. */
+/** What stops the robot, or the planner: the sentence, how far it comes, and a line to the place. */
 
 import { computed } from "@preact/signals";
 import type { Problem } from "../api/types";
-import { capital, degrees, fixed } from "../geometry/format";
-import { canUndo, undo } from "../state/drawing";
-import { outdated, plan, preview } from "../state/planning";
+import { fixed, reason } from "../geometry/format";
+import { canUndo, isEmpty, undo } from "../state/drawing";
+import { outdated, plan, preview, refusal } from "../state/planning";
 import { Icon } from "../ui/icon";
 import { lastEdit } from "./last-edit";
-import { around, overlap, type Rect } from "./place";
+import {
+  around,
+  bannerEnd,
+  clearOf,
+  corners,
+  hidesLegend,
+  highest,
+  overlap,
+  READOUT,
+  type Rect,
+} from "./place";
 import { canvasBox, centreOn, projection, size, tight } from "./viewport";
 
-/** The service's sentence, its angles in degrees. */
-const inDegrees = (sentence: string) =>
-  sentence.replace(
-    /(\d+(?:\.\d+)?) rad\b/g,
-    (_, radians: string) => `${fixed(degrees(Number(radians)), 1)}°`,
-  );
+/** The service would not even try: the drawing itself is not a terrain. */
+const refused = computed(() => (isEmpty.value ? null : refusal.value));
 
-/** No line ends between a number, what it is equal to, and its unit. */
-const unbroken = (sentence: string) =>
-  sentence.replace(/ = | (?=(?:m|Nm)\b)/g, (space) => space.replaceAll(" ", "\u00a0"));
-
-/** Poses that were found since are newer than the problem. */
-const problem = computed(() => (preview.value ? null : (plan.value?.problem ?? null)));
+/** Poses that were found since are newer than the problem, and so is what was refused. */
+const problem = computed(() =>
+  preview.value || refused.value ? null : (plan.value?.problem ?? null),
+);
 
 /** Of the ring around the spot [px]. */
 const RADIUS = 13;
@@ -56,16 +60,22 @@ const robotBox = computed<Rect | null>(() => {
   return { left, top, width: Math.max(...xs) - left, height: Math.max(...ys) - top };
 });
 
-function heightOf(stop: Problem, width: number): number {
+/** Of a sentence with its padding, in a card of a width [px]. */
+function textHeight(sentence: string, width: number): number {
   const letters = (width - 2 * PADDING - ICON) / LETTER;
-  const lines = Math.ceil((stop.message.length + UNBROKEN) / letters);
-  const more = tight.value ? 0 : NUMBERS;
-  return 2 * PADDING + lines * LINE + more + BUTTONS;
+  return 2 * PADDING + LINE * Math.ceil((sentence.length + UNBROKEN) / letters);
 }
 
-/** Corners, the legend's place, and all of the lower rim. */
+const heightOf = (stop: Problem, width: number) =>
+  textHeight(stop.message, width) + (tight.value ? 0 : NUMBERS) + BUTTONS;
+
+/** Below the legend, which the banner takes the place of. */
+const belowLegend = () => bannerEnd() ?? canvasBox.value.top + LEGEND;
+
+/** Corners, the legend's place, and all of the upper and lower rims. */
 function places(stop: Problem): Rect[] {
-  const { left, right, top, bottom } = canvasBox.value;
+  const { left, right, bottom } = canvasBox.value;
+  const [top, legend] = [highest(), belowLegend()];
   const width = tight.value ? NARROW : WIDE;
   const height = heightOf(stop, width);
   const [near, far] = [left + 2 * RIM, right - width - 2 * RIM];
@@ -73,30 +83,62 @@ function places(stop: Problem): Rect[] {
   const across = right - left - 2 * RIM;
   const strip = heightOf(stop, across);
   return [
-    { left: near, top: top + LEGEND, width, height },
-    { left: far, top: top + LEGEND, width, height },
+    { left: near, top: legend, width, height },
+    { left: far, top: legend, width, height },
     { left: near, top: low, width, height },
     { left: far, top: low, width, height },
-    { left: near, top: top + RIM, width, height },
-    { left: far, top: top + RIM, width, height },
+    { left: near, top, width, height },
+    { left: far, top, width, height },
     { left: left + RIM, top: bottom - strip - RIM, width: across, height: strip },
+    { left: left + RIM, top, width: across, height: strip },
   ];
 }
 
 /**
- * Where the card lies: where it leaves spot and robot open, or at least the spot. What else floats
- * over the canvas keeps off it.
+ * Where the card lies: where the read-out of a corner finds a place beside it, and it leaves spot
+ * and robot open, or at least the spot. What else floats over the canvas keeps off it.
  */
 export const card = computed<Rect | null>(() => {
+  if (refused.value) {
+    const width = tight.value ? NARROW : WIDE;
+    const height = LINE + textHeight(refused.value, width);
+    return { left: canvasBox.value.left + 2 * RIM, top: belowLegend(), width, height };
+  }
   const stop = problem.value;
   if (!stop) return null;
   const { px, py } = projection.value;
   const ring = around([px(stop.at[0]), py(stop.at[1])], 2 * RADIUS);
   const robot = robotBox.value;
+  const forReadout = corners(READOUT);
   const hidden = (place: Rect) =>
-    (overlap(place, ring) ? 2 : 0) + (robot && overlap(place, robot) ? 1 : 0);
+    (clearOf(forReadout, [place]) ? 0 : 4) +
+    (overlap(place, ring) ? 2 : 0) +
+    (robot && overlap(place, robot) ? 1 : 0);
   return places(stop).reduce((best, next) => (hidden(next) < hidden(best) ? next : best));
 });
+
+const placed = ({ left, top, width }: Rect) => ({
+  left: `${left}px`,
+  top: `${top}px`,
+  width: `${width}px`,
+});
+
+export function Refusal() {
+  if (!refused.value || !card.value) return null;
+  return (
+    <section
+      class={`tag why refused ${hidesLegend(card.value)}`}
+      aria-label="Not a terrain"
+      style={placed(card.value)}
+    >
+      <h4>
+        <Icon name="warning" />
+        This profile cannot be planned
+      </h4>
+      <p>{refused.value}</p>
+    </section>
+  );
+}
 
 export function Obstruction() {
   const stop = problem.value;
@@ -121,13 +163,13 @@ export function Obstruction() {
         </svg>
       )}
       <section
-        class="tag why"
+        class={`tag why ${hidesLegend(at)}`}
         aria-label="What stops the robot"
-        style={{ left: `${at.left}px`, top: `${at.top}px`, width: `${at.width}px` }}
+        style={placed(at)}
       >
         <h4>
           <Icon name="warning" />
-          {unbroken(inDegrees(capital(stop.message)))}
+          {reason(stop.message)}
         </h4>
         <dl>
           <dt>where</dt>

@@ -1,8 +1,9 @@
 /** Where something may float over the canvas: near a spot, and on nothing that a hand must reach. */
 
 import type { Vec2 } from "../api/types";
-import { drawing } from "../state/drawing";
-import { canvasBox, projection } from "./viewport";
+import { connected } from "../state/connection";
+import { drawing, isEmpty } from "../state/drawing";
+import { canvasBox, LEGEND_FROM, projection, size } from "./viewport";
 
 export interface Size {
   width: number;
@@ -34,8 +35,38 @@ export const overlap = (a: Rect, b: Rect) =>
   a.top < b.top + b.height &&
   b.top < a.top + a.height;
 
-/** Beside the spot, below it first, where the ground is; else in a corner of the canvas. */
-function places([x, y]: Vec2, { width, height }: Size, gap: Vec2): Rect[] {
+/** The read-out of a corner, with room for its longest words, on two lines [px]. */
+export const READOUT: Size = { width: 258, height: 78 };
+
+/** Where the legend lies at most, in two lines; and the banner, on a narrow canvas [px]. */
+const LEGEND: Rect = { left: 52, top: 28, width: 440, height: 36 };
+const BANNER = 56;
+
+export const legendRect = (): Rect | null =>
+  isEmpty.value || size.value.width < LEGEND_FROM ? null : LEGEND;
+
+/** Half a word says nothing: the class of what hides the legend by lying over it. */
+export const hidesLegend = (place: Rect) => (overlap(place, LEGEND) ? "in-sky" : "");
+
+export const bannerEnd = (): number | null =>
+  connected.value ? null : canvasBox.value.top + BANNER;
+
+/** From where on anything may float: nothing covers the banner. */
+export const highest = () => bannerEnd() ?? canvasBox.value.top + RIM;
+
+/** The canvas's corners, the lower ones above the dimensions; last of all over those. */
+export function corners({ width, height }: Size): Rect[] {
+  const box = canvasBox.value;
+  const [left, right] = [box.left + RIM, box.right - width - RIM];
+  const lowest = box.bottom - height;
+  return [lowest - DIMENSIONS, highest(), lowest - RIM].flatMap((top) => [
+    { left: right, top, width, height },
+    { left, top, width, height },
+  ]);
+}
+
+/** Beside the spot, below it first, where the ground is. */
+function beside([x, y]: Vec2, { width, height }: Size, gap: Vec2): Rect[] {
   const box = canvasBox.value;
   const rightmost = box.right - width - RIM;
   const lowest = box.bottom - height - DIMENSIONS;
@@ -46,18 +77,18 @@ function places([x, y]: Vec2, { width, height }: Size, gap: Vec2): Rect[] {
     [left, below],
     [right, above],
     [left, above],
-    [rightmost, lowest],
-    [box.left + RIM, lowest],
-    [rightmost, box.top],
-    [box.left + RIM, box.top],
   ];
   return wishes.map(([wishX, wishY]) => ({
     left: Math.max(box.left + RIM, Math.min(rightmost, wishX)),
-    top: Math.max(box.top + RIM, Math.min(lowest, wishY)),
+    top: Math.max(highest(), Math.min(lowest, wishY)),
     width,
     height,
   }));
 }
+
+/** The first place that covers none of `taken`. */
+export const clearOf = (places: readonly Rect[], taken: readonly Rect[]) =>
+  places.find((place) => !taken.some((rect) => overlap(place, rect)));
 
 /**
  * The first place that covers no corner and none of `taken`. Where there is no such it is not free,
@@ -71,9 +102,7 @@ export function placeNear(
 ): Rect & { free: boolean } {
   const { px, py } = projection.value;
   const held = drawing.value.points.map(([x, z]) => around([px(x), py(z)], GRIP));
-  const wanted = places(spot, size, gap);
-  const clearOf = (rects: readonly Rect[]) =>
-    wanted.find((place) => !rects.some((rect) => overlap(place, rect)));
-  const free = clearOf([...held, ...taken]);
-  return { ...(free ?? clearOf(taken) ?? wanted[0]!), free: free !== undefined };
+  const places = [...beside(spot, size, gap), ...corners(size)];
+  const free = clearOf(places, [...held, ...taken]);
+  return { ...(free ?? clearOf(places, taken) ?? places[0]!), free: free !== undefined };
 }

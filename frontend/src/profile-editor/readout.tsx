@@ -1,6 +1,6 @@
 /** The selected corner in numbers, beside it. */
 
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import { fixed } from "../geometry/format";
 import { segmentKind } from "../geometry/profile";
 import { commit, draft, drawing, revert, selection } from "../state/drawing";
@@ -9,14 +9,11 @@ import { IconButton } from "../ui/icon-button";
 import { NumberField } from "../ui/number-field";
 import { deleteSelected, insertVertex } from "./commands";
 import { moveVertices } from "./edits";
-import { bannerRect } from "./notices";
 import { card } from "./obstruction";
-import { placeNear } from "./place";
+import { hidesLegend, placeNear, READOUT } from "./place";
 import { names } from "./vertices";
 import { canvasBox, projection } from "./viewport";
 
-/** With room for its longest words, on two lines [px]. */
-const SIZE = { width: 258, height: 78 };
 /** A typed x that lay beyond a neighbour, and where it stopped instead. */
 const stopped = signal<{ i: number; text: string } | null>(null);
 /** Rounding is less than this [m]. */
@@ -41,18 +38,31 @@ function facts(i: number): string {
   return parts.join(" · ");
 }
 
-export function Readout() {
-  const chosen = selection.value;
-  const i = chosen[0];
+/** Of the selected corners the one that the read-out tells. */
+const told = computed(() => {
+  const i = tool.value === "select" ? selection.value[0] : undefined;
   const p = i === undefined ? undefined : drawing.value.points[i];
-  if (i === undefined || !p || tool.value !== "select") return null;
+  return i === undefined || !p ? null : { i, p };
+});
+
+/** Where the read-out lies: beside its corner, and on nothing else that floats. */
+export const readout = computed(() => {
+  if (!told.value) return null;
+  const [wx, wz] = told.value.p;
   const { px, py } = projection.value;
   const box = canvasBox.value;
   // A typed number may take the corner out of view; its fields stay at the rim.
-  const x = Math.min(box.right, Math.max(box.left, px(p[0])));
-  const y = Math.min(box.bottom, Math.max(box.top, py(p[1])));
-  const taken = [card.value, bannerRect()].filter((rect) => rect !== null);
-  const { left, top, width, free } = placeNear([x, y], SIZE, GAP, taken);
+  const x = Math.min(box.right, Math.max(box.left, px(wx)));
+  const y = Math.min(box.bottom, Math.max(box.top, py(wz)));
+  return placeNear([x, y], READOUT, GAP, card.value ? [card.value] : []);
+});
+
+export function Readout() {
+  const at = readout.value;
+  if (!told.value || !at) return null;
+  const { i, p } = told.value;
+  const { left, top, width, free } = at;
+  const chosen = selection.value;
   const points = drawing.value.points;
   const set = (axis: 0 | 1) => (value: number) => {
     const by = value - p[axis];
@@ -81,7 +91,7 @@ export function Readout() {
   return (
     // Where it has to cover corners, only its fields keep the pointer.
     <div
-      class={free ? "tag ro" : "tag ro through"}
+      class={`tag ro ${free ? "" : "through"} ${hidesLegend(at)}`}
       style={{ left: `${left}px`, top: `${top}px`, width: `${width}px` }}
     >
       <small aria-hidden="true">x</small>
