@@ -184,11 +184,13 @@ def test_a_profile_and_a_plan_that_were_downloaded_open_again(product: Product) 
 
 def test_thousands_of_corners_are_thinned_and_all_in_reach(product: Product) -> None:
     # The drawing is looked at, not the plan.
-    product.page.route("**/plans", lambda route: route.fulfill(status=422, json={"detail": "no"}))
+    product.page.route("**/plans", lambda route: route.fulfill(status=422, json={"detail": "too steep"}))
     try:
         line = [f"{0.002 * i},{0.002 * math.sin(0.1 * i)}" for i in range(1998)]
         product.paste("x,z\n-1.5,0\n" + "\n".join(line) + "\n6,0\n")
         product.page.locator(".app[data-plan=refused]").wait_for()
+        product.page.get_by_role("region", name="Not a terrain").get_by_text("too steep").wait_for()
+        assert product.page.get_by_role("button", name="Run rollout").is_disabled()
         assert 50 < product.corners() < 400
         product.page.locator("[data-vertex]").nth(20).focus()
         at = product.focused()
@@ -205,8 +207,8 @@ def test_thousands_of_corners_are_thinned_and_all_in_reach(product: Product) -> 
 def test_a_terrain_is_saved_and_deleted(product: Product) -> None:
     product.drag(6, 0, -20).planned()
     product.page.get_by_role("button", name=TERRAIN).click()
-    product.page.get_by_label("Save as").fill("my stairs")
+    product.page.get_by_label("Save as").fill("große Treppe")
     product.page.get_by_role("button", name="Save", exact=True).click()
-    product.page.get_by_role("button", name=re.compile(r"^Terrain\s+my stairs")).click()
-    product.page.get_by_role("button", name="Delete my stairs").click()
-    product.page.get_by_role("button", name="Delete my stairs").wait_for(state="detached")
+    product.page.get_by_role("button", name=re.compile(r"^Terrain\s+große Treppe")).click()
+    product.page.get_by_role("button", name="Delete große Treppe").click()
+    product.page.get_by_role("button", name="Delete große Treppe").wait_for(state="detached")

@@ -3,12 +3,12 @@
 import { signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { Plan, RobotDocument } from "../api/types";
-import { fixed, maybe, took } from "../geometry/format";
+import { fixed, maybe, reason, took } from "../geometry/format";
 import { planFrame, poseTimes } from "../geometry/frames";
 import { robotShape, skeleton } from "../geometry/robot";
 import { Figure } from "../profile-editor/figure";
 import { stated, worst } from "../profile-editor/margins";
-import { drawing } from "../state/drawing";
+import { drawing, isEmpty } from "../state/drawing";
 import { follow } from "../state/planner";
 import { plan, preview, refusal, stale } from "../state/planning";
 import { robotName } from "../state/setup";
@@ -32,7 +32,12 @@ export function Preview() {
           <b class="ab">A</b>
           <h2>{robotName.value}</h2>
           <div class="grow" />
-          <Verdict of={a} waiting={slow.value || (stale.value && !preview.value)} live />
+          <Verdict
+            of={a}
+            refused={refusal.value !== null && !slow.value}
+            waiting={slow.value || (stale.value && !preview.value)}
+            live
+          />
         </header>
         <Stage of={a} />
         <Facts of={a} refused={refusal.value} />
@@ -42,7 +47,11 @@ export function Preview() {
           <b class="ab b">B</b>
           <Rival />
           <div class="grow" />
-          <Verdict of={rivalPlan.value} waiting={rivalPending.value} />
+          <Verdict
+            of={rivalPlan.value}
+            refused={refusal.value !== null || !(rivalPending.value || rivalPlan.value)}
+            waiting={rivalPending.value}
+          />
           <button
             type="button"
             class="t ico"
@@ -109,7 +118,24 @@ function Rival() {
   );
 }
 
-function Verdict({ of, waiting, live }: { of: Plan | null; waiting: boolean; live?: boolean }) {
+interface VerdictProps {
+  of: Plan | null;
+  /** The service would not plan it; B waits for what A is asked with. */
+  refused: boolean;
+  waiting: boolean;
+  live?: boolean;
+}
+
+function Verdict({ of, refused, waiting, live }: VerdictProps) {
+  if (isEmpty.value) return <span class="verdict">No terrain</span>;
+  if (refused) {
+    return (
+      <span class="verdict bad">
+        <Icon name="warning" />
+        Not planned
+      </span>
+    );
+  }
   if (waiting || !of) {
     return (
       <span class="verdict">
@@ -136,18 +162,12 @@ function Verdict({ of, waiting, live }: { of: Plan | null; waiting: boolean; liv
 }
 
 function Facts({ of, refused }: { of: Plan | null; refused: string | null }) {
-  if (refused) return <p class="facts-line error">{refused}</p>;
+  if (refused) return <p class="facts-line why-not error">{refused}</p>;
   if (!of) return <p class="facts-line" />;
-  if (of.problem) {
-    return (
-      <p class="facts-line" title={of.problem.message}>
-        {of.problem.message}
-      </p>
-    );
-  }
+  if (of.problem) return <p class="facts-line why-not">{reason(of.problem.message)}</p>;
   const margin = (name: "com" | "clearance") => fixed(1000 * stated(worst(of.poses, name)), 0);
   return (
-    <p class="facts-line all">
+    <p class="facts-line">
       <span>
         CoM <b>{margin("com")}</b> mm
       </span>

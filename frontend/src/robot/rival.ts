@@ -9,7 +9,7 @@ import { choose } from "./edit";
 
 export const rivalName = signal("a1_wheeled");
 export const rivalPlan = signal<Plan | null>(null);
-export const rivalPending = signal(false);
+export const rivalPending = signal(true);
 
 /** Of the same name as A it is the robot as it was before it was changed. */
 const source = computed(() =>

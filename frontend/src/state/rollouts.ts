@@ -17,7 +17,7 @@ import {
 import type { Job, Plan, PlanRequest, Rollout } from "../api/types";
 import { report } from "./connection";
 import { type Chunk, endLive, grow, haltLive, livePlan, startLive } from "./live";
-import { plan, settled, stale } from "./planning";
+import { plan, refusal, settled, stale } from "./planning";
 import { request, simpler } from "./question";
 import { compare, controller, disturbance, seed } from "./setup";
 import { remember, wasUnderWay } from "./under-way";
@@ -71,7 +71,7 @@ export const runOf = computed(() => {
 });
 export const runStale = computed(() => runOf.value !== null);
 export const canRun = computed(
-  () => plan.value?.status === "feasible" && activity.value !== "running",
+  () => plan.value?.status === "feasible" && !refusal.value && activity.value !== "running",
 );
 
 /** The job under way: A and, while comparing, B. Once given up it changes nothing any more. */
