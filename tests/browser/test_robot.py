@@ -180,6 +180,7 @@ def test_axe_finds_nothing(product: Product, theme: str, size: ViewportSize) -> 
 @pytest.mark.parametrize("size", [DESK, LAPTOP])
 def test_nothing_overflows(product: Product, size: ViewportSize) -> None:
     page = product.page
+    enter(product, "hips", "0.3")  # which then tells what it was
     page.set_viewport_size(size)
     wide = page.evaluate(
         """() => [...document.querySelectorAll('.robot-room :is(.hd, .rows, .shelf, .entry)')]

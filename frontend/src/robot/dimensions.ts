@@ -6,6 +6,7 @@
 import type { RobotDocument, Vec2 } from "../api/types";
 import { distance, type Skeleton } from "../geometry/robot";
 import type { Projection } from "../profile-editor/viewport";
+import { told } from "./handle";
 import { quantityOf } from "./quantities";
 
 export interface Dimension {
@@ -90,7 +91,7 @@ export function dimensions(
     { pull = unit(from, end), gain = 1, share = 0.5, beside = false } = {},
   ): Dimension => {
     const q = quantityOf(id);
-    const text = `${name} ${((q.read(file) ?? 0) * q.factor).toFixed(q.digits)}`;
+    const text = `${name} ${told(q, q.read(file) ?? 0)}`;
     const size: Vec2 = [text.length * CHARACTER + ROUND, TALL];
     const along = [0, 1].map((k) => from[k]! + aside[k]! + (end[k]! - from[k]!) * share);
     const out = unit([0, 0], aside);

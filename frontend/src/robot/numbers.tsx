@@ -118,7 +118,7 @@ function Note({ of, marked }: { of: Quantity[]; marked: Marked }) {
     <span class="note" title={marked.text}>
       <i class={`mark ${marked.mark}`} />
       <span class="sr">{TITLES[marked.mark]}</span>
-      {marked.note}
+      {marked.note && <b>{marked.note}</b>}
       {edited.length > 0 && (
         <button
           type="button"

@@ -6,12 +6,12 @@ interface PinStyle {
   dash: string;
 }
 
-const STYLES: readonly PinStyle[] = [
-  { color: "var(--tx)", dash: "" },
-  { color: "var(--third)", dash: "7 4" },
-  { color: "var(--fourth)", dash: "1.5 3" },
-  { color: "var(--tx2)", dash: "9 3 1.5 3" },
-];
+const COLORS = ["var(--tx)", "var(--third)", "var(--fourth)", "var(--tx2)"] as const;
+const DASHES = ["", "7 4", "1.5 3", "9 3 1.5 3"] as const;
 
 export const letter = (place: number) => String.fromCharCode(65 + (place % 26));
-export const styleOf = (place: number): PinStyle => STYLES[place % STYLES.length]!;
+/** Once all colours are there, each comes with another dash. */
+export const styleOf = (place: number): PinStyle => ({
+  color: COLORS[place % COLORS.length]!,
+  dash: DASHES[(place + Math.floor(place / COLORS.length)) % DASHES.length]!,
+});
