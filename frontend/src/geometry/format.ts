@@ -26,10 +26,10 @@ export const capital = (words: string) => words.charAt(0).toUpperCase() + words.
 /** A reason of the service as it stands on screen: true minus signs, degrees, whole equations. */
 export const reason = (words: string) =>
   capital(words)
-    .replace(/-(?=\d)/g, "−")
+    .replace(/(?<![\w-])-(?=\d)/g, "−")
     .replace(
-      /(−?)(\d+(?:\.\d+)?) rad\b/g,
-      (_, sign: string, radians: string) => `${sign}${fixed(degrees(Number(radians)), 1)}°`,
+      /(\d+(?:\.\d+)?) rad\b(?!\/)/g,
+      (_, radians: string) => `${fixed(degrees(Number(radians)), 1)}°`,
     )
     // No line ends between a number, what it is equal to, and its unit.
     .replace(/ = | (?=(?:m|Nm)\b)/g, (space) => space.replaceAll(" ", "\u00a0"));

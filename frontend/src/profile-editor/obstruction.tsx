@@ -135,7 +135,7 @@ export function Refusal() {
         <Icon name="warning" />
         This profile cannot be planned
       </h4>
-      <p>{refused.value}</p>
+      <p>{reason(refused.value)}</p>
     </section>
   );
 }

@@ -1,7 +1,7 @@
 /** What came of the rollout, or why there is none. */
 
 import type { Plan } from "../api/types";
-import { about, capital, fixed } from "../geometry/format";
+import { about, capital, fixed, reason } from "../geometry/format";
 import { live, livePlan } from "../state/live";
 import { plan } from "../state/planning";
 import { activity, eta, failure, progress, run, running } from "../state/rollouts";
@@ -112,7 +112,11 @@ function NotRun() {
         <Icon name={cancelled ? "close" : "warning"} />
         {cancelled ? "Cancelled" : "Could not run"}
       </h2>
-      <p>{cancelled ? `The rollout was stopped. ${keptText()}` : failure.value}</p>
+      <p>
+        {cancelled
+          ? `The rollout was stopped. ${keptText()}`
+          : failure.value && reason(failure.value)}
+      </p>
     </>
   );
 }

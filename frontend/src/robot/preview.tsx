@@ -162,7 +162,7 @@ function Verdict({ of, refused, waiting, live }: VerdictProps) {
 }
 
 function Facts({ of, refused }: { of: Plan | null; refused: string | null }) {
-  if (refused) return <p class="facts-line why-not error">{refused}</p>;
+  if (refused) return <p class="facts-line why-not error">{reason(refused)}</p>;
   if (!of) return <p class="facts-line" />;
   if (of.problem) return <p class="facts-line why-not">{reason(of.problem.message)}</p>;
   const margin = (name: "com" | "clearance") => fixed(1000 * stated(worst(of.poses, name)), 0);
