@@ -39,9 +39,10 @@ def use(core: Path) -> None:
     vars(sw)["_core"] = module
 
 
-def planned(terrain: Any, robot: Any, friction: float) -> list[sw.Plan]:
+def planned(terrain: Any, robot: Any, friction: float, **options: bool) -> list[sw.Plan]:
     """By every method."""
-    return [sw.plan(terrain, robot, friction, m) for m in ("path", "critical", "nominal")]
+    methods = ("path", "critical", "nominal")
+    return [sw.plan(terrain, robot, friction, method, **options) for method in methods]
 
 
 def drawn() -> Iterator[str]:
@@ -63,7 +64,8 @@ def terrains() -> Iterator[str]:
 
     for k, (name, points) in enumerate(hostile.terrains().items()):
         robot = ("a1_wheeled", "a1_wheeled_x")[k % 2]
-        plans = planned({"points": points}, robot, 0.6)
+        # What would open a pit takes longer than all the others, and runs what they do.
+        plans = planned({"points": points}, robot, 0.6, diagnose=not name.startswith("pit"))
         plans.append(sw.plan({"points": points}, robot, FRICTION[k % 4], "critical"))
         yield f"{name}: {[plan.status for plan in plans]}"
 

@@ -35,13 +35,12 @@ def rehearse() -> None:
 
 
 def warm_rollouts() -> None:
-    """The same for rollouts, and for the other robots, whose rollouts need only begin."""
+    """The same for rollouts, which need only begin, and for the other robots."""
     with _logged():
         from stairwright.planning.planner import plan
         from stairwright.simulation.rollout import rollout
 
-        rollout(plan(GENTLE, robots()[0], method="path"))
-        for robot in robots()[1:]:
+        for robot in robots():
             with contextlib.suppress(Cancelled):
                 rollout(plan(GENTLE, robot, method="path"), progress=_give_up)
             plan(GENTLE, robot, method="critical")
