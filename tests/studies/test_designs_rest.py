@@ -23,12 +23,14 @@ ENDED = ("done", "failed", "cancelled")
 STEPS = {"robot": "a1_wheeled", "axes": [{"name": "step.height", "values": [0.1, 0.2]}]}
 SMALL = _document(
     ask=STEPS,
-    vary=[{"name": TORQUE, "between": [2, 40]}],
+    vary=[{"name": TORQUE, "between": [6, 40]}],
     aims=[{"minimise": TORQUE}],
     designs=6,
     generation=3,
 )
-LONG = SMALL | {"designs": 400, "generation": 2, "seed": 1}
+# Long by number: motors that climb every step, for a refusal takes a hundred times the work.
+STRONG = {"vary": [{"name": TORQUE, "between": [15, 40]}]}
+LONG = SMALL | STRONG | {"designs": 400, "generation": 2, "seed": 1}
 
 
 def _listed(api: httpx.Client, name: str) -> dict[str, Any]:

@@ -193,7 +193,7 @@ def test_without_the_packages_it_says_what_to_install(
 def test_the_server_is_killed_and_the_study_goes_on(
     start_server: Callable[..., AbstractContextManager[Server]],
 ) -> None:
-    variables = {"STAIRWRIGHT_STUDY_WORKERS": "2"}
+    variables = {"STAIRWRIGHT_STUDY_WORKERS": "1"}
     with start_server(**variables) as server:
         api = httpx.Client(base_url=f"{server.url}/api/v1", timeout=60)
         name = api.post("/studies", json=LONG).json()["id"]
