@@ -13,6 +13,9 @@ from typing import Any
 import httpx
 import pytest
 
+from stairwright.api.app import create_app
+from stairwright.api.settings import Settings
+from stairwright.errors import InputError
 from tests.conftest import Server, serve
 
 Start = Callable[..., contextlib.AbstractContextManager[Server]]
@@ -148,8 +151,8 @@ def test_a_second_server_on_the_same_folder_is_refused(narrow: Server) -> None:
     with httpx.Client(base_url=f"{narrow.url}/api/v1", timeout=120) as api:
         job = long_rollout(api, 1)
         wait_for(api, job, "running")
-        with pytest.raises(pytest.fail.Exception, match="uses the data folder"), serve(narrow.data):
-            pass
+        with pytest.raises(InputError, match="uses the data folder"):
+            create_app(Settings(data=narrow.data))
         assert api.get(f"/jobs/{job}").json()["state"] == "running"
         api.delete(f"/jobs/{job}")
 

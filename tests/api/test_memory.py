@@ -48,7 +48,11 @@ def test_a_service_stays_small(start_server: Any) -> None:
             assert answer.status_code == 200, answer.text
             plans.append(answer.json())
         feasible = [plan["id"] for plan in plans if plan["status"] == "feasible"]
-        jobs = [client.post("/rollouts", json={"plan_id": k}) for k in feasible[:ROLLOUTS]]
+        hurried = {"controller": {"speed": 1.0}}
+        jobs = [
+            client.post("/rollouts", json={"plan_id": plan} | hurried)
+            for plan in feasible[:ROLLOUTS]
+        ]
         assert len(jobs) == ROLLOUTS
         for job in jobs:
             while client.get(f"{server.url}{job.headers['location']}").json()["state"] != "done":

@@ -64,7 +64,7 @@ def test_the_page_keeps_its_policy_and_its_theme(strict: Page, server: Server) -
     canvas = strict.frame_locator("iframe").first.locator("canvas").first
     canvas.wait_for(state="attached", timeout=PATIENCE)
     product.drag(2, 0, -3).planned()
-    product.fresh("flat").run()
+    product.fresh("curb-015").run()
     assert (watched.elsewhere, watched.denied, product.errors) == ([], [], [])
     strict.evaluate("localStorage.setItem('stairwright.theme', 'light')")
     strict.reload(wait_until="commit")

@@ -19,7 +19,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 @pytest.fixture
 def climb(product: Product) -> Product:
     """A flight that takes the simulator some seconds."""
-    product.open().draw_flight(12)
+    product.open().draw_flight(6)
     product.linked('"stair-')
     return product
 

@@ -161,7 +161,7 @@ def test_timeline_moves_robot_and_cursors_together(story: Story) -> None:
 
 
 def test_a_running_rollout_draws_itself(shared: Product) -> None:
-    shared.fresh("stairs-us-7-11")
+    shared.fresh().draw_flight(5)
     shared.page.evaluate(WATCH)
     assert shared.run() in OUTCOMES
     seen = shared.page.evaluate("window.seen_")

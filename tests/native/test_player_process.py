@@ -28,12 +28,28 @@ pytestmark = [
         not all(map(shutil.which, ("cmake", "c++"))), reason="needs CMake and a C++ compiler"
     ),
 ]
+# Kept: what has changed of a bundle is built again.
+UNPACKED = Path(__file__).parents[2] / ".dev" / "player"
 PATIENT = ("--timeout", "10")  # of a machine that has other things to do
 
 
 @pytest.fixture(scope="module")
 def plan() -> Plan:
     return sw.plan("single-stair-036", "go2w", friction=0.6)
+
+
+def renew(place: Path, bundle: Path) -> None:
+    """Have the bundle's files and no others at `place`, where those that are alike stay."""
+    wanted = {path.relative_to(bundle) for path in bundle.rglob("*") if path.is_file()}
+    for path in place.rglob("*"):
+        name = path.relative_to(place)
+        if path.is_file() and name.parts[0] != "build" and name not in wanted:
+            path.unlink()
+    for name in wanted:
+        there, content = place / name, (bundle / name).read_bytes()
+        if not there.is_file() or there.read_bytes() != content:
+            there.parent.mkdir(parents=True, exist_ok=True)
+            there.write_bytes(content)
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +59,8 @@ def program(plan: Plan, tmp_path_factory: pytest.TempPathFactory) -> Path:
     plan.save(str(folder / "bundle.zip"))
     with zipfile.ZipFile(folder / "bundle.zip") as archive:
         archive.extractall(folder)
-    top = folder / "stairwright-go2w"
+    top = UNPACKED
+    renew(top, folder / "stairwright-go2w")
     options = ("-DSTAIRWRIGHT_PYTHON=OFF", "-DSTAIRWRIGHT_PLAYER=ON", "-DCMAKE_BUILD_TYPE=Debug")
     options += ("-DCMAKE_CXX_FLAGS_DEBUG=-O0",)  # nobody debugs it
     build = ("cmake", "-S", top / "native", "-B", top / "build", *options)
