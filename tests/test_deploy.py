@@ -86,14 +86,16 @@ def shell(script: str, data: Path, backup: Path) -> None:
 @pytest.mark.slow
 def test_a_backup_of_a_running_service_is_restored(start_server: Start, tmp_path: Path) -> None:
     data, backup = tmp_path / "data", tmp_path / "backup"
-    with start_server() as server:
-        with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api:
-            api.put("/terrains/kept", json=STAIR)
-            plan = api.post("/plans", json={"terrain": "kept"}).json()
-            shell(block("sh", "# backup"), data, backup)
-            api.put("/terrains/later", json=STAIR)
-            shell(block("sh", "# backup"), data, backup)  # again, over the first one
-            assert api.delete("/terrains/kept").status_code == 204
+    with (
+        start_server() as server,
+        httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api,
+    ):
+        api.put("/terrains/kept", json=STAIR)
+        plan = api.post("/plans", json={"terrain": "kept"}).json()
+        shell(block("sh", "# backup"), data, backup)
+        api.put("/terrains/later", json=STAIR)
+        shell(block("sh", "# backup"), data, backup)  # again, over the first one
+        assert api.delete("/terrains/kept").status_code == 204
     for file in data.glob("artefacts/??/*"):
         file.unlink()
     shell(block("sh", "# restore"), data, backup)

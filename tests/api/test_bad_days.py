@@ -17,7 +17,10 @@ from typing import Any
 import httpx
 import pytest
 
+from stairwright.api.app import create_app
+from stairwright.api.settings import Settings
 from tests.conftest import Server, serve
+from tests.in_process import served
 
 pytestmark = pytest.mark.slow  # servers of its own
 
@@ -165,7 +168,8 @@ def test_a_folder_that_cannot_be_made(start_server: Start, tmp_path: Path) -> No
         assert "Permission denied" in server.log.read_text()
 
 
-def harm(database: Path, how: str) -> None:
+def harm(database: Path, how: str) -> bytes:
+    """Damage a database; what is in it now."""
     content = bytearray(database.read_bytes())
     if how == "head":
         content[:4096] = os.urandom(4096)
@@ -175,32 +179,43 @@ def harm(database: Path, how: str) -> None:
         half = len(content) * 3 // 4
         content[half:] = os.urandom(len(content) - half)
     database.write_bytes(content)
+    return bytes(content)
 
 
-@pytest.mark.parametrize("how", ["head", "cut", "end"])
-def test_a_damaged_database_is_set_aside(
-    start_server: Start, plan: dict[str, Any], tmp_path: Path, how: str
-) -> None:
-    data = tmp_path / "data"
-    database = data / "stairwright.sqlite"
-    harm(database, how)
-    harmed = database.read_bytes()
-    with start_server() as server:
-        with httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as api:
-            assert api.get("/healthz").json()["read_only"] is None
-            assert api.put("/terrains/new", json=STAIR).status_code == 201
-            if how == "end":
-                assert api.get("/terrains/kept").status_code == 200  # read out of the damaged one
-        log = server.log.read_text()
-        assert "stairwright.sqlite.damaged-1" in log
-        assert "restore a backup" in log
-    assert database.with_name("stairwright.sqlite.damaged-1").read_bytes() == harmed
+def set_aside(data: Path, harmed: bytes, url: str, log: str) -> None:
+    """A server answers at `url` that found `harmed` as its database."""
+    with httpx.Client(base_url=f"{url}/api/v1", timeout=120) as api:
+        assert api.put("/terrains/new", json=STAIR).status_code == 201
+    assert "stairwright.sqlite.damaged-1" in log
+    assert "restore a backup" in log
+    assert (data / "stairwright.sqlite.damaged-1").read_bytes() == harmed
     assert list(data.glob("artefacts/??/*"))  # results of the old one stay for it
-    if how == "end":
-        with start_server() as server:
-            answer = httpx.get(f"{server.url}/api/v1/terrains/new")
-            assert answer.status_code == 200
-        assert len(list(data.glob("*.damaged-*"))) == 1
+
+
+@pytest.mark.parametrize("how", ["head", "cut"])
+def test_a_damaged_database_is_set_aside(
+    plan: dict[str, Any], tmp_path: Path, how: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    assert plan
+    data = tmp_path / "data"
+    harmed = harm(data / "stairwright.sqlite", how)
+    with served(create_app(Settings(data=data))) as (_, port):
+        set_aside(data, harmed, f"http://127.0.0.1:{port}", caplog.text)
+
+
+def test_what_can_be_read_of_a_damaged_database_is(
+    start_server: Start, plan: dict[str, Any], tmp_path: Path
+) -> None:
+    assert plan
+    data = tmp_path / "data"
+    harmed = harm(data / "stairwright.sqlite", "end")
+    with start_server() as server:
+        set_aside(data, harmed, server.url, server.log.read_text())
+        assert httpx.get(f"{server.url}/api/v1/healthz").json()["read_only"] is None
+        assert httpx.get(f"{server.url}/api/v1/terrains/kept").status_code == 200
+    with start_server() as server:
+        assert httpx.get(f"{server.url}/api/v1/terrains/new").status_code == 200
+    assert len(list(data.glob("*.damaged-*"))) == 1
 
 
 def with_clock(folder: Path, module: str) -> dict[str, str]:

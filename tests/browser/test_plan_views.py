@@ -263,7 +263,7 @@ def test_a_rollout_is_asked_with_lists_of_errors_and_the_place_of_a_load(product
 
 
 def test_a_rollout_is_asked_with_the_friction_of_each_wheel(product: Product) -> None:
-    page = product.page
+    page = product.choose_terrain("curb-015").page
     page.get_by_role("radio", name="Trials").click()
     page.get_by_label("Friction, wheels, FL").fill("0.5")
     page.get_by_label("Friction, wheels, RR").fill("0.4")

@@ -118,7 +118,7 @@ def test_a_weight_that_has_no_say_brings_nothing(product: Product) -> None:
 
 def test_each_motor_limit_is_drawn_and_named(product: Product) -> None:
     page = product.page
-    product.choose_terrain("flat")
+    product.choose_terrain("curb-015")
     page.get_by_role("button", name="Robot", exact=False).first.click()
     page.get_by_role("menuitemradio", name="b2w").click()
     product.planned().run()

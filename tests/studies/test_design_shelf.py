@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
 
+from stairwright.api.app import create_app
+from stairwright.api.settings import Settings
 from stairwright.studies import design as designing
 from stairwright.studies import design_search
 from stairwright.studies.design_shelf import RESULT, kept_results, read_result
+from tests.in_process import served
 
 from .test_design import Rule, _document
 
@@ -54,10 +56,13 @@ def test_what_is_no_result_is_left_out(tmp_path: Path, monkeypatch: pytest.Monke
 
 @pytest.mark.slow
 def test_rest_lists_searches_and_gives_the_best_with_their_robots(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, start_server: Callable[..., Any]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    _search(tmp_path / "data", monkeypatch)
-    with start_server() as server, httpx.Client(base_url=f"{server.url}/api/v1") as api:
+    _search(tmp_path, monkeypatch)
+    with (
+        served(create_app(Settings(data=tmp_path))) as (_, port),
+        httpx.Client(base_url=f"http://127.0.0.1:{port}/api/v1") as api,
+    ):
         (only,) = api.get("/designs").json()
         answer = api.get(f"/designs/{only['id']}")
         best = [each for each in answer.json()["candidates"] if each["best"]]
