@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import re
@@ -58,6 +59,30 @@ def _without_build_tools() -> str:
     return "".join(block for block in blocks if block.partition("==")[0] not in tools)
 
 
+def _dependencies() -> Path:
+    """A slim environment with what is locked and no more, kept for the next time."""
+    lock = _without_build_tools()
+    content = (lock + (ROOT / "slim.py").read_text() + sys.version).encode()
+    folder = ROOT / ".dev" / f"installed-{hashlib.sha256(content).hexdigest()[:12]}"
+    if not (folder / "complete").is_file():
+        for old in folder.parent.glob("installed-*"):
+            shutil.rmtree(old)
+        _run(sys.executable, "-m", "venv", "--without-pip", folder / "venv")
+        (folder / "requirements.lock").write_text(lock)
+        locked = ("--require-hashes", "-r", folder / "requirements.lock")
+        installer(folder / PYTHON)(*locked)
+        _run(folder / PYTHON, ROOT / "slim.py")
+        (folder / "complete").touch()
+    return folder / "venv"
+
+
+def _link(source: str, target: str) -> None:
+    try:
+        os.link(source, target)
+    except OSError:  # on another disk
+        shutil.copy2(source, target)
+
+
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """A folder with an environment in `venv` that holds the wheel and cannot be written to."""
@@ -67,12 +92,9 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     hatchling = (sys.executable, "-m", "hatchling", "build", "--target", "wheel")
     _run(*hatchling, "--directory", folder)
     (wheel,) = folder.glob("*.whl")
-    _run(sys.executable, "-m", "venv", "--without-pip", folder / "venv")
-    install = installer(folder / PYTHON)
-    lock = folder / "requirements.lock"
-    lock.write_text(_without_build_tools())
-    install("--require-hashes", "-r", lock)
-    install(wheel)
+    kept = _dependencies()
+    shutil.copytree(kept, folder / "venv", symlinks=True, copy_function=_link)
+    installer(folder / PYTHON)(wheel)
     _run(folder / PYTHON, ROOT / "slim.py")
     (packages,) = (folder / "venv").glob("lib/python*/site-packages")
     places = [packages, *(path for path in packages.rglob("*") if path.is_dir())]
