@@ -33,6 +33,7 @@ from stairwright.jobs.run import Run
 from stairwright.simulation import robust_margins
 from stairwright.simulation.rollout import rollout
 from stairwright.storage.artefacts import Artefacts
+from stairwright.studies.local_cluster import QUIET
 from tests.conftest import Server
 
 pytestmark = pytest.mark.slow  # a cluster of processes takes seconds to start
@@ -44,7 +45,7 @@ WALL = {"name": "wall", "points": [[-1.0, 0], [0, 0], [0, 3.0], [1, 3.0]]}
 @pytest.fixture(scope="module")
 def dask_cluster() -> Iterator[LocalCluster]:
     """Two workers in processes of their own, behind a scheduler on the loopback."""
-    settings = {"distributed.scheduler.allowed-failures": 0}
+    settings = QUIET | {"distributed.scheduler.allowed-failures": 0}
     with (
         dask.config.set(settings),
         LocalCluster(

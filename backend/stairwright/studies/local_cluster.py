@@ -23,6 +23,15 @@ if TYPE_CHECKING:
 
 START_LIMIT = 60.0  # s
 DEATHS = 1  # of workers at one batch, before it is split
+# What looks at workers many times a second takes time from them.
+QUIET = {
+    "distributed.worker.profile.enabled": False,
+    "distributed.worker.memory.monitor-interval": "1s",
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.system-monitor.interval": "5s",
+    "distributed.scheduler.http.routes": [],  # nobody looks at pages of ours
+    "distributed.worker.http.routes": [],
+}
 
 
 class LocalCluster:
@@ -97,16 +106,10 @@ def main() -> None:
     from distributed import Security
 
     dask.config.set(
-        {
+        QUIET
+        | {
             "distributed.scheduler.allowed-failures": DEATHS,
             "distributed.worker.daemon": True,
-            # What looks at workers many times a second takes time from them.
-            "distributed.worker.profile.enabled": False,
-            "distributed.worker.memory.monitor-interval": "1s",
-            "distributed.admin.tick.interval": "1s",
-            "distributed.admin.system-monitor.interval": "5s",
-            "distributed.scheduler.http.routes": [],  # nobody looks at pages of ours
-            "distributed.worker.http.routes": [],
             "distributed.nanny.pre-spawn-environ.OPENBLAS_NUM_THREADS": 1,
         }
     )
