@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stairwright as sw
+from stairwright.planning.planner import plan as make_plan
 from stairwright.planning.smoothing.node_margins import FIRM_GRIP, THIN_COM
 from stairwright.terrain.stairs import stair
 
@@ -71,3 +72,20 @@ def test_a_ramp_near_its_friction_angle_is_planned():
     assert plan.feasible
     assert min(pose.margins.friction for pose in plan.poses) < FIRM_GRIP * plan.friction
     assert sw.rollout(plan).outcome == "success"
+
+
+# Height, friction, robot: plans of these stood on the rear wheels, front ones all but unloaded,
+# with so little room that they tipped over backward, also where all was known to them.
+WALLS = [(1.14, 0.9, "go2w"), (0.89, 0.6, "a1_wheeled"), (1.81, 0.6, "b2w")]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("height", "friction", "name"), WALLS)
+def test_a_robot_that_stands_on_one_pair_of_wheels_is_not_called_feasible_to_a_hair(
+    height, friction, name
+):
+    robot = sw.load_robot(name)
+    wall = stair(height, 0.3, 1, approach=2.0 + robot.legs[0].reach, platform=3.0)
+    plan = make_plan(wall, robot, friction, diagnose=False)
+    if plan.feasible:
+        assert sw.rollout(plan, controller={"sensing": "ideal"}).outcome == "success"

@@ -23,6 +23,9 @@ LEAST_COM = 0.001  # m; no robot's centre of mass is known better
 # Where the CoM has less room than this [m], that share of the friction must be left: else a wheel
 # that slides a little tips the robot.
 THIN_COM, FIRM_GRIP = 0.006, 0.08
+# Where a pair of wheels carries less than this share of the weight, the trunk's lean is known so
+# well [rad]: with less room for the CoM above the other pair the robot tips.
+LIGHT, LEAN = 0.1, 0.0175
 FIRM_TORQUE = 0.9  # of the motors' torques that standing may take: the rest moves and corrects
 BEYOND_REPAIR = 0.15  # of a motor's torque; where more is lacking somewhere another path is needed
 _SPARE = 5e-4  # m
@@ -44,6 +47,7 @@ class NodeMargins:
         com_margin: (n,) at the friction there is.
         firm_com_margin: (n,) the same with friction on one face of a corner only, which robots can
             hold.
+        com_height: (n,) of the CoM above the contacts of the pair that carries more [m].
         friction_needed: (n,).
         forces: (n, 2, 2) force of each wheel pair, tangential and normal [N]; a wheel between two
             faces counts them along the bisector of the faces that carry it.
@@ -60,6 +64,7 @@ class NodeMargins:
     joint_slack: Floats
     com_margin: Floats
     firm_com_margin: Floats
+    com_height: Floats
     friction_needed: Floats
     forces: Floats
     torques: Floats
@@ -87,8 +92,10 @@ class NodeMargins:
 
     @cached_property
     def _slacks(self) -> Floats:
-        """(7, n) margins, each against its bound, in comparable sizes."""
+        """(8, n) margins, each against its bound, in comparable sizes."""
         spare_friction = (1.0 - FIRM_GRIP) * self.friction - self.friction_needed
+        carried = np.linalg.norm(self.forces, axis=2)
+        light = 0.2 * (carried.min(axis=1) / carried.sum(axis=1) - LIGHT)
         slacks: Floats = np.stack(
             [
                 self.clearance - LEAST_CLEARANCE,
@@ -96,6 +103,7 @@ class NodeMargins:
                 0.2 * self.joint_slack,
                 self.firm_com_margin - LEAST_COM,
                 np.maximum(self.firm_com_margin - THIN_COM, 0.2 * spare_friction),
+                np.maximum(self.firm_com_margin - LEAN * self.com_height, light),
                 *(0.3 * (FIRM_TORQUE - self.torque_shares(motor)) for motor in JOINTS),
             ]
         )
