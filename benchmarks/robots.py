@@ -22,10 +22,8 @@ it.
 
 Where trials fail: down flights `a1_wheeled` (all knees back) and `d1` stop before they start, as
 they find that their mass centre is not where the plan has it and that there is no plan for where
-it is; before robots looked for that, an A1 fell down them. At its highest wall `go2w` falls also
-without anything drawn: its front wheels hang on the edge by 0.96 of the friction, which its plan
-counts as enough. There `m20` touches the wall with a calf, of which its plan keeps 9 mm, and
-`a1_wheeled` tips over backward. A ramp of 30 degrees takes a friction of 0.577, and some trials
+it is; before robots looked for that, an A1 fell down them. At its highest wall `m20` touches the
+wall with a calf, of which its plan keeps 9 mm, and `a1_wheeled` tips over backward. A ramp of 30 degrees takes a friction of 0.577, and some trials
 draw less. Ramps of 45 degrees are gone up with a pair of wheels on level ground.
 
 Rows of `a1_wheeled_x` are of the state before robots nodded; `d1` walls of that before its wheels

@@ -23,9 +23,10 @@ LEAST_COM = 0.001  # m; no robot's centre of mass is known better
 # Where the CoM has less room than this [m], that share of the friction must be left: else a wheel
 # that slides a little tips the robot.
 THIN_COM, FIRM_GRIP = 0.006, 0.08
-# Where a pair of wheels carries less than this share of the weight, the trunk's lean is known so
-# well [rad]: with less room for the CoM above the other pair the robot tips.
-LIGHT, LEAN = 0.1, 0.0175
+# Where a pair of wheels carries less than this share of the weight, the robot stands on the other
+# one. So far it may lean from what is planned [rad] without tipping over it; and that share of the
+# friction must be left: on an edge a wheel that is 5 mm off has to hold a few degrees more.
+LIGHT, LEAN, STANDING_GRIP = 0.15, 0.0175, 0.12
 FIRM_TORQUE = 0.9  # of the motors' torques that standing may take: the rest moves and corrects
 BEYOND_REPAIR = 0.15  # of a motor's torque; where more is lacking somewhere another path is needed
 _SPARE = 5e-4  # m
@@ -93,17 +94,21 @@ class NodeMargins:
     @cached_property
     def _slacks(self) -> Floats:
         """(8, n) margins, each against its bound, in comparable sizes."""
-        spare_friction = (1.0 - FIRM_GRIP) * self.friction - self.friction_needed
+
+        def spare_friction(least: float) -> Floats:
+            return 0.2 * ((1.0 - least) * self.friction - self.friction_needed)
+
         carried = np.linalg.norm(self.forces, axis=2)
         light = 0.2 * (carried.min(axis=1) / carried.sum(axis=1) - LIGHT)
+        lean = self.firm_com_margin - LEAN * self.com_height
         slacks: Floats = np.stack(
             [
                 self.clearance - LEAST_CLEARANCE,
                 self.legs_distance - LEGS_GAP,
                 0.2 * self.joint_slack,
                 self.firm_com_margin - LEAST_COM,
-                np.maximum(self.firm_com_margin - THIN_COM, 0.2 * spare_friction),
-                np.maximum(self.firm_com_margin - LEAN * self.com_height, light),
+                np.maximum(self.firm_com_margin - THIN_COM, spare_friction(FIRM_GRIP)),
+                np.maximum(np.minimum(lean, spare_friction(STANDING_GRIP)), light),
                 *(0.3 * (FIRM_TORQUE - self.torque_shares(motor)) for motor in JOINTS),
             ]
         )
