@@ -155,12 +155,13 @@ void bind_rollout(nb::module_& m) {
             return std::tuple(load->mass, load->place, load->shift);
         }, "What the weighing before the start found and nobody has told of, in the trunk's frame: mass [kg] and its place [m], of which\n"
            "z is not a number where the robot could not nod, or, where that mass is 0, the shift of the robot's mass centre [m].")
-        .def_prop_ro("map_error", [](const Rollout& r) -> std::optional<std::tuple<bool, double, double, double, bool>> {
+        .def_prop_ro("map_error", [](const Rollout& r) -> std::optional<std::tuple<bool, double, double, double, int>> {
             const auto& found = r.executor().map_error();
             if (!found) return {};
-            return std::tuple(found->face, found->s, found->off.x, found->off.z, found->both);
+            return std::tuple(found->face, found->s, found->off.x, found->off.z, found->pairs);
         }, "What the front wheels found elsewhere than on the map, while the robot waits: whether it is a face, its place on the\n"
-           "wheel-centre curve, by how much the map is off along and up [m], and whether the rear wheels know of it.")
+           "wheel-centre curve, by how much the map is off along and up [m], and how many pairs of\n"
+           "wheels, the front one first, are off with it on the map.")
         .def_prop_ro("places", [](const Rollout& r) { return r.executor().controller().places(); }, "Of the wheels on the wheel-centre curve [m].")
         .def_prop_ro("slipped", [](const Rollout& r) -> std::optional<std::pair<double, bool>> {
             const auto& slipped = r.executor().slipped();

@@ -40,7 +40,7 @@ class PlanChange:
         if not loop.waits:
             return ""
         if loop.map_error is not None:
-            self._mend_map(*loop.map_error)
+            return self._mend_map(*loop.map_error)
         elif loop.slipped is not None:
             return self._after_slip(*loop.slipped)
         elif loop.load is not None:
@@ -68,27 +68,34 @@ class PlanChange:
             self._follow(decision.plan)
         return decision.why
 
-    def _mend_map(self, face: bool, s: float, along: float, up: float, both: bool) -> None:
-        """Go on with a plan on the map as it was found, or with the old one if there is none."""
+    def _mend_map(self, face: bool, s: float, along: float, up: float, pairs: int) -> str:
+        """Go on with a plan on the map as it was found, or with the old one if there is none.
+
+        Wheels that a face has stopped before they are there by the old plan cannot follow that one.
+        """
         loop = self._loop
         off = np.array([along, 0.0] if face else [0.0, up])
         front, rear = np.reshape(loop.places, (2, 2)).mean(axis=1)
         centres = self._path.centres(np.array([front, rear]))
-        centres -= [off, off if both else np.zeros(2)]
+        centres[:pairs] -= off
         known = corrected(self._known, self._path, s, face=face, off=off)
         plan = plan_anew(self.followed, known, self.followed.friction)
-        if plan is None:
+        row = None
+        if plan is not None:
+            path = wheel_path(known, plan.robot_description.wheel.radius)
+            places = np.array([path.project(centre) for centre in centres])
+            track = plan_track(plan, path, self._settings)
+            row = nearest_row(track, places, np.asarray(loop.target))
+        if plan is None or row is None:
             loop.go_on()
-            return
-        path = wheel_path(known, plan.robot_description.wheel.radius)
-        places = np.array([path.project(centre) for centre in centres])
-        row = nearest_row(plan_track(plan, path, self._settings), places, np.asarray(loop.target))
-        if row is None:
-            loop.go_on()
-            return
+            return "" if pairs else (
+                f"a face stopped the front wheels {1e3 * along:.0f} mm before it was expected, and "
+                "there is no plan from there"
+            )
         self._known, self._path = known, path
         loop.correct_map(path.native)
         self._follow(plan, row)
+        return ""
 
     def _follow(self, plan: Plan, row: int = 0) -> None:
         """Follow another plan from now on, from one of its rows."""

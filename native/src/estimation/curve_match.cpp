@@ -61,6 +61,8 @@ double most_likely_on_arc(const Piece& arc, const WheelBelief& w, double radius)
 
 }  // namespace
 
+double pushed_by(const WheelBelief& wheel, Vec2 on, Vec2 face) { return face_cost(wheel, on) - corner_cost(wheel, on, face); }
+
 CurveMatch match(const WheelPath& path, const WheelBelief& wheel, double last, double window) {
     const auto& pieces = path.pieces();
     const double lower = std::isnan(last) ? -1.0 : last - window, upper = std::isnan(last) ? 1e9 : last + window;

@@ -34,7 +34,8 @@ void Estimator::compare_with_map(int i, const CurveMatch& on, const Spread& spre
 }
 
 void Estimator::find_map_error() {
-    estimate_.map_error.reset();
+    estimate_.map_error = early_riser();
+    if (estimate_.map_error) return;
     const WheelState &left = wheels_[0], &right = wheels_[1];
     if (std::min(left.known, right.known) < kSettled || left.on_face != right.on_face || left.missed || right.missed) return;
     const double s = 0.5 * (left.s + right.s);
@@ -45,7 +46,7 @@ void Estimator::find_map_error() {
     if (at < found_.size()) found_[at] = off;
     const double least = path_.on_arc(left.s) ? kLeastEdge : left.on_face ? kLeastFace : kLeastTread;
     if (std::abs(off) < least) return;
-    estimate_.map_error = MapError{left.on_face, s, offset_[0], rear_knows(s, left.on_face)};
+    estimate_.map_error = MapError{left.on_face, s, offset_[0], rear_knows(s, left.on_face) ? 2 : 1};
 }
 
 // Whether what front wheels found at `s` is in the rear wheels' offset, too.
@@ -124,18 +125,17 @@ Vec2 Estimator::correct_map(WheelPath path, const MapError& found) {
         if (found_[k] && is_face(k) == found.face && (k == first || !found.face)) *found_[k] -= found.face ? by.x : by.z;
     path_ = std::move(path);
     note_low_edges();
-    offset_[0] = offset_[0] - by;
-    if (found.both) offset_[1] = offset_[1] - by;
+    for (int pair = 0; pair < found.pairs; ++pair) offset_[pair] = offset_[pair] - by;
     for (int i = 0; i < 4; ++i) {
         WheelState& w = wheels_[i];
         w.s = path_.project(place_ + offset_[i / 2] + w.leg.wheel, 0.0, path_.length());
-        w.put_back = w.known = 0.0, w.met = -1e9, w.recalled = 0, w.told = {};
+        w.put_back = w.known = w.stopped = 0.0, w.met = -1e9, w.recalled = 0, w.told = {};
         const auto& pieces = path_.pieces();
         for (std::size_t k = 0; k < pieces.size(); ++k)
             if (!pieces[k].arc && pieces[k].s <= w.s) w.face = w.clear = w.clear_before = k;
     }
     estimate_.map_error.reset();
-    return (found.both ? -1.0 : -0.5) * by;
+    return (-0.5 * found.pairs) * by;
 }
 
 }  // namespace stairwright::estimation

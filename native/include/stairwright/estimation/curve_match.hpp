@@ -47,6 +47,10 @@ struct WheelBelief {
     double low_edge_height = 0.0;
 };
 
+// How much better the push of a steep face ahead, against which the wheel stands, explains the force that it feels than
+// the face with normal `on` alone: the difference of two costs as in CurveMatch.
+double pushed_by(const WheelBelief& wheel, Vec2 on, Vec2 face);
+
 // The most likely place of a wheel within `window` of arc length around `last`, or of anywhere if `last` is NaN.
 CurveMatch match(const WheelPath& path, const WheelBelief& wheel, double last, double window);
 

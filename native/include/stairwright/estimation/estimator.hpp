@@ -66,7 +66,9 @@ struct MapError {
     bool face = false;  // else a tread
     double s = 0.0;     // where on the wheel-centre curve [m]
     Vec2 off;           // the map less what was found [m]; of a face x counts, of a tread z
-    bool both = false;  // rear wheels are on the same ground, or know of it already
+    // How many pairs, the front one first, the estimate has with that offset: rear ones are on the same ground, or know of
+    // it already; none where a face stops wheels that seem to be on the way to it.
+    int pairs = 1;
 };
 
 // What the filter says of itself.
@@ -137,6 +139,8 @@ class Estimator {
         double cruise = 0.0;      // speed that it rolled at until the reading before this one, smoothed [m/s]
         bool on_face = false;     // a steep one, or in a corner before one
         double known = 0.0;       // for how long it has been there, or on a tread [s]
+        double stopped = 0.0;     // evidence that the next face stops it before it is there on the map, see early_riser.cpp
+        double early = 0.0;       // and how far before [m]
         double force_deviation = 0.0;  // of what is felt; of a wall more than that counts [N]
         double met = -1e9;        // the last corner of which it has felt the wall [m]
         double aloft = 0.0;       // for how long it has been in the air [s]
@@ -154,6 +158,8 @@ class Estimator {
     void put_back(int wheel, const Error& along, double excess, Error& error);
     void compare_with_map(int wheel, const CurveMatch& on, const Spread& spread, double dt);
     void find_map_error();
+    void feel_early_riser(WheelState& wheel, const CurveMatch& on, const WheelBelief& belief, double dt);
+    std::optional<MapError> early_riser() const;
     void believe_wheels_again(double dt);
     void enter_face(int wheel, const CurveMatch& on);
     // What front wheels find of a face or tread the rear wheels know when they get there.
