@@ -143,6 +143,7 @@ void bind_rollout(nb::module_& m) {
             return self.run({std::max(first, 0), last, looked, loaded, moving, begun}, {noise.data(), noise.size()});
         }, nb::arg("first"), nb::arg("last"), nb::arg("looked"), nb::arg("loaded"), nb::arg("moving"), nb::arg("begun"), nb::arg("noise"),
            "Control steps; returns where it stopped to have contacts looked at, or `last`.")
+        .def("give_up", [](Rollout& r) { r.executor().give_up(); }, "The robot stops where it waits, and stands.")
         .def("go_on", [](Rollout& r) { r.executor().go_on(); }, "The plan goes on after a test of the grip in which wheels slipped.")
         .def("adopt", [](Rollout& r, const PlanFollower& follower, double friction) { r.executor().adopt(follower, friction); },
              nb::arg("follower"), nb::arg("friction"), "Another plan from now on, made for `friction`.")

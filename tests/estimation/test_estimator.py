@@ -15,6 +15,7 @@ from stairwright.control.settings import parse_settings
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
 from stairwright.robot.mujoco_model import build_model
+from stairwright.simulation import plan_change
 from stairwright.simulation.disturbance import Disturbance
 from stairwright.simulation.result import Rollout
 from stairwright.simulation.rollout import rollout
@@ -76,6 +77,28 @@ def test_a_face_that_comes_early_calls_no_wheel_back() -> None:
     run, judged = sensed(plan, face_place_error=[0.03, 0.03, -0.03, 0.03, 0.03])
     assert run.outcome == "success", run.reason
     assert judged[:, 11].max() > 0.05  # it has noticed
+
+
+def _two_risers(name: str, rise: float, tread: float) -> Plan:
+    points = [(-1.3, 0), (0, 0), (0, rise), (tread, rise), (tread, 0.12 + rise), (1.6, 0.12 + rise)]
+    return sw.plan({"points": points}, name, 0.6)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "rise", "tread"), [("a1_wheeled", 0.10, 0.09), ("go2w", 0.12, 0.12)]
+)
+def test_a_riser_that_stops_wheels_on_the_edge_before_it_is_noticed(name, rise, tread) -> None:
+    """They pushed, 6 cm before it was expected, until the robot fell over backward."""
+    run, _ = sensed(_two_risers(name, rise, tread), face_place_error=[0.03, -0.03])
+    assert run.outcome == "success", run.reason
+
+
+def test_where_no_plan_leads_on_from_there_it_stops(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(plan_change, "plan_anew", lambda *_: None)
+    run, _ = sensed(_two_risers("a1_wheeled", 0.10, 0.09), face_place_error=[0.03, -0.03])
+    assert run.outcome == "stopped"
+    assert "a face stopped the front wheels" in run.reason
 
 
 def test_legs_reach_for_ground_that_is_not_as_drawn(plan: Plan) -> None:

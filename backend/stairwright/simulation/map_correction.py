@@ -15,7 +15,7 @@ from .governor import Track
 
 _STEEP = 1.0  # slope beyond which a stretch is a face, else a tread
 _ROOM = 0.7  # of a tread beside a face that the face may move by
-_WHEELS_OFF = 0.03  # m that a plan may be from where the wheels are
+_WHEELS_OFF = 0.05  # m that a plan may be from where the wheels are
 _JOINTS_OFF = 0.5  # rad that legs may have to move for another plan
 _RADIAN = 0.1  # m of wheels that count as much as one of joints
 

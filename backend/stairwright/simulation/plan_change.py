@@ -40,7 +40,7 @@ class PlanChange:
         if not loop.waits:
             return ""
         if loop.map_error is not None:
-            return self._mend_map(*loop.map_error)
+            self._mend_map(*loop.map_error)
         elif loop.slipped is not None:
             return self._after_slip(*loop.slipped)
         elif loop.load is not None:
@@ -68,10 +68,10 @@ class PlanChange:
             self._follow(decision.plan)
         return decision.why
 
-    def _mend_map(self, face: bool, s: float, along: float, up: float, pairs: int) -> str:
+    def _mend_map(self, face: bool, s: float, along: float, up: float, pairs: int) -> None:
         """Go on with a plan on the map as it was found, or with the old one if there is none.
 
-        Wheels that a face has stopped before they are there by the old plan cannot follow that one.
+        Wheels that a face has stopped before they were there by the old one cannot: the robot stops.
         """
         loop = self._loop
         off = np.array([along, 0.0] if face else [0.0, up])
@@ -87,15 +87,11 @@ class PlanChange:
             track = plan_track(plan, path, self._settings)
             row = nearest_row(track, places, np.asarray(loop.target))
         if plan is None or row is None:
-            loop.go_on()
-            return "" if pairs else (
-                f"a face stopped the front wheels {1e3 * along:.0f} mm before it was expected, and "
-                "there is no plan from there"
-            )
+            loop.go_on() if pairs else loop.give_up()
+            return
         self._known, self._path = known, path
         loop.correct_map(path.native)
         self._follow(plan, row)
-        return ""
 
     def _follow(self, plan: Plan, row: int = 0) -> None:
         """Follow another plan from now on, from one of its rows."""

@@ -19,6 +19,7 @@ const char* reason(Stop stop) {
         case Stop::no_progress: return "the wheels did not follow the plan for 3 s";
         case Stop::tilted: return "the trunk leant too far from the plan";
         case Stop::lost: return "the ground under the wheels is over 12 cm from where the map has it: it has lost its place";
+        case Stop::blocked: return "a face stopped the front wheels before it was expected, and there is no plan from there";
         default: return "";
     }
 }
@@ -38,6 +39,7 @@ Stop SafeStop::watch(double position, bool advancing, double pitch_error, double
     if (best_ - reached_.front() < kProgress) why_ = Stop::no_progress;
     if (std::abs(pitch_error) > kMostPitch || std::abs(roll) > kMostRoll) why_ = Stop::tilted;
     if (lost) why_ = Stop::lost;
+    if (blocked_) why_ = Stop::blocked;
     return why_;
 }
 

@@ -121,6 +121,11 @@ void PlanExecutor::correct_map(const WheelPath& path, Vec2 shift) {
     map_error_.reset();
 }
 
+void PlanExecutor::give_up() {
+    go_on();
+    safe_stop_.block();
+}
+
 void PlanExecutor::go_on() {
     if (map_error_) ignored_ = map_error_->s;
     map_error_.reset();

@@ -13,6 +13,7 @@ enum class Stop {
     no_progress = 1,  // the plan has waited for the wheels for too long
     tilted = 2,       // the trunk is far off its planned pitch, or leans sideways
     lost = 3,         // what the wheels find is not what the map has
+    blocked = 4,      // a face is so early that no plan leads on
 };
 
 // The same in words.
@@ -26,6 +27,9 @@ class SafeStop {
     // [rad], whether it has lost its place. Returns why to stop; once given, an answer stays. Time in which the plan is to wait does not count.
     Stop watch(double position, bool advancing, double pitch_error, double roll, bool lost, double dt);
 
+    // There is no way on: to stop at the next step.
+    void block() { blocked_ = true; }
+
     Stop why() const { return why_; }
     // Since it was 5 mm farther than when this began anew, or was to wait [s].
     double waited() const { return waited_; }
@@ -35,6 +39,7 @@ class SafeStop {
     static constexpr std::size_t kInstants = 31;   // 3 s, and now
 
     Stop why_ = Stop::none;
+    bool blocked_ = false;
     double best_ = -1e9, mark_ = -1e9, waited_ = 0.0;
     double since_ = 0.0;  // the last of these instants [s]
     std::array<double, kInstants> reached_;  // the farthest position until each of the last instants, the oldest first
