@@ -22,12 +22,13 @@ it.
 
 Where trials fail: down flights `a1_wheeled` (all knees back) and `d1` stop before they start, as
 they find that their mass centre is not where the plan has it and that there is no plan for where
-it is; before robots looked for that, an A1 fell down them. At its highest wall `m20` touches the
-wall with a calf, of which its plan keeps 9 mm, and `a1_wheeled` tips over backward. A ramp of 30 degrees takes a friction of 0.577, and some trials
-draw less. Ramps of 45 degrees are gone up with a pair of wheels on level ground.
+it is; before robots looked for that, an A1 fell down them. So do they at their highest walls. At
+its own `m20` touches the wall with a calf, of which its plan keeps 9 mm. A ramp of 30 degrees takes
+a friction of 0.577, and some trials draw less. Ramps of 45 degrees are gone up with a pair of
+wheels on level ground.
 
-Rows of `a1_wheeled_x` are of the state before robots nodded; `d1` walls of that before its wheels
-could wait at edges.
+Walls and rows of `a1_wheeled_x` are the newest; nothing that came after the others were run changes
+their plans.
 
 Rows are kept in a folder by the hash of the code and the question, so that a run that was ended
 goes on, and several may share the work.

@@ -184,7 +184,9 @@ def test_a_profile_and_a_plan_that_were_downloaded_open_again(product: Product) 
 
 def test_thousands_of_corners_are_thinned_and_all_in_reach(product: Product) -> None:
     # The drawing is looked at, not the plan.
-    product.page.route("**/plans", lambda route: route.fulfill(status=422, json={"detail": "too steep"}))
+    product.page.route(
+        "**/plans", lambda route: route.fulfill(status=422, json={"detail": "too steep"})
+    )
     try:
         line = [f"{0.002 * i},{0.002 * math.sin(0.1 * i)}" for i in range(1998)]
         product.paste("x,z\n-1.5,0\n" + "\n".join(line) + "\n6,0\n")

@@ -71,7 +71,7 @@ class PlanChange:
     def _mend_map(self, face: bool, s: float, along: float, up: float, pairs: int) -> None:
         """Go on with a plan on the map as it was found, or with the old one if there is none.
 
-        Wheels that a face has stopped before they were there by the old one cannot: the robot stops.
+        Wheels that a face stopped before they were there by the old one cannot: the robot stops.
         """
         loop = self._loop
         off = np.array([along, 0.0] if face else [0.0, up])
