@@ -210,7 +210,7 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     estimate_.on_tread[i / 2] = tread && room >= kRoom, estimate_.nearing[i / 2] = (tread && room < kRoom) || round_it || unsure;
 
     compare_with_map(i, on, belief.spread, dt);
-    if (i / 2 == kFront) feel_early_riser(w, on, belief, dt);
+    if (i / 2 == kFront) feel_face_ahead(w, on, belief, dt);
     estimate_.touching[i] = touching;
     estimate_.used_grip[i] = std::abs(w.traction) / std::max(dot(w.felt, on.point.normal), 0.02 * weight_);
     if (!estimate_.touching[i]) return;

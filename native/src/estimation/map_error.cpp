@@ -34,7 +34,7 @@ void Estimator::compare_with_map(int i, const CurveMatch& on, const Spread& spre
 }
 
 void Estimator::find_map_error() {
-    estimate_.map_error = early_riser();
+    estimate_.map_error = face_ahead();
     if (estimate_.map_error) return;
     const WheelState &left = wheels_[0], &right = wheels_[1];
     if (std::min(left.known, right.known) < kSettled || left.on_face != right.on_face || left.missed || right.missed) return;

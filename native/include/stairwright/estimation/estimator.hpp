@@ -139,8 +139,8 @@ class Estimator {
         double cruise = 0.0;      // speed that it rolled at until the reading before this one, smoothed [m/s]
         bool on_face = false;     // a steep one, or in a corner before one
         double known = 0.0;       // for how long it has been there, or on a tread [s]
-        double stopped = 0.0;     // evidence that the next face stops it before it is there on the map, see early_riser.cpp
-        double early = 0.0;       // and how far before [m]
+        double stopped = 0.0;     // evidence that it is at the face ahead already, see face_ahead.cpp
+        Vec2 early;               // and by how much the map is off then [m]
         double force_deviation = 0.0;  // of what is felt; of a wall more than that counts [N]
         double met = -1e9;        // the last corner of which it has felt the wall [m]
         double aloft = 0.0;       // for how long it has been in the air [s]
@@ -158,8 +158,8 @@ class Estimator {
     void put_back(int wheel, const Error& along, double excess, Error& error);
     void compare_with_map(int wheel, const CurveMatch& on, const Spread& spread, double dt);
     void find_map_error();
-    void feel_early_riser(WheelState& wheel, const CurveMatch& on, const WheelBelief& belief, double dt);
-    std::optional<MapError> early_riser() const;
+    void feel_face_ahead(WheelState& wheel, const CurveMatch& on, const WheelBelief& belief, double dt);
+    std::optional<MapError> face_ahead() const;
     void believe_wheels_again(double dt);
     void enter_face(int wheel, const CurveMatch& on);
     // What front wheels find of a face or tread the rear wheels know when they get there.
