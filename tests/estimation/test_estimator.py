@@ -94,11 +94,20 @@ def test_a_riser_that_stops_wheels_on_the_edge_before_it_is_noticed(name, rise, 
     assert run.outcome == "success", run.reason
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "drop"), [("b2w", 0.11), ("go2w", 0.08)])
+def test_a_tread_below_that_is_met_on_the_edge_is_noticed(name, drop) -> None:
+    """The filter had the wheels back up the edge, ever farther from where they were."""
+    plan = sw.plan({"points": [(-1.5, 0), (0, 0), (0, -drop), (1.5, -drop)]}, name, 0.6)
+    run, _ = sensed(plan, step_height_error=[0.02])
+    assert run.outcome == "success", run.reason
+
+
 def test_where_no_plan_leads_on_from_there_it_stops(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(plan_change, "plan_anew", lambda *_: None)
     run, _ = sensed(_two_risers("a1_wheeled", 0.10, 0.09), face_place_error=[0.03, -0.03])
     assert run.outcome == "stopped"
-    assert "a face stopped the front wheels" in run.reason
+    assert "a riser stopped the front wheels" in run.reason
 
 
 def test_legs_reach_for_ground_that_is_not_as_drawn(plan: Plan) -> None:

@@ -71,7 +71,7 @@ class PlanChange:
     def _mend_map(self, face: bool, s: float, along: float, up: float, pairs: int) -> None:
         """Go on with a plan on the map as it was found, or with the old one if there is none.
 
-        Wheels that a face stopped before they were there by the old one cannot: the robot stops.
+        Wheels that a riser stopped before they were there by the old one cannot: the robot stops.
         """
         loop = self._loop
         off = np.array([along, 0.0] if face else [0.0, up])
@@ -87,7 +87,10 @@ class PlanChange:
             track = plan_track(plan, path, self._settings)
             row = nearest_row(track, places, np.asarray(loop.target))
         if plan is None or row is None:
-            loop.go_on() if pairs else loop.give_up()
+            if face and pairs == 0:
+                loop.give_up()
+            else:
+                loop.go_on()
             return
         self._known, self._path = known, path
         loop.correct_map(path.native)

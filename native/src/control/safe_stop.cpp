@@ -19,7 +19,7 @@ const char* reason(Stop stop) {
         case Stop::no_progress: return "the wheels did not follow the plan for 3 s";
         case Stop::tilted: return "the trunk leant too far from the plan";
         case Stop::lost: return "the ground under the wheels is over 12 cm from where the map has it: it has lost its place";
-        case Stop::blocked: return "a face stopped the front wheels before it was expected, and there is no plan from there";
+        case Stop::blocked: return "a riser stopped the front wheels before it was expected, and there is no plan from there";
         default: return "";
     }
 }

@@ -16,7 +16,8 @@ constexpr double kLasts = 0.05;    // s that an error of the felt force lasts
 constexpr double kSurely = 10.0;   // twice the logarithm of the odds
 constexpr double kDown = 0.3;      // sine of the slope of a face or edge that leads down
 constexpr double kBeside = 1e-6;   // m
-constexpr double kLeast = 0.01, kMost = 0.10;  // m that it is early
+constexpr double kLeastRiser = 0.01, kLeastTread = 0.015;  // m that it is early; less is not worth another plan
+constexpr double kMost = 0.10;     // m
 
 }  // namespace
 
@@ -29,7 +30,7 @@ void Estimator::feel_face_ahead(WheelState& w, const CurveMatch& on, const Wheel
         const Vec2 ahead = path_.normal(corner + kBeside), now = on.point.normal, off = path_.centre(corner) - belief.centre;
         const bool riser = ahead.x < -kTread && now.x > -kTread, floor = ahead.z > kTread && now.x > kDown;
         const double early = riser ? off.x : -off.z;
-        if ((riser || floor) && early > kLeast && early < kMost) {
+        if ((riser || floor) && early > (riser ? kLeastRiser : kLeastTread) && early < kMost) {
             const double odds = early / (riser ? noise_.face_place : noise_.tread_height);
             w.stopped = std::max(0.0, w.stopped + dt / kLasts * (pushed_by(belief, now, ahead) - kExpected));
             if (w.stopped > kSurely + 0.5 * odds * odds) w.early = riser ? Vec2{off.x, 0.0} : Vec2{0.0, off.z};

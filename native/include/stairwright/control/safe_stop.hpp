@@ -13,7 +13,7 @@ enum class Stop {
     no_progress = 1,  // the plan has waited for the wheels for too long
     tilted = 2,       // the trunk is far off its planned pitch, or leans sideways
     lost = 3,         // what the wheels find is not what the map has
-    blocked = 4,      // a face is so early that no plan leads on
+    blocked = 4,      // a riser is so early that no plan leads on
 };
 
 // The same in words.
