@@ -24,9 +24,11 @@ LEAST_COM = 0.001  # m; no robot's centre of mass is known better
 # that slides a little tips the robot.
 THIN_COM, FIRM_GRIP = 0.006, 0.08
 # Where a pair of wheels carries less than this share of the weight, the robot stands on the other
-# one. So far it may lean from what is planned [rad] without tipping over it; and that share of the
-# friction must be left: on an edge a wheel that is 5 mm off has to hold a few degrees more.
-LIGHT, LEAN, STANDING_GRIP = 0.15, 0.0175, 0.12
+# one. There that share of the friction must be left: on an edge a wheel that is 5 mm off has to
+# hold a few degrees more. And by that much it may lean from what is planned [rad] without tipping
+# over, about a height of that share of its legs: a robot that is low tips slowly.
+LIGHT, STANDING_GRIP = 0.15, 0.12
+LEAN, LOW = 0.05, 0.75
 FIRM_TORQUE = 0.9  # of the motors' torques that standing may take: the rest moves and corrects
 BEYOND_REPAIR = 0.15  # of a motor's torque; where more is lacking somewhere another path is needed
 _SPARE = 5e-4  # m
@@ -40,6 +42,7 @@ class NodeMargins:
     Attributes:
         friction: What there is.
         torque_limits: (2, 3) front and rear: of thigh, calf and wheel motors [Nm].
+        legs: Length of the front legs [m].
         q: (n, 4) planar joints.
         com: (n, 2) centre of mass.
         trunk_clearance, link_clearance: (n,) distances from the terrain.
@@ -57,6 +60,7 @@ class NodeMargins:
 
     friction: float
     torque_limits: Floats
+    legs: float
     q: Floats
     com: Floats
     trunk_clearance: Floats
@@ -100,7 +104,7 @@ class NodeMargins:
 
         carried = np.linalg.norm(self.forces, axis=2)
         light = 0.2 * (carried.min(axis=1) / carried.sum(axis=1) - LIGHT)
-        lean = self.firm_com_margin - LEAN * self.com_height
+        lean = self.firm_com_margin - LEAN * (self.com_height - LOW * self.legs).clip(0.0)
         slacks: Floats = np.stack(
             [
                 self.clearance - LEAST_CLEARANCE,
@@ -148,7 +152,7 @@ class NodeMargins:
         return np.flatnonzero(self.least_slack < _SPARE)
 
 
-_OF_NODES = [one.name for one in fields(NodeMargins)][2:]
+_OF_NODES = [one.name for one in fields(NodeMargins)][3:]
 
 
 def joined(margins: Sequence[NodeMargins]) -> NodeMargins:

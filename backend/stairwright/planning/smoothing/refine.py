@@ -86,5 +86,5 @@ def refine(
     return Refined(
         np.ascontiguousarray(nodes[:, :2]),
         np.ascontiguousarray(nodes[:, 2:]),
-        NodeMargins(q.friction, q.robot.torque_limits, **margins),
+        NodeMargins(q.friction, q.robot.torque_limits, q.robot.legs[0].reach, **margins),
     )
