@@ -22,10 +22,9 @@ it.
 
 Where trials fail: down flights `a1_wheeled` (all knees back) and `d1` stop before they start, as
 they find that their mass centre is not where the plan has it and that there is no plan for where
-it is; before robots looked for that, an A1 fell down them. So do they at their highest walls. At
-its own `m20` touches the wall with a calf, of which its plan keeps 9 mm. A ramp of 30 degrees takes
-a friction of 0.577, and some trials draw less. Ramps of 45 degrees are gone up with a pair of
-wheels on level ground.
+it is; before robots looked for that, an A1 fell down them. So do they at their highest walls, up
+which a B2-W falls in 5 trials. A ramp of 30 degrees takes a friction of 0.577, and some trials draw
+less. Ramps of 45 degrees are gone up with a pair of wheels on level ground.
 
 Walls and rows of `a1_wheeled_x` are the newest; nothing that came after the others were run changes
 their plans.
