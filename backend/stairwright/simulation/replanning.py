@@ -25,9 +25,7 @@ LEAST = 0.2  # friction on which no robot is sent: what is known of it is too ro
 USABLE = (1.0 / MOTION, 0.95)
 ABOVE = 0.05  # m above the trunk's top, of the mass centre of a load whose height is not known
 
-KEPT = (
-    0.003  # m of room that a mass centre needs which is elsewhere than planned: it is found to 2 mm
-)
+KEPT = 0.003  # m of room for a mass centre that is elsewhere than planned: it is found to 2 mm
 
 Point = tuple[float, float]  # (x, z)
 

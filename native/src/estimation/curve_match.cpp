@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "faces.hpp"
+
 namespace stairwright::estimation {
 
 namespace {
@@ -12,7 +14,6 @@ constexpr double kCornerCost = 2.0;   // two faces at once are rarer than one
 constexpr double kMostForceCost = 16; // legs that swing feel forces that no face explains
 constexpr int kArcSteps = 8;
 constexpr double kEnd = 1e-6;         // m
-constexpr double kBeside = 1e-6;      // m
 constexpr double kBlocks = 0.7;       // sine of the turn from one face to the next that stops a wheel
 
 double squared(double v) { return v * v; }

@@ -22,7 +22,6 @@ constexpr double kHopSpeed = 0.2;       // m/s of the trunk from which on a rise
 constexpr double kSure = 0.02;         // s that both faces of a corner must be felt before that counts
 constexpr double kMostScale = 0.025;   // of the wheels: more is slip
 constexpr double kClearOfEdge = 0.01;   // m
-constexpr double kBeside = 1e-6;        // m
 constexpr double kContradicted = 0.05;  // s
 constexpr double kWrongVelocity = 0.5;  // m/s
 constexpr double kMostMapError = 0.12;  // m

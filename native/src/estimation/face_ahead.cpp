@@ -15,7 +15,6 @@ constexpr double kExpected = 1.5;  // of the cost of a force on one face, where 
 constexpr double kLasts = 0.05;    // s that an error of the felt force lasts
 constexpr double kSurely = 10.0;   // twice the logarithm of the odds
 constexpr double kDown = 0.3;      // sine of the slope of a face or edge that leads down
-constexpr double kBeside = 1e-6;   // m
 constexpr double kLeastRiser = 0.01, kLeastTread = 0.015;  // m that it is early; less is not worth another plan
 constexpr double kMost = 0.10;     // m
 

@@ -7,6 +7,7 @@ namespace stairwright::smoothing {
 namespace {
 
 constexpr double kQueryRadius = 0.3;  // m; larger clearances are not told apart
+
 double size(const ContactForce& f) { return std::hypot(f.tangential, f.normal); }
 
 double larger(double a, double b) { return std::abs(b) > std::abs(a) ? b : a; }

@@ -34,9 +34,9 @@ class PlanExecutor {
     // The plan goes on, or another one from now on with the friction that it was made for [1]. The robot stands and
     // waits for this after a weighing that found a load, and after a test of the grip in which wheels slipped.
     void go_on();
+    void adopt(control::PlanFollower follower, double friction);
     // Stop where it waits: there is no way on.
     void give_up();
-    void adopt(control::PlanFollower follower, double friction);
     bool waits() const { return waits_; }
     // What the weighing before the start found that nobody has told of.
     const std::optional<control::Load>& load() const { return weighing_.load(); }
