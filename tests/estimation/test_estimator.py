@@ -103,8 +103,26 @@ def test_a_tread_below_that_is_met_on_the_edge_is_noticed(name, drop) -> None:
     assert run.outcome == "success", run.reason
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "top", "length", "lean", "errors"),
+    [
+        ("go2w", 0.12, 0.60, 0.07, [-0.02, 0.02]),  # a face that leans ends elsewhere on its line
+        ("b2w", 0.10, 0.45, 0.0, [-0.02, -0.02]),  # a step lower than its wheels, twice
+        ("b2w", 0.10, 0.45, 0.0, [0.02, 0.02]),  # no row of a whole plan is near to it
+    ],
+)
+def test_a_box_that_is_not_as_high_as_drawn_is_crossed(name, top, length, lean, errors) -> None:
+    points = [(-1.5, 0), (0, 0), (lean, top), (length, top), (length + lean, 0), (2.0, 0)]
+    plan = sw.plan({"points": points}, name, 0.6)
+    run, judged = sensed(plan, step_height_error=errors)
+    assert run.outcome == "success", run.reason
+    assert np.abs(judged[:, 7]).max() < 0.02
+
+
 def test_where_no_plan_leads_on_from_there_it_stops(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(plan_change, "plan_anew", lambda *_: None)
+    for planned in ("plan_anew", "plan_onward"):
+        monkeypatch.setattr(plan_change, planned, lambda *_: None)
     run, _ = sensed(_two_risers("a1_wheeled", 0.10, 0.09), face_place_error=[0.03, -0.03])
     assert run.outcome == "stopped"
     assert "a riser stopped the front wheels" in run.reason
@@ -217,7 +235,8 @@ def test_a_robot_that_has_slid_away_believes_its_wheels_again(friction: float) -
     result = run.result(run.simulate(None, turns_slippery), keep_plan=False)
     assert result.outcome in ("success", "stuck", "stopped"), result.reason
     assert run.native is not None
-    assert abs(run.native.judged[-1, 4]) < 0.05
+    speed_error = run.native.judged[-25:, 4]  # in the last half second
+    assert np.median(np.abs(speed_error)) < 0.05
 
 
 def test_robot_sensing_needs_the_native_loop() -> None:

@@ -17,13 +17,14 @@ from stairwright.planning.path_planner import PathPlanner
 from stairwright.planning.plan import Plan, PlanTiming
 from stairwright.planning.problem import Problem
 from stairwright.planning.smoothing.path_document import make_plan
-from stairwright.planning.standing import NoStandingPose
+from stairwright.planning.standing import NoStandingPose, StandingPose
 from stairwright.planning.strategy import solve
 from stairwright.planning.threads import search_threads
 from stairwright.planning.timing.fast import hastened
 from stairwright.planning.timing.steady import slowed_where_strained
 from stairwright.planning.tolerance import Tolerance
 from stairwright.planning.tolerant import Fallen, tolerance_problem, within_tolerance
+from stairwright.planning.underway import underway
 from stairwright.planning.weights import PathWeights
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
@@ -38,6 +39,7 @@ def plan_path(
     timing: PlanTiming = "steady",
     tolerance: Tolerance | None = None,
     diagnose: bool = True,
+    here: StandingPose | None = None,
 ) -> Plan:
     """Plan a dense path of poses from the first flat stretch to the last.
 
@@ -55,6 +57,7 @@ def plan_path(
         tolerance: How far the world may be from what was drawn; the certificate holds for all of
             it.
         diagnose: Find out what would open the way where there is none.
+        here: Where the path begins, as near as a pose is sound; by default at the terrain's start.
 
     Returns:
         The plan; on impossible terrain one with a `problem`, and the poses up to there.
@@ -73,6 +76,11 @@ def plan_path(
         return document(robot, problem=no_standing_pose(terrain, robot, error))
     except InputError as error:
         return document(robot, problem=Problem.told("start", terrain.points[0], 0.0, str(error)))
+    if here is not None:
+        planners = [begins for one in planners if (begins := underway(one, here))]
+        if not planners:
+            what = "no pose near to the one where the path is to begin is sound"
+            return document(robot, problem=Problem.told("start", terrain.points[0], 0.0, what))
     planner, found = _best(planners)
     robot = planner.robot
     if isinstance(found, Solved) and tolerance:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,6 +18,7 @@ _STEEP = 1.0  # slope beyond which a stretch is a face, else a tread
 _ROOM = 0.7  # of a tread beside a face that the face may move by
 _WHEELS_OFF = 0.05  # m that a plan may be from where the wheels are
 _JOINTS_OFF = 0.5  # rad that legs may have to move for another plan
+_WHEELS_NEAR, _JOINTS_NEAR = 0.01, 0.15  # that make no difference
 _RADIAN = 0.1  # m of wheels that count as much as one of joints
 
 
@@ -72,16 +74,25 @@ def _end(steep: Flags, k: int) -> int:
     return k
 
 
-def nearest_row(line: Track, places: Floats, target: Floats) -> int | None:
+@dataclass(frozen=True)
+class Row:
+    """A row of a plan: its number, and whether a robot near to it can be called there."""
+
+    number: int
+    near: bool
+
+
+def nearest_row(line: Track, target: Floats) -> Row | None:
     """The row of a new plan that is nearest to what the robot does, None if all are far off.
 
     Args:
         line: The new plan.
-        places: (2,) of front and rear wheels on its wheel-centre curve [m].
-        target: (41,) what is asked for now.
+        target: (41,) what is asked for now, but for the wheels: where they are.
     """
-    wheels = np.abs(line.rows[:, WHEELS] - places).max(axis=1)
+    wheels = np.abs(line.rows[:, WHEELS] - target[WHEELS]).max(axis=1)
     turned = np.abs(line.rows[:, JOINTS] - target[JOINTS]).max(axis=1)
     turned = np.maximum(turned, np.abs(line.rows[:, PITCH] - target[PITCH]))
     best = int(np.argmin(wheels + _RADIAN * turned))
-    return best if wheels[best] < _WHEELS_OFF and turned[best] < _JOINTS_OFF else None
+    if wheels[best] >= _WHEELS_OFF or turned[best] >= _JOINTS_OFF:
+        return None
+    return Row(best, bool(wheels[best] < _WHEELS_NEAR and turned[best] < _JOINTS_NEAR))

@@ -5,13 +5,24 @@ from __future__ import annotations
 import numpy as np
 
 from stairwright import _core
+from stairwright.arrays import Floats
+from stairwright.control.setpoint import PITCH, PROGRESS, TRUNK, WHEELS
 from stairwright.control.settings import ControllerSettings
 from stairwright.planning.plan import Plan
+from stairwright.planning.standing import StandingPose
+from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
 from .governor import Track, follower, lead_of, plan_track
 from .map_correction import corrected, nearest_row
-from .replanning import after_slip, after_weighing, needed_friction, plan_anew, tested_friction
+from .replanning import (
+    after_slip,
+    after_weighing,
+    needed_friction,
+    plan_anew,
+    plan_onward,
+    tested_friction,
+)
 
 
 class PlanChange:
@@ -79,14 +90,12 @@ class PlanChange:
         centres = self._path.centres(np.array([front, rear]))
         centres[:pairs] -= off
         known = corrected(self._known, self._path, s, face=face, off=off)
-        plan = plan_anew(self.followed, known, self.followed.friction)
-        row = None
-        if plan is not None:
-            path = wheel_path(known, plan.robot_description.wheel.radius)
-            places = np.array([path.project(centre) for centre in centres])
-            track = plan_track(plan, path, self._settings)
-            row = nearest_row(track, places, np.asarray(loop.target))
-        if plan is None or row is None:
+        path = wheel_path(known, self.followed.robot_description.wheel.radius)
+        target = np.array(loop.target)
+        target[WHEELS] = [path.project(centre) for centre in centres]
+        target[TRUNK] -= 0.5 * pairs * off
+        found = self._onward(known, path, target)
+        if found is None:
             if face and pairs == 0:
                 loop.give_up()
             else:
@@ -94,7 +103,24 @@ class PlanChange:
             return
         self._known, self._path = known, path
         loop.correct_map(path.native)
-        self._follow(plan, row)
+        self._follow(*found)
+
+    def _onward(self, known: Terrain, path: WheelPath, target: Floats) -> tuple[Plan, int] | None:
+        """A plan over the map `known`, and the row of its track from which it is to be followed.
+
+        A plan from here, unless a row of that from the start is as near as makes no difference.
+        """
+        plan = plan_anew(self.followed, known, self.followed.friction)
+        track = None if plan is None else plan_track(plan, path, self._settings)
+        row = None if track is None else nearest_row(track, target)
+        if plan is not None and row is not None and row.near:
+            return plan, row.number
+        front, rear = target[WHEELS].tolist()
+        here = StandingPose((front, rear), np.array([*target[TRUNK], target[PITCH]]))
+        onward = plan_onward(self.followed, known, here, float(target[PROGRESS]))
+        if onward is not None:
+            return onward, 0
+        return None if plan is None or row is None else (plan, row.number)
 
     def _follow(self, plan: Plan, row: int = 0) -> None:
         """Follow another plan from now on, from one of its rows."""

@@ -8,8 +8,11 @@ from dataclasses import dataclass
 from stairwright.control.setpoint import SHARE
 from stairwright.errors import InputError
 from stairwright.planning.firm_margins import firm_com_margins
+from stairwright.planning.path import plan_path
 from stairwright.planning.plan import Plan
 from stairwright.planning.planner import plan as make_plan
+from stairwright.planning.standing import StandingPose
+from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
 from stairwright.robot.parts import Payload
 from stairwright.terrain.profile import Terrain
@@ -72,6 +75,32 @@ def plan_anew(
     except InputError:
         return None
     return new.model_copy(update={"facing": old.facing}) if new.feasible else None
+
+
+def plan_onward(old: Plan, terrain: Terrain, here: StandingPose, progress: float) -> Plan | None:
+    """A path over `terrain` that begins at `here`, or near to it; None where there is none.
+
+    Args:
+        old: The plan that is followed.
+        terrain: The map.
+        here: Where the robot is.
+        progress: How far along the old plan that is [m]; the new one goes on from there.
+    """
+    if old.method != "path":
+        return None
+    new = plan_path(
+        terrain,
+        [old.robot_description],
+        old.friction,
+        parse_weights("path", old.weights or None),
+        timing=old.timing.rule if old.timing.rule == "fast" else "steady",
+        diagnose=False,
+        here=here,
+    )
+    if not new.feasible:
+        return None
+    poses = [pose.model_copy(update={"progress": progress + pose.progress}) for pose in new.poses]
+    return new.model_copy(update={"facing": old.facing, "poses": poses})
 
 
 def after_slip(plan: Plan, need: float, found: float, *, front: bool) -> Decision:

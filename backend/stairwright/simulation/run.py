@@ -68,6 +68,7 @@ class Run:
         self.limit = 2.5 * self.track.duration + 5.0
         self.sensors = Sensors(disturbance, self.dt, seed, plan.poses[0].x_c)
         self.position = self.track.start
+        self.first = float(self.track.rows[0, PROGRESS])
         self.follower = follower(self.track, lead_of(plan, settings))
         self.places = np.full(4, np.nan)
         self.target = np.zeros(self.track.rows.shape[1])
@@ -123,14 +124,14 @@ class Run:
             cause = self._chunk(steps * self.dt >= SETTLE)
             steps += CHUNK
             now = self.time = steps * self.dt
-            done = (self.position - self.track.start) / (self.track.end - self.track.start)
+            done, total = self._along_the_plan()
             if progress is not None:
-                progress(min(1.0, 0.999 * done))
+                progress(min(1.0, 0.999 * done / total))
             if observe is not None:
                 observe(self.recorder)
             if cause:
                 break
-            if done >= 1.0 - 1e-9:
+            if self.position >= self.track.end - 1e-9:
                 settled += CHUNK
                 if settled * self.dt > SETTLE and (self._at_rest() or settled * self.dt > 2.0):
                     cause = ("arrived", "")
@@ -146,13 +147,16 @@ class Run:
                 cause = ("timeout", "")
                 break
         self.wall = time.perf_counter() - begin
-        first, last = self.track.rows[[0, -1], PROGRESS]
-        reached = (float(self.target[PROGRESS] - first), float(last - first))
         own = self.settings.sensing == "robot"
         plan = self.plan if self.change is None else self.change.followed
         drawn, real, wheels = self.plan.terrain, self.physics.terrain, self.physics.wheels()
         error = end_error(plan, drawn, real, self.disturbance, wheels, own_sensors=own)
-        return Ending(cause[0], self.time, reached, error, cause[1])
+        return Ending(cause[0], self.time, self._along_the_plan(), error, cause[1])
+
+    def _along_the_plan(self) -> tuple[float, float]:
+        """How far the robot is and has to go in all [m]; plans from underway go on counting."""
+        reached, end = self.target[PROGRESS], self.track.rows[-1, PROGRESS]
+        return float(reached - self.first), float(end - self.first)
 
     def _chunk(self, moving: bool) -> tuple[str, str] | None:
         """Some control steps; the cause and its words if the rollout is over."""

@@ -57,7 +57,7 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
     const Vec2 n = on.point.normal;
     if (n.z < kTread) {
         if (dot(wheels_[i].felt, n) < wheels_[i].force_deviation) return;  // it only seems to be there
-        wheels_[i].met = nearest_corner(on.s);
+        if (n.x < 0.0) wheels_[i].met = nearest_corner(on.s);  // down a face it is the tread below that is to be felt
     }
     covariance_.update(row(n), dot(n, off), variance, error);
     if (path_.pieces()[on.piece].arc) measure_turn(i, n, row({n.z, -n.x}), dt, error);

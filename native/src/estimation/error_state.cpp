@@ -60,4 +60,9 @@ void Covariance::propagate(const std::array<std::array<double, 3>, 3>& R, const 
     rows([&](std::size_t i, std::size_t j) -> double& { return P_[j][i]; });
 }
 
+void Covariance::add_noise(std::size_t i, Vec2 along, double variance) {
+    P_[i][i] += along.x * along.x * variance, P_[i + 1][i + 1] += along.z * along.z * variance;
+    P_[i][i + 1] = P_[i + 1][i] += along.x * along.z * variance;
+}
+
 }  // namespace stairwright::estimation

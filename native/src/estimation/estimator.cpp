@@ -22,6 +22,7 @@ constexpr double kHopSpeed = 0.2;       // m/s of the trunk from which on a rise
 constexpr double kSure = 0.02;         // s that both faces of a corner must be felt before that counts
 constexpr double kMostScale = 0.025;   // of the wheels: more is slip
 constexpr double kClearOfEdge = 0.01;   // m
+constexpr double kBend = 0.1;           // sine of the turn from one tread to the next from which on they are two
 constexpr double kContradicted = 0.05;  // s
 constexpr double kWrongVelocity = 0.5;  // m/s
 constexpr double kMostMapError = 0.12;  // m
@@ -227,7 +228,7 @@ void Estimator::enter_face(int i, const CurveMatch& on) {
     WheelState& w = wheels_[i];
     const std::size_t at = on.corner ? kNoPiece : face_below(on.piece);
     if (at == kNoPiece) return;
-    if (at == on.piece && !path_.pieces()[at].arc && at != w.face) w.face = at, w.put_back = w.landed = 0.0;
+    if (at == on.piece && at != w.face) w.face = at, w.put_back = w.landed = 0.0;
     // In a corner a wheel goes to and fro between two faces, and measures both: what is unsure is so once it has left it.
     const double corner = std::min(kNearCorner, 0.5 * path_.pieces()[at].length);
     if (at == w.clear || std::abs(nearest_corner(on.s) - on.s) < corner) return;
@@ -236,11 +237,18 @@ void Estimator::enter_face(int i, const CurveMatch& on) {
     const bool tread = !is_face(at), was_tread = !is_face(w.clear);
     const bool known = at == w.clear_before;  // it comes back to it
     w.clear_before = w.clear, w.clear = at;
-    if (known || (tread && was_tread)) return;
-    if (tread && i == 0 && !has_found(w.clear_before)) believe_map();
+    if (known) return;
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
-    const double error = tread ? noise_.face_place : noise_.tread_height;
-    covariance_.add_noise(tread ? own : own + 1, 0.5 * error * error);
+    const double height = 0.5 * noise_.tread_height * noise_.tread_height, place = 0.5 * noise_.face_place * noise_.face_place;
+    if (!tread) {
+        // It may end higher or lower than drawn: down one that leans, farther on or back as well.
+        covariance_.add_noise(own, {normal(at).x > 0.0 ? -across(at).z : 0.0, 1.0}, height);
+    } else if (was_tread) {  // a slope may rise more or less than drawn
+        if (std::abs(cross(normal(w.clear_before), normal(at))) > kBend) covariance_.add_noise(own + 1, height);
+    } else {
+        if (i == 0 && !has_found(w.clear_before)) believe_map(w.clear_before);
+        covariance_.add_noise(own, place);
+    }
 }
 
 // A filter that is surer of a wrong velocity, as after a slide, than wheels can tell it turns down all that they say, for

@@ -24,7 +24,7 @@ constexpr double kMost = 0.10;     // m
 void Estimator::feel_face_ahead(WheelState& w, const CurveMatch& on, const WheelBelief& belief, double dt) {
     const std::size_t next = path_.corner_from(on.s);
     w.early = {};
-    if (!on.corner && next < path_.corners().size()) {
+    if (!on.corner && !over_low_edge(w, on) && next < path_.corners().size()) {
         const double corner = path_.corners()[next];
         const Vec2 ahead = path_.normal(corner + kBeside), now = on.point.normal, off = path_.centre(corner) - belief.centre;
         const bool riser = ahead.x < -kTread && now.x > -kTread, floor = ahead.z > kTread && now.x > kDown;

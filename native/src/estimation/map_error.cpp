@@ -40,13 +40,14 @@ void Estimator::find_map_error() {
     if (std::min(left.known, right.known) < kSettled || left.on_face != right.on_face || left.missed || right.missed) return;
     const double s = 0.5 * (left.s + right.s);
     const std::size_t at = face_or_tread(s, left.on_face);
-    if (left.on_face && !has_found(at)) believe_map();
-    const double off = left.on_face ? offset_[0].x : offset_[0].z;
+    if (at >= path_.pieces().size()) return;
+    if (left.on_face && !has_found(at)) believe_map(at);
+    const double off = dot(across(at), offset_[0]);
     found_.resize(path_.pieces().size());
-    if (at < found_.size()) found_[at] = off;
+    found_[at] = off;
     const double least = path_.on_arc(left.s) ? kLeastEdge : left.on_face ? kLeastFace : kLeastTread;
     if (std::abs(off) < least) return;
-    estimate_.map_error = MapError{left.on_face, s, offset_[0], rear_knows(s, left.on_face) ? 2 : 1};
+    estimate_.map_error = MapError{left.on_face, s, left.on_face ? Vec2{off, 0.0} : Vec2{0.0, off}, rear_knows(s, left.on_face) ? 2 : 1};
 }
 
 // Whether what front wheels found at `s` is in the rear wheels' offset, too.
@@ -58,14 +59,24 @@ bool Estimator::rear_knows(double s, bool face) const {
     return told(wheels_[2]) || told(wheels_[3]);
 }
 
-bool Estimator::is_face(std::size_t piece) const { return path_.pieces()[piece].at(0.0, path_.radius()).normal.z < kTread; }
+// What of an offset counts for a face along, or for a tread up. A face that leans is the same one a little higher and farther
+// on or back.
+Vec2 Estimator::across(std::size_t piece) const {
+    if (!is_face(piece)) return {0.0, 1.0};
+    const Vec2 n = normal(piece);
+    return {1.0, path_.pieces()[piece].arc ? 0.0 : n.z / n.x};
+}
+
+Vec2 Estimator::normal(std::size_t piece) const { return path_.pieces()[piece].at(0.0, path_.radius()).normal; }
+
+bool Estimator::is_face(std::size_t piece) const { return normal(piece).z < kTread; }
 
 // The face or tread that a wheel on that piece of the curve is on. Round an edge that leads up it is still the face below;
 // one that is lower than the wheel has nothing but the edge.
 std::size_t Estimator::face_below(std::size_t piece) const {
     const Piece& edge = path_.pieces()[piece];
     if (!edge.arc) return piece;
-    if (!is_face(piece) || edge.at(0.0, path_.radius()).normal.x > 0.0) return kNoPiece;
+    if (!is_face(piece) || normal(piece).x > 0.0) return kNoPiece;
     if (piece > 0 && !path_.pieces()[piece - 1].arc && is_face(piece - 1)) return piece - 1;
     return std::ranges::binary_search(path_.corners(), edge.s) ? piece : kNoPiece;
 }
@@ -86,12 +97,13 @@ std::size_t Estimator::face_or_tread(double s, bool face) const {
 // What front wheels say of a face once, when they have found it or passed it. Each is off by itself, the one as likely
 // ahead as the other behind: what all of them seem to be off the robot's place is. The difference between two faces has
 // twice the variance of either.
-void Estimator::believe_map() {
+void Estimator::believe_map(std::size_t face) {
+    const Vec2 across = this->across(face);
     Error error{}, row{};
-    row[kFrontOffset] = 1.0;
-    covariance_.update(row, -offset_[0].x, 0.5 * noise_.face_place * noise_.face_place, error);
+    row[kFrontOffset] = across.x, row[kFrontOffset + 1] = across.z;
+    covariance_.update(row, -dot(across, offset_[0]), 0.5 * noise_.face_place * noise_.face_place, error);
     // Where the wheels are on the map, and what they have found there, stays.
-    error[kFrontOffset] = error[kRearOffset] = -error[kPlace];
+    for (const std::size_t k : {0, 1}) error[kFrontOffset + k] = error[kRearOffset + k] = -error[kPlace + k];
     for (std::size_t k = 0; k < found_.size(); ++k)
         if (found_[k] && is_face(k)) *found_[k] -= error[kPlace];
     correct(error);
@@ -100,7 +112,7 @@ void Estimator::believe_map() {
 // Of the face or tread that a rear wheel is on and of the next one; not while it may still lean on the one before.
 void Estimator::recall(WheelState& rear) {
     const Piece& now = path_.pieces()[rear.face];
-    if (rear.face == rear.recalled || rear.s < now.s + kInto || rear.s > now.s + now.length) return;
+    if (rear.face == rear.recalled || rear.s < now.s + std::min(kInto, 0.5 * now.length) || rear.s > now.s + now.length) return;
     rear.recalled = rear.face, rear.told = {};
     Error error{};
     std::size_t seen = 0;
@@ -109,15 +121,16 @@ void Estimator::recall(WheelState& rear) {
         ++seen;
         if (!found_[k]) continue;
         rear.told[seen - 1] = k;
+        const Vec2 across = this->across(k);
         Error row{};
-        row[is_face(k) ? kRearOffset : kRearOffset + 1] = 1.0;
-        covariance_.update(row, *found_[k] - (is_face(k) ? offset_[1].x : offset_[1].z), kRecalled * kRecalled, error);
+        row[kRearOffset] = across.x, row[kRearOffset + 1] = across.z;
+        covariance_.update(row, *found_[k] - dot(across, offset_[1]), kRecalled * kRecalled, error);
     }
     correct(error);
 }
 
 Vec2 Estimator::correct_map(WheelPath path, const MapError& found) {
-    const Vec2 by = found.face ? Vec2{found.off.x, 0.0} : Vec2{0.0, found.off.z};
+    const Vec2 by = found.off;
     // A face is moved by itself, with a tread all that is behind it.
     const std::size_t first = face_or_tread(found.s, found.face);
     if (path.pieces().size() != found_.size()) found_.clear();

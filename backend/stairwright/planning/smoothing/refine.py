@@ -86,5 +86,14 @@ def refine(
     return Refined(
         np.ascontiguousarray(nodes[:, :2]),
         np.ascontiguousarray(nodes[:, 2:]),
-        NodeMargins(q.friction, q.robot.torque_limits, q.robot.legs[0].reach, **margins),
+        _named(q, margins),
     )
+
+
+def node_margins(q: PathProblem, s: Floats, body: Floats) -> NodeMargins:
+    """What poses are worth: arc lengths (n, 2) and trunk poses (n, 3)."""
+    return _named(q, q.refine_problem.margins(np.hstack([s, body])))
+
+
+def _named(q: PathProblem, margins: dict[str, Floats]) -> NodeMargins:
+    return NodeMargins(q.friction, q.robot.torque_limits, q.robot.legs[0].reach, **margins)

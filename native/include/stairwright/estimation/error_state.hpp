@@ -46,6 +46,8 @@ class Covariance {
     void propagate(const std::array<std::array<double, 3>, 3>& R, const std::array<double, 3>& force, double dt);
 
     void add_noise(std::size_t i, double variance) { P_[i][i] += variance; }
+    // Of a pair of errors, i and i + 1, along one direction.
+    void add_noise(std::size_t i, Vec2 along, double variance);
 
   private:
     Matrix P_{};

@@ -164,11 +164,13 @@ class Estimator {
     void enter_face(int wheel, const CurveMatch& on);
     // What front wheels find of a face or tread the rear wheels know when they get there.
     bool has_found(std::size_t piece) const { return piece < found_.size() && found_[piece]; }
-    void believe_map();
+    void believe_map(std::size_t face);
     void recall(WheelState& rear);
     bool rear_knows(double s, bool face) const;
     std::size_t face_or_tread(double s, bool face) const;  // the piece nearest to the place `s`
     bool is_face(std::size_t piece) const;
+    Vec2 across(std::size_t piece) const;
+    Vec2 normal(std::size_t piece) const;  // where it begins
     std::size_t face_below(std::size_t piece) const;
     bool before_drop(const CurveMatch& on) const;
     void note_low_edges();
