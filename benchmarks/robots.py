@@ -104,7 +104,9 @@ class Tried:
 
     def row(self, robot: str, case: str) -> list[str]:
         if self.plan.problem is not None:
-            return [robot, case, "no", "-", self.plan.problem.message.split(":")[0], ""]
+            lack, _, rest = self.plan.problem.message.partition(":")
+            other_end = rest.partition(";")[2]  # whether there is a plan with that in front
+            return [robot, case, "no", "-", f"{lack};{other_end}".rstrip(";"), ""]
         binding = self.plan.binding
         assert binding is not None
         units = {"torque": "Nm", "wheel_torque": "Nm", "joint_limit": "rad", "friction": ""}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -163,6 +165,26 @@ def test_a_refusal_has_no_overlaps(product: Product) -> None:
     product.page.keyboard.press("2")
     assert _everywhere(product) == []
     product.page.keyboard.press("1")
+
+
+def test_what_leads_out_of_a_refusal_has_no_overlaps(product: Product) -> None:
+    """With its rear in front the robot gets down: what says so stands in three places."""
+    page = product.page
+    page.get_by_role("button", name=re.compile("^Robot")).first.click()
+    page.get_by_role("menuitemradio", name=re.compile(r"^a1_wheeled\b")).click()
+    drop = [[-1.2, 0.25], [0, 0.25], [0, 0], [1.2, 0]]
+    product.paste(json.dumps({"points": drop, "friction": 0.4})).has_corners(4).planned()
+    slider = page.get_by_role("slider", name="Step height ±")
+    slider.press("ArrowRight")
+    product.planned()
+    assert page.get_by_role("button", name="Plan backward").count() == 2
+    assert _everywhere(product) == []
+    page.keyboard.press("2")
+    assert _everywhere(product) == []
+    page.keyboard.press("1")
+    page.get_by_role("button", name=re.compile("Reset Step height")).click()
+    page.get_by_role("button", name=re.compile("^Robot")).first.click()
+    page.get_by_role("menuitemradio", name=re.compile(r"^a1_wheeled_x\b")).click()
 
 
 def test_a_plan_of_minutes_has_no_overlaps(product: Product) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from .axe import violations
 from .conftest import Product
 
 if TYPE_CHECKING:
@@ -107,6 +108,41 @@ def test_a_robot_turns_about(product: Product) -> None:
     page.get_by_role("radio", name="Backward", checked=True).wait_for()
     product.planned()
     page.get_by_role("radio", name="Forward").click()
+    product.planned()
+
+
+def test_a_refusal_offers_the_plan_with_the_other_end_in_front(product: Product) -> None:
+    """Where what stops the robot is told: on the canvas, beside the tolerance, in Robot."""
+    page = product.page
+    _choose_robot(page, "a1_wheeled")
+    drop = [[-1.2, 0.25], [0, 0.25], [0, 0], [1.2, 0]]
+    product.paste(json.dumps({"points": drop, "friction": 0.4})).has_corners(4).planned()
+    card = page.get_by_role("region", name="What stops the robot")
+    tolerance = page.get_by_role("region", name="Tolerance")
+    offer = card.get_by_role("button", name="Plan backward")
+    assert "rear first" in card.inner_text()
+    assert violations(page, ".why") == []
+    offer.focus()
+    page.keyboard.press("Enter")
+    page.get_by_role("radio", name="Backward", checked=True).wait_for()
+    product.planned()
+    assert product.status == "feasible"
+    page.keyboard.press("Control+z")
+    page.get_by_role("radio", name="Forward", checked=True).wait_for()
+    offer.wait_for()
+    tolerance.get_by_role("slider", name="Step height ±").press("ArrowRight")
+    product.planned()
+    tolerance.get_by_role("button", name="Plan backward").wait_for()
+    assert violations(page, ".tolerance") == []
+    page.keyboard.press("2")
+    preview = page.get_by_role("region", name="Two robots on this terrain")
+    preview.get_by_role("button", name="Plan backward").click()
+    product.planned()
+    assert product.status == "feasible"
+    page.keyboard.press("1")
+    page.get_by_role("button", name=re.compile("Reset Step height")).click()
+    page.get_by_role("radio", name="Forward").click()
+    _choose_robot(page, "a1_wheeled_x")
     product.planned()
 
 

@@ -6,7 +6,8 @@ import pytest
 
 import stairwright as sw
 from stairwright.planning.leading_end import better_led
-from stairwright.planning.plan import Facing, Plan, PlanTiming
+from stairwright.planning.plan import Plan, PlanTiming
+from stairwright.robot.turning import Facing
 from stairwright.simulation.replanning import plan_anew
 from stairwright.terrain.stairs import stair
 
@@ -61,6 +62,29 @@ def test_a_refusal_is_that_of_the_end_that_comes_farther() -> None:
     assert (refused.facing, refused.problem) == (farther.facing, farther.problem)
     assert refused.problem is not None
     assert refused.problem.limit is not None
+
+
+def test_a_refusal_tells_of_a_plan_with_the_other_end_in_front() -> None:
+    refused = sw.plan(DROP, friction=0.4)
+    bare = sw.plan(DROP, friction=0.4, diagnose=False)
+    assert refused.problem is not None
+    assert bare.problem is not None
+    assert refused.problem.limit is not None
+    assert refused.problem.feasible_facing == "backward"
+    assert refused.problem.message.endswith("; there is a plan rear first (facing backward)")
+    assert (refused.id, refused.facing) == (bare.id, "forward")
+    assert bare.problem.feasible_facing is None
+    assert sw.plan(DROP, friction=0.4, facing="backward").feasible
+
+
+@pytest.mark.slow
+def test_and_of_one_with_its_front_in_front() -> None:
+    up = {"points": [[-x, z] for x, z in reversed(DROP["points"])]}
+    refused = sw.plan(up, friction=0.4, facing="backward")
+    assert refused.problem is not None
+    assert refused.problem.feasible_facing == "forward"
+    assert refused.problem.message.endswith("; there is a plan front first (facing forward)")
+    assert sw.plan(up, friction=0.4).feasible
 
 
 @pytest.mark.slow

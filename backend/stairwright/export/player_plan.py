@@ -8,11 +8,11 @@ from stairwright.control.controller import gains
 from stairwright.control.native import OF_ROBOT, OF_SETTINGS
 from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
-from stairwright.planning.plan import Facing, Plan
+from stairwright.planning.plan import Plan
 from stairwright.robot.description import JOINTS, LEGS, Robot
 from stairwright.robot.legs import Leg, LinkForm
 from stairwright.robot.parts import Actuator
-from stairwright.robot.turning import opposite
+from stairwright.robot.turning import Facing, opposite
 from stairwright.simulation.governor import lead_of, plan_track
 from stairwright.simulation.measured import SETTLE
 from stairwright.simulation.replanning import ENOUGH, TESTED, needed_friction

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from .plan import Facing, Plan, PlanTiming, reach
+from stairwright.robot.turning import Facing
+
+from .plan import Plan, PlanTiming, reach
 
 CLEARLY_SOONER = 0.9  # of the time forward; less is not worth turning about for
 
@@ -32,6 +34,19 @@ def better_led(led_by: Callable[[Facing], Plan], timing: PlanTiming) -> Plan:
         sooner = backward.timing.total < CLEARLY_SOONER * forward.timing.total
         return backward if sooner and _room(backward) >= _room(forward) else forward
     return max(forward, backward, key=reach)
+
+
+def told_of_other_end(refusal: Plan, led_by: Callable[[Facing], Plan]) -> Plan:
+    """The refusal; where there is a plan with the other end in front, it says so.
+
+    Args:
+        refusal: With the end in front that was asked for there is no plan.
+        led_by: Plans with that end in front.
+    """
+    other: Facing = "forward" if refusal.facing == "backward" else "backward"
+    if refusal.problem is None or not led_by(other).feasible:
+        return refusal
+    return refusal.model_copy(update={"problem": refusal.problem.but_facing(other)})
 
 
 def _room(plan: Plan) -> float:

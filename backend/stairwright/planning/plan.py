@@ -15,6 +15,7 @@ from stairwright.errors import InputError
 from stairwright.planning.problem import Problem, Vector2
 from stairwright.planning.tolerance import Tolerance
 from stairwright.robot.description import Robot
+from stairwright.robot.turning import Facing
 from stairwright.terrain.profile import Terrain
 
 Method = Literal["path", "critical", "nominal"]
@@ -109,7 +110,6 @@ class Certificate(Model):
 
 
 Bend = Literal["back", "forward"]
-Facing = Literal["forward", "backward"]
 FacingChoice = Literal["forward", "backward", "either"]  # either: as the planner finds better
 Quantity = Literal["clearance", "com", "friction", "torque", "wheel_torque", "joint_limit"]
 

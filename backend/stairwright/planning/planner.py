@@ -16,9 +16,8 @@ from stairwright.errors import InputError
 from stairwright.library import load_robot, load_terrain
 from stairwright.planning.energy import with_energy
 from stairwright.planning.knees import configurations, knees_of
-from stairwright.planning.leading_end import better_led
+from stairwright.planning.leading_end import better_led, told_of_other_end
 from stairwright.planning.plan import (
-    Facing,
     FacingChoice,
     Method,
     Plan,
@@ -30,7 +29,7 @@ from stairwright.planning.plan import (
 from stairwright.planning.tolerance import Tolerance, parse_tolerance
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
-from stairwright.robot.turning import symmetric, turned
+from stairwright.robot.turning import Facing, symmetric, turned
 from stairwright.terrain.profile import Terrain
 
 if TYPE_CHECKING:
@@ -77,7 +76,8 @@ def plan(
         certified: Check single poses and the motion between them; without, ``critical`` is sooner.
             A path is always certified.
         diagnose: Find out what would open the way where there is none, which takes most of the time
-            of such an answer; without, the problem of a ``path`` tells only where it ends.
+            of such an answer, and whether there is one with the other end of the robot in front;
+            without, the problem of a ``path`` tells only where it ends.
         solver: What solves the poses of ``critical``: ``native``, or ``ipopt``, which solves the
             same problem written in CasADi. By default ``native``; with terms of yours ``ipopt``.
         extra_cost: Of ``critical``: gives, for a `SymbolicPose`, a CasADi scalar to add to eq 17.
@@ -126,14 +126,19 @@ class _Asked:
 
     def plan(self, facing: FacingChoice, diagnose: bool) -> Plan:
         """The plan; of ``either`` the better one. Only what is answered is diagnosed."""
-        if facing != "either":
-            return self._led_by(facing, diagnose)
         begun = clock.perf_counter()
-        if symmetric(self.robot):
+        led_by = partial(self._led_by, diagnose=False)
+        diagnose = diagnose and self.method == "path"
+        if facing != "either":
+            found = self._led_by(facing, diagnose)
+            if found.feasible or not diagnose or symmetric(self.robot):
+                return found
+            found = told_of_other_end(found, led_by)
+        elif symmetric(self.robot):
             found = self._led_by("forward", diagnose)
         else:
-            found = better_led(partial(self._led_by, diagnose=False), self.timing)
-            if self.method == "path" and diagnose and not found.feasible:
+            found = better_led(led_by, self.timing)
+            if diagnose and not found.feasible:
                 found = self._led_by(found.facing, diagnose)
         took = clock.perf_counter() - begun
         return found.model_copy(update={"solve_time": took})

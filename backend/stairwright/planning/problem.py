@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from stairwright.documents import Model
+from stairwright.robot.turning import Facing
 
 Vector2 = tuple[float, float]
 ProblemKind = Literal["reach", "clearance", "statics", "torque", "joint_limit", "start", "goal"]
@@ -46,6 +47,10 @@ class Problem(Model):
     progress: float = Field(description="how far the plan gets [m]")
     message: str
     limit: Limit | None = None
+    feasible_facing: Facing | None = Field(
+        None,
+        description="the `facing` that has a plan, where the one asked for has none",
+    )
 
     @classmethod
     def told(
@@ -56,6 +61,12 @@ class Problem(Model):
         lack = "" if limit is None else f"{limit}: "
         message = f"{lack}{what} at x = {at[0]:.2f} m, z = {at[1]:.2f} m"
         return cls(kind=kind, at=at, progress=progress, message=message, limit=limit)
+
+    def but_facing(self, facing: Facing) -> Problem:
+        """The same one, telling that with the robot's other end in front there is a plan."""
+        end = "rear" if facing == "backward" else "front"
+        message = f"{self.message}; there is a plan {end} first (facing {facing})"
+        return self.model_copy(update={"message": message, "feasible_facing": facing})
 
 
 def between_poses(

@@ -7,10 +7,12 @@ software knows of its joints goes with them, by `joint_names` and `joint_frames`
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 from .description import JOINTS, Robot
 from .parts import JointFrame, Joints, LegLimits, Link, Point, Range, RearLegs
+
+Facing = Literal["forward", "backward"]  # which end leads: the front, or the rear
 
 _OTHER_END = {"FL": "RR", "FR": "RL", "RL": "FR", "RR": "FL"}
 

@@ -1075,6 +1075,8 @@ export interface components {
             progress: number;
             message: string;
             limit?: components["schemas"]["Limit"] | null;
+            /** @description the `facing` that has a plan, where the one asked for has none */
+            feasible_facing?: ("forward" | "backward") | null;
         };
         /** @description One inclined plane. */
         RampParameters: {

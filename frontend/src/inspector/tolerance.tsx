@@ -2,6 +2,7 @@
 
 import type { Plan } from "../api/types";
 import { fixed, reason } from "../geometry/format";
+import { PlanOtherEnd } from "../plan/other-end";
 import { plan, stale } from "../state/planning";
 import { setTolerance, tolerance, toleranceSchema } from "../state/setup";
 import { SettingRow } from "./setting-row";
@@ -30,7 +31,13 @@ export function Tolerance() {
 function Stood() {
   const now = plan.value;
   if (!now || stale.value) return <p class="effect-wait">Planning with that tolerance …</p>;
-  if (now.problem) return <p class="effect-wait">{reason(now.problem.message)}</p>;
+  if (now.problem) {
+    return (
+      <p class="effect-wait">
+        {reason(now.problem.message)} <PlanOtherEnd stop={now.problem} />
+      </p>
+    );
+  }
   return (
     <dl aria-label="Least margins within tolerance">
       {checksOf(now).map((check) => (

@@ -3,6 +3,7 @@
 import { computed } from "@preact/signals";
 import type { Problem } from "../api/types";
 import { fixed, reason } from "../geometry/format";
+import { PlanOtherEnd } from "../plan/other-end";
 import { canUndo, isEmpty, undo } from "../state/drawing";
 import { outdated, plan, preview, refusal } from "../state/planning";
 import { Icon } from "../ui/icon";
@@ -181,6 +182,7 @@ export function Obstruction() {
         </dl>
         {sentence && <p>{sentence}</p>}
         <div class="acts">
+          <PlanOtherEnd stop={stop} />
           {canUndo.value && (
             <button type="button" onClick={undo}>
               Undo edit

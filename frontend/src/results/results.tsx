@@ -26,6 +26,8 @@ function Content() {
   if (run.value) return isNarrow.value ? <Lines result={run.value} /> : <Card result={run.value} />;
   if (plan.value?.problem) {
     const { problem, poses } = plan.value;
+    const turn = problem.feasible_facing ? ` or plan ${problem.feasible_facing}` : "";
+    const remedy = `Change the marked spot${turn}, then run it.`;
     return (
       <>
         <h2 class="bad">
@@ -34,8 +36,8 @@ function Content() {
         </h2>
         <p>
           {poses.length > 0
-            ? `The plan stops after ${fixed(problem.progress, 2)} m, so the plots show only that part. Change the marked spot, then run it.`
-            : "No pose was found at the start. Change the marked spot, then run it."}
+            ? `The plan stops after ${fixed(problem.progress, 2)} m, so the plots show only that part. ${remedy}`
+            : `No pose was found at the start. ${remedy}`}
         </p>
       </>
     );

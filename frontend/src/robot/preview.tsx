@@ -6,6 +6,7 @@ import type { Plan, RobotDocument } from "../api/types";
 import { fixed, maybe, reason, took } from "../geometry/format";
 import { planFrame, poseTimes } from "../geometry/frames";
 import { robotShape, skeleton } from "../geometry/robot";
+import { PlanOtherEnd } from "../plan/other-end";
 import { Figure } from "../profile-editor/figure";
 import { stated, worst } from "../profile-editor/margins";
 import { drawing, isEmpty } from "../state/drawing";
@@ -32,6 +33,7 @@ export function Preview() {
           <b class="ab">A</b>
           <h2>{robotName.value}</h2>
           <div class="grow" />
+          <PlanOtherEnd stop={a?.problem} />
           <Verdict
             of={a}
             refused={refusal.value !== null && !slow.value}
