@@ -173,6 +173,8 @@ void bind_rollout(nb::module_& m) {
         .def("diverged", &Rollout::diverged)
         .def_prop_ro("stopped", [](const Rollout& r) { return r.executor().stop() != control::Stop::none; }, "Whether the robot has given up.")
         .def_prop_ro("stop_reason", [](const Rollout& r) { return control::reason(r.executor().stop()); }, "Why it has; empty where it has not.")
+        .def_prop_ro("may_go_on", [](const Rollout& r) { return control::may_go_on(r.executor().stop()); },
+                     "Whether another plan, from where it stands, may lead on.")
         .def_prop_ro("stopped_at", [](const Rollout& r) { return r.executor().stopped_at(); }, "Since when [s].")
         .def_prop_ro("position", [](const Rollout& r) { return r.executor().follower().position(); })
         .def_prop_ro("target", [](const Rollout& r) { return row(r.executor().target()); }, nb::rv_policy::automatic)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from stairwright import _core
@@ -24,6 +26,8 @@ from .replanning import (
     tested_friction,
 )
 
+_FARTHER = 0.05  # m that a robot must have come before it goes on after another stop
+
 
 class PlanChange:
     """Decides how the native loop goes on where it waits.
@@ -44,6 +48,7 @@ class PlanChange:
         self.followed, self.track = plan, track
         self._loop, self._plan, self._settings = loop, plan, settings
         self._known, self._path = plan.terrain, path  # as the robot has found it
+        self._went_on = -math.inf  # progress at which it did so after a stop [m]
 
     def decide(self) -> str:
         """Go on, with another plan or the old one; why the robot must stop, or nothing."""
@@ -57,6 +62,21 @@ class PlanChange:
         elif loop.load is not None:
             return self._after_weighing(*loop.load)
         return ""
+
+    def goes_on_from_here(self) -> bool:
+        """Whether a robot that has stopped has a plan from where it stands, which it follows now.
+
+        It is not to stop for ever at the same place.
+        """
+        target = np.array(self._loop.target)
+        if not self._loop.may_go_on or target[PROGRESS] < self._went_on + _FARTHER:
+            return False
+        plan = self._onward(self._known, target)
+        if plan is None:
+            return False
+        self._went_on = float(target[PROGRESS])
+        self._follow(plan)
+        return True
 
     def _after_weighing(self, mass: float, place: _core.Vec2, shift: _core.Vec2) -> str:
         """Go on with a plan for the robot as it was found to be, or the old one if it stands it."""
@@ -94,7 +114,7 @@ class PlanChange:
         target = np.array(loop.target)
         target[WHEELS] = [path.project(centre) for centre in centres]
         target[TRUNK] -= 0.5 * pairs * off
-        found = self._onward(known, path, target)
+        found = self._on_the_map(known, path, target)
         if found is None:
             if face and pairs == 0:
                 loop.give_up()
@@ -105,7 +125,9 @@ class PlanChange:
         loop.correct_map(path.native)
         self._follow(*found)
 
-    def _onward(self, known: Terrain, path: WheelPath, target: Floats) -> tuple[Plan, int] | None:
+    def _on_the_map(
+        self, known: Terrain, path: WheelPath, target: Floats
+    ) -> tuple[Plan, int] | None:
         """A plan over the map `known`, and the row of its track from which it is to be followed.
 
         A plan from here, unless a row of that from the start is as near as makes no difference.
@@ -115,12 +137,15 @@ class PlanChange:
         row = None if track is None else nearest_row(track, target)
         if plan is not None and row is not None and row.near:
             return plan, row.number
-        front, rear = target[WHEELS].tolist()
-        here = StandingPose((front, rear), np.array([*target[TRUNK], target[PITCH]]))
-        onward = plan_onward(self.followed, known, here, float(target[PROGRESS]))
+        onward = self._onward(known, target)
         if onward is not None:
             return onward, 0
         return None if plan is None or row is None else (plan, row.number)
+
+    def _onward(self, known: Terrain, target: Floats) -> Plan | None:
+        front, rear = target[WHEELS].tolist()
+        here = StandingPose((front, rear), np.array([*target[TRUNK], target[PITCH]]))
+        return plan_onward(self.followed, known, here, float(target[PROGRESS]))
 
     def _follow(self, plan: Plan, row: int = 0) -> None:
         """Follow another plan from now on, from one of its rows."""

@@ -175,10 +175,12 @@ class Run:
         return self.native is not None and self.native.stopped
 
     def _gave_up(self, now: float) -> str:
-        """Why the robot has stopped by itself, once it stands; empty before."""
+        """Why the robot has stopped by itself, once it stands and does not go on; empty before."""
         if self.native is None or not self.native.stopped or now - self.native.stopped_at < STANDS:
             return ""
-        return self.native.stop_reason if self._at_rest() else ""
+        if not self._at_rest() or (self.change and self.change.goes_on_from_here()):
+            return ""
+        return self.native.stop_reason
 
     def _decide(self, watch: ProgressWatch) -> str:
         """Go on where the robot waits, maybe with another plan; why it must stop, or nothing."""

@@ -24,6 +24,8 @@ const char* reason(Stop stop) {
     }
 }
 
+bool may_go_on(Stop stop) { return stop == Stop::no_progress || stop == Stop::tilted; }
+
 SafeStop::SafeStop() { reached_.fill(-std::numeric_limits<double>::infinity()); }
 
 Stop SafeStop::watch(double position, bool advancing, double pitch_error, double roll, bool lost, double dt) {

@@ -101,7 +101,7 @@ void PlanExecutor::begin_from(const Perceived& seen) {
 void PlanExecutor::adopt(control::PlanFollower follower, double friction) {
     follower_ = std::move(follower);
     controller_.believe(friction);
-    plan_change_.begin(adapted_, follower_.first());
+    plan_change_.begin(safe_stop_.why() == control::Stop::none ? adapted_ : stand_, follower_.first());
     safe_stop_ = {};
     early_face_.reset();
     waits_ = false;

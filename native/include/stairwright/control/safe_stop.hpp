@@ -19,6 +19,9 @@ enum class Stop {
 // The same in words.
 const char* reason(Stop stop);
 
+// Whether another plan may lead on: the robot knows where it stands, and it was not for want of one that it stopped.
+bool may_go_on(Stop stop);
+
 class SafeStop {
   public:
     SafeStop();
