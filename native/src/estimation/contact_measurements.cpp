@@ -61,7 +61,7 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
     }
     covariance_.update(row(n), dot(n, off), variance, error);
     if (path_.pieces()[on.piece].arc) measure_turn(i, n, row({n.z, -n.x}), dt, error);
-    if (on.beyond == 0 || !on.blocked) return;
+    if (on.beyond == 0 || !on.blocked || on.piece + 1 == wheels_[i].low_edge) return;
     const Vec2 t = {n.z, -n.x};
     if (std::abs(wheels_[i].met - nearest_corner(on.s)) < kSame) {  // no news of a face that it has felt
         covariance_.update(row(t), dot(t, off), variance, error);

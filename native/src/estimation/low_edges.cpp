@@ -1,6 +1,7 @@
-// Edges that lead down by no more than what heights may be off: they may be none, and where one is none it must not be
-// taken for one that comes later. Until a wheel is clear of it on the tread below, only its rolling says where it is.
+// Edges that lead down or up by no more than what heights may be off: they may be none, and where one is none it must not be
+// taken for one that comes later. Until a wheel is clear of it on the tread behind it, only its rolling says where it is.
 #include <algorithm>
+#include <cmath>
 
 #include "stairwright/estimation/estimator.hpp"
 
@@ -10,8 +11,8 @@ namespace stairwright::estimation {
 
 namespace {
 
-constexpr double kHeights = 3.0;  // standard deviations of a tread's height: an edge as low as that may be none
-constexpr double kBend = 0.3;     // turn to the tread below, in sines, that is no more than a bend of the ground
+constexpr double kHeights = 3.5;  // standard deviations of a tread's height: an edge as low as that may be none
+constexpr double kBend = 0.3;     // sine of a turn; less is no more than a bend of the ground
 
 }  // namespace
 
@@ -19,11 +20,11 @@ void Estimator::note_low_edges() {
     low_edges_.clear();
     const auto& pieces = path_.pieces();
     for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
-        if (!pieces[k].arc || pieces[k + 1].arc) continue;
-        const CurvePoint top = pieces[k].at(0.0, path_.radius()), end = pieces[k].at(pieces[k].length, path_.radius());
-        const Vec2 below = pieces[k + 1].at(0.0, path_.radius()).normal;
-        if (below.z > kTread && cross(end.normal, below) > kBend && top.centre.z - end.centre.z < kHeights * noise_.tread_height)
-            low_edges_.push_back(k);
+        if (!pieces[k].arc || pieces[k + 1].arc || is_face(k + 1)) continue;
+        const CurvePoint begin = pieces[k].at(0.0, path_.radius()), end = pieces[k].at(pieces[k].length, path_.radius());
+        const bool down = cross(end.normal, normal(k + 1)) > kBend;
+        const bool up = std::ranges::binary_search(path_.corners(), pieces[k].s) && begin.normal.x < -kBend;
+        if ((down || up) && std::abs(begin.centre.z - end.centre.z) < kHeights * noise_.tread_height) low_edges_.push_back(k);
     }
 }
 
@@ -40,7 +41,7 @@ bool Estimator::over_low_edge(const WheelState& w, const CurveMatch& on) const {
     return w.low_edge != kNoPiece && !on.corner && (on.piece == w.low_edge || on.piece == w.low_edge + 1);
 }
 
-// A wheel that is clear of it measures how high the tread below is, of which nothing was known.
+// A wheel that is clear of it measures how high that tread is, of which nothing was known.
 void Estimator::leave_low_edge(int i, const CurveMatch& on, const Error& along_z, Vec2 centre, Error& error) {
     WheelState& w = wheels_[i];
     if (w.low_edge == kNoPiece || w.clear != w.low_edge + 1) return;
