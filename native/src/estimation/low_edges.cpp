@@ -23,9 +23,12 @@ void Estimator::note_low_edges() {
         if (!pieces[k].arc || pieces[k + 1].arc || is_face(k + 1)) continue;
         const CurvePoint begin = pieces[k].at(0.0, path_.radius()), end = pieces[k].at(pieces[k].length, path_.radius());
         const bool down = cross(end.normal, normal(k + 1)) > kBend;
-        const bool up = std::ranges::binary_search(path_.corners(), pieces[k].s) && begin.normal.x < -kBend;
-        if ((down || up) && std::abs(begin.centre.z - end.centre.z) < kHeights * noise_.tread_height) low_edges_.push_back(k);
+        if ((down || leads_up(k)) && std::abs(begin.centre.z - end.centre.z) < kHeights * noise_.tread_height) low_edges_.push_back(k);
     }
+}
+
+bool Estimator::leads_up(std::size_t edge) const {
+    return std::ranges::binary_search(path_.corners(), path_.pieces()[edge].s) && normal(edge).x < -kBend;
 }
 
 // The one near to a wheel that is not clear of it yet.
@@ -37,8 +40,10 @@ std::size_t Estimator::next_low_edge(const WheelState& w) const {
     return kNoPiece;
 }
 
+// Up an edge that is there a wheel feels it, and measures it.
 bool Estimator::over_low_edge(const WheelState& w, const CurveMatch& on) const {
-    return w.low_edge != kNoPiece && !on.corner && (on.piece == w.low_edge || on.piece == w.low_edge + 1);
+    if (w.low_edge == kNoPiece || on.corner) return false;
+    return on.piece == w.low_edge + 1 || (on.piece == w.low_edge && !leads_up(on.piece));
 }
 
 // A wheel that is clear of it measures how high that tread is, of which nothing was known.

@@ -174,6 +174,7 @@ class Estimator {
     std::size_t face_below(std::size_t piece) const;
     bool before_drop(const CurveMatch& on) const;
     void note_low_edges();
+    bool leads_up(std::size_t edge) const;  // from a corner
     std::size_t next_low_edge(const WheelState& wheel) const;
     void leave_low_edge(int wheel, const CurveMatch& on, const Error& along_z, Vec2 centre, Error& error);
     bool over_low_edge(const WheelState& wheel, const CurveMatch& on) const;
