@@ -1,8 +1,13 @@
 """A robot with its own sensors that finds the world other than its plan believes."""
 
+import numpy as np
 import pytest
 
 import stairwright as sw
+from stairwright.planning.plan import Pose
+from stairwright.planning.standing import StandingPose
+from stairwright.simulation.replanning import plan_onward
+from stairwright.terrain.wheel_path import wheel_path
 
 SLIPPERY_REAR = {"friction_rear": -0.3}
 OWN = {"sensing": "robot"}
@@ -58,3 +63,22 @@ def test_weak_motors_and_noise_on_long_legs_are_no_lack_of_grip() -> None:
     plan = sw.plan(curb, twice_as_large("anymal_wheels"), friction=0.6)
     found = sw.rollout(plan, controller=OWN)
     assert found.outcome == "success", found.reason
+
+
+def test_a_plan_begins_where_the_robot_is_and_where_it_has_arrived_there_is_none() -> None:
+    plan = sw.plan("curb-015", "go2w", 0.6)
+    path = wheel_path(plan.terrain, plan.robot_description.wheel.radius)
+
+    def at(pose: Pose) -> StandingPose:
+        front, rear = (path.project(wheel) for wheel in pose.wheels)
+        return StandingPose((front, rear), np.array([pose.x_c, pose.z_c, pose.pitch]))
+
+    middle, end = plan.poses[len(plan.poses) // 2], plan.poses[-1]
+    onward = plan_onward(plan, plan.terrain, at(middle), middle.progress)
+    assert onward is not None
+    assert onward.certificate is not None
+    assert onward.certificate.passed
+    assert onward.poses[0].progress == middle.progress
+    assert abs(onward.poses[0].x_c - middle.x_c) < 0.02
+    assert onward.poses[-1].x_c == pytest.approx(end.x_c, abs=1e-6)
+    assert plan_onward(plan, plan.terrain, at(end), end.progress) is None

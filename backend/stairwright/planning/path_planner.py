@@ -103,14 +103,14 @@ class PathPlanner(PathProblem):
         finding = self.find(how.fine, how.bounds, not how.probe, how.roll_back, brinks=how.brinks)
         if how.probe:
             return Blocked(None, finding.quality > 0)
-        if finding.s is None:
+        if finding.s is None or len(finding.s) < 2:  # begun where it is to end there is no way
             return Blocked(finding.reached, False)
         if self.unweighted is None:
             return self.finish(finding, how.brinks)
         usual = self.unweighted.find(
             how.fine, how.bounds, roll_back=how.roll_back, brinks=how.brinks
         )
-        found = [finding] if usual.s is None else [finding, usual]
+        found = [finding] if usual.s is None or len(usual.s) < 2 else [finding, usual]
         answers = [self.finish(path, how.brinks) for path in found]
         if self.fast:
             answers += [self.straighter.finish(path, how.brinks) for path in found]
