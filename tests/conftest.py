@@ -152,12 +152,19 @@ class Server:
     log: Path
 
 
-@contextlib.contextmanager
-def serve(data: Path, prefix: Sequence[str] = (), **variables: str) -> Iterator[Server]:
-    """A server on a data folder, until the context ends; see `start_server`."""
+def free_port() -> int:
+    """One that nobody listens at."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+        return int(probe.getsockname()[1])
+
+
+@contextlib.contextmanager
+def serve(
+    data: Path, prefix: Sequence[str] = (), port: int = 0, **variables: str
+) -> Iterator[Server]:
+    """A server on a data folder, until the context ends; see `start_server`."""
+    port = port or free_port()
     url = f"http://127.0.0.1:{port}"
     log = data.with_name(f"{data.name}-{port}.log")
     command = [*prefix, sys.executable, "-m", "stairwright", "serve"]
