@@ -37,7 +37,7 @@ def _proportional(pid: int) -> float:
 def test_a_service_stays_small(start_server: Any) -> None:
     workers = {"STAIRWRIGHT_PLAN_WORKERS": "2", "STAIRWRIGHT_ROLLOUT_WORKERS": "2"}
     with (
-        start_server(**workers) as server,
+        start_server(cold=True, **workers) as server,
         httpx.Client(base_url=f"{server.url}/api/v1", timeout=120) as client,
     ):
         plans = []
