@@ -38,7 +38,7 @@ def wait_for(api: httpx.Client, job: str, *states: str) -> dict[str, Any]:
         if document["state"] in states:
             return document
         assert time.monotonic() < give_up, document
-        time.sleep(0.02)
+        time.sleep(0.1)
 
 
 def long_rollout(api: httpx.Client, seed: int) -> str:
