@@ -111,7 +111,7 @@ def measure(
         page.get_by_role("button", name=re.compile("^Terrain")).click()
         page.locator(".terrains .item", has_text=terrain).first.click()
         page.locator(".app[data-plan=feasible], .app[data-plan=infeasible]").wait_for()
-        drag(page, vertex, 1.0, free)  # both sides warm
+        drag(page, vertex, min(1.0, seconds), free)  # both sides warm
         page.evaluate("performance.clearMarks()")
         before = script()
         found = drag(page, vertex, seconds, free)
@@ -193,7 +193,7 @@ def main() -> None:
     parser.add_argument("--url", help="a running server; its own otherwise")
     length = parser.add_mutually_exclusive_group()
     length.add_argument("--seconds", type=float, default=6.0, help="of each drag")
-    length.add_argument("--quick", action="store_const", dest="seconds", const=1.0, help="1 s")
+    length.add_argument("--quick", action="store_const", dest="seconds", const=0.4, help="0.4 s")
     parser.add_argument("--scene", action="store_true", help="with the 3-D scene")
     parser.add_argument("--free", action="store_true", help="with Alt held: off the grid")
     parser.add_argument("--browser", help="where Chromium is; searched for otherwise")

@@ -12,16 +12,18 @@ import subprocess
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import httpx
+import psutil
 import pytest
 from hypothesis import settings
 
+from tests import warm_servers
 from tools.system import find_browser
 
 if TYPE_CHECKING:
@@ -99,9 +101,15 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=rank)
 
 
-def pytest_collection_finish() -> None:
-    """All that was imported stays: looking for garbage there took a tenth of the tests' time."""
-    gc.freeze()
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, Any, Any]:
+    """All that is imported stays: looking for garbage there took a tenth of the tests' time."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -148,30 +156,45 @@ class Server:
 
     url: str
     data: Path
-    process: subprocess.Popen[bytes]
+    process: psutil.Process
     log: Path
 
 
-@contextlib.contextmanager
-def serve(data: Path, prefix: Sequence[str] = (), **variables: str) -> Iterator[Server]:
-    """A server on a data folder, until the context ends; see `start_server`."""
+def free_port() -> int:
+    """One that nobody listens at."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+        return int(probe.getsockname()[1])
+
+
+@contextlib.contextmanager
+def serve(
+    data: Path,
+    prefix: Sequence[str] = (),
+    port: int = 0,
+    cold: bool = False,
+    **variables: str,
+) -> Iterator[Server]:
+    """A server on a data folder, until the context ends; see `start_server`."""
+    port = port or free_port()
     url = f"http://127.0.0.1:{port}"
     log = data.with_name(f"{data.name}-{port}.log")
-    command = [*prefix, sys.executable, "-m", "stairwright", "serve"]
-    command += ["--host", "127.0.0.1", "--port", str(port)]
+    arguments = ["serve", "--host", "127.0.0.1", "--port", str(port)]
     env = os.environ | {"STAIRWRIGHT_DATA": str(data)} | variables
-    with log.open("wb") as output:
-        process = subprocess.Popen(
-            command, env=env, stdout=output, stderr=subprocess.STDOUT, start_new_session=True
-        )
+    if cold or prefix or "PYTHONPATH" in variables:
+        command = [*prefix, sys.executable, "-m", "stairwright", *arguments]
+        with log.open("wb") as output:
+            process: psutil.Process = psutil.Popen(
+                command, env=env, stdout=output, stderr=subprocess.STDOUT, start_new_session=True
+            )
+    else:
+        process = psutil.Process(warm_servers.start(arguments, env, log))
     try:
-        _wait_until_ready(url, process, log)
+        _wait_until_ready(port, process, log)
         yield Server(url, data, process, log)
     finally:
-        process.terminate()
+        with contextlib.suppress(psutil.NoSuchProcess):
+            process.terminate()
         try:
             process.wait(15)
         finally:  # workers that outlived the server too
@@ -179,15 +202,17 @@ def serve(data: Path, prefix: Sequence[str] = (), **variables: str) -> Iterator[
                 os.killpg(process.pid, signal.SIGKILL)
 
 
-def _wait_until_ready(url: str, process: subprocess.Popen[bytes], log: Path) -> None:
+def _wait_until_ready(port: int, process: psutil.Process, log: Path) -> None:
     give_up = time.monotonic() + START_LIMIT
-    while time.monotonic() < give_up:
-        if process.poll() is not None:
-            break
-        with contextlib.suppress(httpx.TransportError):
-            if httpx.get(f"{url}/api/v1/healthz", timeout=5).status_code == 200:
-                return
-        time.sleep(0.1)
+    with httpx.Client(base_url=f"http://127.0.0.1:{port}/api/v1", timeout=5) as client:
+        while time.monotonic() < give_up:
+            with contextlib.suppress(psutil.TimeoutExpired):
+                process.wait(0)
+                break
+            with contextlib.suppress(httpx.TransportError):
+                if client.get("/healthz").status_code == 200:
+                    return
+            time.sleep(0.1)
     pytest.fail(f"The server did not start:\n{log.read_text(errors='replace')[-5000:]}")
 
 
@@ -198,7 +223,7 @@ def start_server(
     """A server of the test's own: `with start_server(STAIRWRIGHT_TOKEN="t") as server: ...`.
 
     Servers that one test starts share one data folder, so a restart finds what was saved.
-    `prefix` is a command that runs the server.
+    `prefix` is a command that runs the server; a `cold` one imports everything by itself.
     """
     return lambda **given: serve(tmp_path / "data", **given)
 
@@ -206,7 +231,7 @@ def start_server(
 @pytest.fixture(scope="session")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """One real server for all tests that do not mind what other tests saved there."""
-    with serve(tmp_path_factory.mktemp("server") / "data") as running:
+    with serve(tmp_path_factory.mktemp("server") / "data", cold=True) as running:
         yield running
 
 

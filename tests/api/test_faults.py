@@ -16,11 +16,12 @@ import pytest
 from stairwright.api.app import create_app
 from stairwright.api.settings import Settings
 from stairwright.errors import InputError
+from stairwright.storage.lock import FolderLock
 from tests.conftest import Server, serve
 
 Start = Callable[..., contextlib.AbstractContextManager[Server]]
 
-LONG = {"points": [[-1.0, 0], [40.0, 0]]}  # minutes of driving
+LONG = {"points": [[-1.0, 0], [15.0, 0]]}  # minutes of driving
 STAIR = {"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
 
 
@@ -37,7 +38,7 @@ def wait_for(api: httpx.Client, job: str, *states: str) -> dict[str, Any]:
         if document["state"] in states:
             return document
         assert time.monotonic() < give_up, document
-        time.sleep(0.02)
+        time.sleep(0.1)
 
 
 def long_rollout(api: httpx.Client, seed: int) -> str:
@@ -147,7 +148,10 @@ def test_a_full_queue_says_when_to_come_back(narrow: Server) -> None:
 
 
 @pytest.mark.slow
-def test_a_second_server_on_the_same_folder_is_refused(narrow: Server) -> None:
+def test_a_second_server_on_the_same_folder_is_refused(
+    narrow: Server, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(FolderLock.__init__, "__defaults__", (0.1,))  # its patience
     with httpx.Client(base_url=f"{narrow.url}/api/v1", timeout=120) as api:
         job = long_rollout(api, 1)
         wait_for(api, job, "running")

@@ -190,12 +190,6 @@ def offline_live(page: Page) -> Product:
 
 
 @pytest.fixture
-def product_with_scene(page: Page) -> Product:
-    """The page with its 3-D scene."""
-    return Product(page, scene=True)
-
-
-@pytest.fixture
 def second(browser: Browser, server: Server) -> Iterator[Product]:
     """Another user on another machine."""
     context: BrowserContext

@@ -92,7 +92,7 @@ def test_previews_that_were_slow_once_are_tried_again(page: Page) -> None:
         def late(answer: str | bytes) -> None:
             came.append(answer)
             if len(came) <= 2:
-                time.sleep(1.0)
+                time.sleep(0.5)
             line.send(answer)
 
         line.on_message(service.send)
@@ -104,9 +104,9 @@ def test_previews_that_were_slow_once_are_tried_again(page: Page) -> None:
     assert box is not None
     page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     page.mouse.down()
-    for step in range(300):
-        page.mouse.move(box["x"] + 20 * math.sin(step / 5), box["y"] + 10 * math.sin(step / 7))
-        page.wait_for_timeout(50)
+    for step in range(150):
+        page.mouse.move(box["x"] + 20 * math.sin(step / 3), box["y"] + 10 * math.sin(step / 4))
+        page.wait_for_timeout(100)
         if len(came) > 4:
             break
     page.mouse.up()

@@ -146,6 +146,7 @@ def test_an_empty_canvas_has_no_overlaps(product: Product) -> None:
 
 
 def test_a_comparison_has_no_overlaps(product: Product) -> None:
+    product.choose_terrain("curb-015")
     switch = product.page.get_by_role("switch", name="Compare A with B")
     switch.click()
     product.run()

@@ -10,7 +10,7 @@ from playwright.sync_api import expect
 from .conftest import PATIENCE, Product
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Route
+    from playwright.sync_api import Page, Route
 
 pytestmark = pytest.mark.browser
 
@@ -67,9 +67,8 @@ NEXT_FRAME = """() => {
 }"""
 
 
-def test_a_slow_scene_waits_until_the_hand_rests(product_with_scene: Product) -> None:
-    product = product_with_scene.open()
-    page = product.page
+def test_a_slow_scene_waits_until_the_hand_rests(page: Page) -> None:
+    product = Product(page, scene=True).open()
     frame = page.frame_locator("iframe").first
     frame.locator("canvas").first.wait_for(state="attached", timeout=PATIENCE)
     inside = next(each for each in page.frames if "/scene/" in each.url)

@@ -31,7 +31,7 @@ def product(shared: Product) -> Iterator[Product]:
 
 def test_the_plan_is_of_the_robot_in_hand(product: Product) -> None:
     """A load, a weak motor and a moved mass centre: the planner is asked about all of it."""
-    page = product.page
+    page = product.choose_terrain("curb-015").page
     with page.expect_request(re.compile(r"/api/v1/plans$")) as asked:
         enter(product, "payload.mass", "2.5")
     sent = asked.value.post_data_json["robot"]

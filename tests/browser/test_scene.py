@@ -2,24 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 import pytest
 
+from tests.conftest import TAB
+
 from .conftest import PATIENCE, Product
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+    from tests.conftest import Server
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 
-def test_the_scene_draws_and_hides_viser_panel(product_with_scene: Product) -> None:
-    product = product_with_scene.open()
+@pytest.fixture(scope="module")
+def product(browser: Browser, server: Server) -> Iterator[Product]:
+    """The page with its scene, which a small window draws with less work."""
+    small = TAB | {"viewport": {"width": 1024, "height": 640}}
+    with browser.new_context(**small, base_url=server.url) as context:
+        opened = Product(context.new_page(), scene=True).open()
+        canvas = opened.page.frame_locator(".v3 iframe").locator("canvas")
+        canvas.first.wait_for(state="attached", timeout=PATIENCE)
+        yield opened
+        assert opened.errors == []
+
+
+def test_the_scene_draws_and_hides_viser_panel(product: Product) -> None:
     frame = product.page.frame_locator("iframe")
     frame.locator("canvas").first.wait_for(timeout=30_000)
     panel = frame.locator("[data-floating-window]")
     assert panel.count() == 0 or not panel.first.is_visible()
 
 
-def test_the_scene_is_saved_as_a_picture(product_with_scene: Product) -> None:
-    page = product_with_scene.open().page
-    page.frame_locator("iframe").locator("canvas").first.wait_for(timeout=30_000)
+def test_the_scene_is_saved_as_a_picture(product: Product) -> None:
+    page = product.page
     page.keyboard.press("l")
     legend = page.get_by_role("group", name="Shown in the scene")
     with page.expect_request(lambda sent: '"support":false' in (sent.post_data or "")):
@@ -32,12 +52,10 @@ def test_the_scene_is_saved_as_a_picture(product_with_scene: Product) -> None:
     assert len(picture) > 20_000
 
 
-def test_the_replay_is_saved_as_a_video(product_with_scene: Product) -> None:
-    page = product_with_scene.open().page
-    frame = page.frame_locator(".v3 iframe")
-    frame.locator("canvas").first.wait_for(timeout=PATIENCE)
+def test_the_replay_is_saved_as_a_video(product: Product) -> None:
+    page = product.page
     page.get_by_role("button", name="Record the replay as a video").click()
-    page.wait_for_timeout(3000)
+    page.wait_for_timeout(2000)
     with page.expect_download(timeout=PATIENCE) as saved:
         page.get_by_role("button", name="Stop and save the video").click()
     assert saved.value.suggested_filename == "three-stairs-up-a1_wheeled_x-scene.webm"

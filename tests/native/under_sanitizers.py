@@ -46,16 +46,17 @@ def planned(terrain: Any, robot: Any, friction: float, **options: bool) -> list[
 
 
 def drawn() -> Iterator[str]:
-    """Profiles like those that people draw, and rollouts of what can be rolled out."""
+    """Profiles like those that people draw, and rollouts of the path and another plan of each."""
     from tests.planning.drawn import random_profile
 
-    for k, seed in enumerate((0, 1, 4, 5)):  # those that are soon planned, two of each A1
+    for k, seed in enumerate((6, 11, 14, 17)):  # those that are soon driven, two of each A1
         name = ("a1_wheeled", "a1_wheeled_x")[seed % 2]
         plans = planned(random_profile(seed), name, 0.6)
-        for plan in plans:
-            if plan.executable:
-                sw.rollout(plan, seed=seed, friction=FRICTION[k], controller=HURRIED)
-        yield f"{seed}: {[plan.status for plan in plans]}"
+        ends = [
+            sw.rollout(plan, seed=seed, friction=FRICTION[k], controller=HURRIED).outcome
+            for plan in (plans[0], plans[1 + k // 2])
+        ]
+        yield f"{seed}: {[plan.status for plan in plans]} {ends}"
 
 
 def terrains() -> Iterator[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import socket
 import tempfile
@@ -9,8 +10,11 @@ import threading
 import time
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
+import viser
+from websockets.sync.client import unix_connect
 
 from stairwright.errors import InputError
 from stairwright.scene.palette import DARK, LIGHT
@@ -23,6 +27,26 @@ def session():
     session = SceneSession("s")
     yield session
     session.close()
+
+
+@contextlib.contextmanager
+def viewer(session: SceneSession):
+    """A browser's end of the scene: it counts once it has told where its camera is."""
+    up, nowhere = (0.0, 0.0, 1.0), (0.0, 0.0, 0.0)
+    camera = {"wxyz": (1.0, *nowhere), "position": (3.0, 0.0, 1.0), "look_at": nowhere}
+    camera |= {"up_direction": up, "fov": 1.0, "near": 0.1, "far": 100.0}
+    camera |= {"image_height": 600, "image_width": 800, "type": "ViewerCameraMessage"}
+    protocols = [f"viser-v{viser.__version__}"]
+    with unix_connect(str(session.address), subprotocols=protocols, max_size=None) as socket:
+        socket.send(msgspec.msgpack.encode(camera))
+        wait_for(lambda: session.clients == 1)
+        yield
+
+
+@pytest.fixture
+def watched(session):
+    with viewer(session):
+        yield session
 
 
 @pytest.fixture(scope="module")
@@ -128,6 +152,7 @@ def test_nothing_to_show_empties_the_scene(session, plan):
     session.playback(time=1.0, playing=True)
 
 
+@pytest.mark.usefixtures("watched")
 def test_a_rollout_plays_and_its_plan_gives_the_ghosts(session):
     run = example_rollout(example_plan(count=20))
     session.show(rollout=run.model_dump(mode="json"))
@@ -145,6 +170,17 @@ def test_progress_is_a_way_to_say_the_time(session, plan):
     half = plan["poses"][10]
     session.playback(progress=half["progress"])
     assert session.player.time == pytest.approx(half["time"], abs=1e-6)
+
+
+def test_frames_are_drawn_for_who_looks(session, plan):
+    session.show(plan=plan)
+    trunk = session._server.scene._handle_from_node_name["/robot/trunk"]
+    start = trunk.batched_positions.copy()
+    session.playback(time=2.0)
+    time.sleep(0.2)
+    assert np.array_equal(trunk.batched_positions, start)
+    with viewer(session):  # who comes sees the present moment
+        wait_for(lambda: not np.array_equal(trunk.batched_positions, start))
 
 
 def test_layers_hide_and_come_back(session, plan):
@@ -247,6 +283,7 @@ def test_terrain_with_two_thousand_points_is_drawn(session):
     wait_for(lambda: "/robot/trunk" in nodes(session))
 
 
+@pytest.mark.usefixtures("watched")
 def test_a_robot_that_failed_is_red_at_its_end_and_only_there(session):
     rollout = example_rollout().model_dump(mode="json") | {"outcome": "fell"}
     session.show(rollout=rollout)
@@ -263,6 +300,7 @@ def test_a_robot_that_failed_is_red_at_its_end_and_only_there(session):
     assert np.array_equal(np.asarray(trunk.batched_colors)[0], whole)
 
 
+@pytest.mark.usefixtures("watched")
 def test_legs_of_the_second_robot_keep_the_colours_of_data(session, plan):
     session.show(plan=plan)
     session.compare(example_plan(count=12).model_dump(mode="json"))
@@ -275,6 +313,7 @@ def test_legs_of_the_second_robot_keep_the_colours_of_data(session, plan):
     assert tuple(trunk) == DARK.com
 
 
+@pytest.mark.usefixtures("watched")
 def test_a_second_plan_is_shown_beside_the_first(session, plan):
     other = example_plan(count=12).model_dump(mode="json")
     session.show(plan=plan)

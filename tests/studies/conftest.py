@@ -19,9 +19,9 @@ def cluster() -> Iterator[ClusterEngine]:
     engine.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    """A server of a module's own, with one process for studies: it needs no cluster."""
+    """A server for studies alone, with one process for them: it needs no cluster."""
     variables = {"STAIRWRIGHT_STUDY_WORKERS": "1", "STAIRWRIGHT_STUDY_CELLS": "2000"}
     with serve(tmp_path_factory.mktemp("studies") / "data", **variables) as running:
         yield running

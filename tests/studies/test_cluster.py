@@ -35,6 +35,7 @@ MAP = study(
     {"name": "stairs.rise", "from": 0.1, "to": 0.7, "count": 5},
     {"name": "stairs.run", "values": [0.25, 0.32]},
     {"name": "friction", "values": [0.3, 0.7]},
+    terrain={"kind": "stair", "rise": 0.1, "run": 0.3, "count": 1},  # soon refused
 )
 
 

@@ -197,7 +197,7 @@ def test_the_server_is_killed_and_the_study_goes_on(
     with start_server(**variables) as server:
         api = httpx.Client(base_url=f"{server.url}/api/v1", timeout=60)
         name = api.post("/studies", json=LONG).json()["id"]
-        while (before := api.get(f"/studies/{name}").json()["done"]) < 20:
+        while (before := api.get(f"/studies/{name}").json()["done"]) < 10:
             time.sleep(0.1)
         time.sleep(WRITE_EVERY)
         seen = api.get(f"/studies/{name}").json()["done"]
@@ -213,7 +213,7 @@ def test_the_server_is_killed_and_the_study_goes_on(
         assert state["done"] >= before
         _kill_runner(server)
         seen = state["done"]
-        while (state := api.get(f"/studies/{name}").json())["done"] <= seen + 20:
+        while (state := api.get(f"/studies/{name}").json())["done"] <= seen + 10:
             assert state["state"] in ("queued", "running")
             time.sleep(0.1)
         cells = api.get(f"/studies/{name}/cells").json()["cell"]

@@ -15,7 +15,6 @@ from stairwright.terrain.profile import Terrain
 
 from . import camera as cameras
 from . import client_page
-from .motion import Moment
 from .palette import palette
 from .panel import Panel
 from .player import Player
@@ -59,6 +58,7 @@ class SceneSession:
         self._panel = Panel(self._server, self, replan)
         self._apply_theme("dark")
         self._viewers = Viewers(self._server)
+        self._server.on_client_connect(lambda _: self._player.set())
 
     @property
     def address(self) -> Path:
@@ -247,19 +247,21 @@ class SceneSession:
         self._viewers.look_afresh(robot, cameras.following_direction(course, terrain.vertices))
 
     def _frame(self, time: float) -> None:
-        """Draw one moment; runs on the player's thread."""
+        """Draw one moment if somebody looks; runs on the player's thread."""
         with self._lock:
             if self._closed:
                 return
+            motion = self._shown.motion
+            if motion is not None:
+                self._viewers.follow(motion.at(time).position)
+            if not self._viewers:  # who comes has the player draw anew
+                return
             with self._server.atomic():
-                moment = self._draw_moment(time)
-            if moment is not None:
-                self._viewers.follow(moment.position)
+                self._draw_moment(time)
             self._panel.tick(time)
 
-    def _draw_moment(self, time: float) -> Moment | None:
+    def _draw_moment(self, time: float) -> None:
         motion = self._shown.motion
         moment = None if motion is None else motion.at(time)
         progress = 0.0 if motion is None else motion.progress_at(time)
         self._stage.draw_moment(progress, moment, self._shown.failed_by(time))
-        return moment
