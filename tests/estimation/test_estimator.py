@@ -79,6 +79,14 @@ def test_a_face_that_comes_early_calls_no_wheel_back() -> None:
     assert judged[:, 11].max() > 0.05  # it has noticed
 
 
+@pytest.mark.slow
+def test_a_riser_that_is_felt_by_one_wheel_alone_is_put_right() -> None:
+    """It went on as if its wheels could get there, and fell over backward."""
+    plan = sw.plan("stairs-industrial", "a1_wheeled", 0.6)
+    run, _ = sensed(plan, face_place_error=[0.03, 0.03, 0.03, -0.03])
+    assert run.outcome == "success", run.reason
+
+
 def _two_risers(name: str, rise: float, tread: float) -> Plan:
     points = [(-1.3, 0), (0, 0), (0, rise), (tread, rise), (tread, 0.12 + rise), (1.6, 0.12 + rise)]
     return sw.plan({"points": points}, name, 0.6)
