@@ -80,7 +80,8 @@ class Holding:
         wide = {
             side: (up + side * lost[rows, high], down + side * lost[rows, low]) for side in (-1, 1)
         }
-        mixtures = [np.clip(-d / np.maximum(u - d, 1e-9), 0.0, 1.0) for u, d in wide.values()]
+        with np.errstate(invalid="ignore"):  # moments are infinite where nothing holds
+            mixtures = [np.clip(-d / np.maximum(u - d, 1e-9), 0.0, 1.0) for u, d in wide.values()]
         one = pushes.forces(self.firm.rays, high)
         other = pushes.forces(self.firm.rays, low)
         worst = np.zeros(len(rows))
