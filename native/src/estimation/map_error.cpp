@@ -27,9 +27,11 @@ void Estimator::compare_with_map(int i, const CurveMatch& on, const Spread& spre
     const double sure = kBeyondDoubt * std::sqrt(spread.along({on.point.normal.z, -on.point.normal.x}));
     const bool drop = !on.corner && piece.arc && path_.next_drop(on.s) <= on.s && on.s > piece.s + sure;
     const bool felt = estimate_.touching[i] && !over_low_edge(w, on) && (on.corner || drop || !piece.arc);
-    // A riser once felt, by this wheel or the one beside it, is known as long as it stays there; see measure_place.
+    // A riser once felt, by this wheel or the one beside it, is known as long as it stays there (see measure_place), but not
+    // while the rear ones climb: a robot that hangs between two risers must not wait for another plan.
     const double corner = nearest_corner(on.s);
-    const bool at_riser = (w.met == corner || wheels_[i ^ 1].met == corner) && std::abs(on.s - corner) < kNearCorner;
+    const bool at_riser = (w.met == corner || wheels_[i ^ 1].met == corner) && std::abs(on.s - corner) < kNearCorner &&
+                          estimate_.on_tread[1];
     const bool face = on.corner || drop || at_riser || on.point.normal.z < kTread;
     if (!felt || face != w.on_face) w.known = 0.0;
     w.on_face = face;
