@@ -87,7 +87,7 @@ class PlanChange:
             self._plan = plan = decision.plan
             track = plan_track(plan, self._path, self._settings)
             self._loop.carry(plan.robot_description.native, tested_friction(track, plan))
-            self._follow(plan)
+            self._follow(plan, track)
         return decision.why
 
     def _after_slip(self, found: float, front: bool) -> str:
@@ -123,32 +123,36 @@ class PlanChange:
             return
         self._known, self._path = known, path
         loop.correct_map(path.native)
-        self._follow(*found)
+        plan, track, row = found
+        self._follow(plan, track, row)
 
     def _on_the_map(
         self, known: Terrain, path: WheelPath, target: Floats
-    ) -> tuple[Plan, int] | None:
-        """A plan over the map `known`, and the row of its track from which it is to be followed.
+    ) -> tuple[Plan, Track, int] | None:
+        """A plan over the map `known`, its track, and the row from which that is to be followed.
 
         A plan from here, unless a row of that from the start is as near as makes no difference.
         """
+        found = None
         plan = plan_anew(self.followed, known, self.followed.friction)
-        track = None if plan is None else plan_track(plan, path, self._settings)
-        row = None if track is None else nearest_row(track, target)
-        if plan is not None and row is not None and row.near:
-            return plan, row.number
+        if plan is not None:
+            track = plan_track(plan, path, self._settings)
+            row = nearest_row(track, target)
+            if row is not None:
+                found = plan, track, row.number
+                if row.near:
+                    return found
         onward = self._onward(known, target)
-        if onward is not None:
-            return onward, 0
-        return None if plan is None or row is None else (plan, row.number)
+        return found if onward is None else (onward, plan_track(onward, path, self._settings), 0)
 
     def _onward(self, known: Terrain, target: Floats) -> Plan | None:
         front, rear = target[WHEELS].tolist()
         here = StandingPose((front, rear), np.array([*target[TRUNK], target[PITCH]]))
         return plan_onward(self.followed, known, here, float(target[PROGRESS]))
 
-    def _follow(self, plan: Plan, row: int = 0) -> None:
-        """Follow another plan from now on, from one of its rows."""
-        self.followed, self.track = plan, plan_track(plan, self._path, self._settings)
+    def _follow(self, plan: Plan, track: Track | None = None, row: int = 0) -> None:
+        """Follow another plan from now on, from one of the rows of its track."""
+        self.followed = plan
+        self.track = track or plan_track(plan, self._path, self._settings)
         line = follower(self.track, lead_of(plan, self._settings), row)
         self._loop.adopt(line, plan.friction)

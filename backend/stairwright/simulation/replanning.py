@@ -9,7 +9,7 @@ from stairwright.control.setpoint import SHARE
 from stairwright.errors import InputError
 from stairwright.planning.firm_margins import firm_com_margins
 from stairwright.planning.path import plan_path
-from stairwright.planning.plan import Plan
+from stairwright.planning.plan import Plan, PlanTiming
 from stairwright.planning.planner import plan as make_plan
 from stairwright.planning.standing import StandingPose
 from stairwright.planning.weights import parse_weights
@@ -68,7 +68,7 @@ def plan_anew(
             friction,
             old.method,
             old.weights or None,
-            timing=old.timing.rule if old.timing.rule == "fast" else "steady",
+            timing=_timing(old),
             facing="forward",  # the end that leads already
             diagnose=False,
         )
@@ -93,7 +93,7 @@ def plan_onward(old: Plan, terrain: Terrain, here: StandingPose, progress: float
         [old.robot_description],
         old.friction,
         parse_weights("path", old.weights or None),
-        timing=old.timing.rule if old.timing.rule == "fast" else "steady",
+        timing=_timing(old),
         diagnose=False,
         here=here,
     )
@@ -101,6 +101,11 @@ def plan_onward(old: Plan, terrain: Terrain, here: StandingPose, progress: float
         return None
     poses = [pose.model_copy(update={"progress": progress + pose.progress}) for pose in new.poses]
     return new.model_copy(update={"facing": old.facing, "poses": poses})
+
+
+def _timing(plan: Plan) -> PlanTiming:
+    """How a plan is timed that takes its place."""
+    return "fast" if plan.timing.rule == "fast" else "steady"
 
 
 def after_slip(plan: Plan, need: float, found: float, *, front: bool) -> Decision:
