@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from distributed import Future
 
 import stairwright as sw
 from stairwright.errors import InputError
@@ -23,6 +24,7 @@ from stairwright.studies.cluster import ClusterEngine
 from stairwright.studies.dataset import grid_dataset
 from stairwright.studies.fill import fill_grid
 from stairwright.studies.keys import dask_settings, write_keys
+from stairwright.studies.progress import Progress
 from stairwright.studies.serial import SerialEngine
 from stairwright.studies.store import ResultStore
 from stairwright.studies.study import prepared
@@ -36,6 +38,14 @@ MAP = study(
     {"name": "stairs.run", "values": [0.25, 0.32]},
     {"name": "friction", "values": [0.3, 0.7]},
     terrain={"kind": "stair", "rise": 0.1, "run": 0.3, "count": 1},  # soon refused
+)
+
+
+DEADLY = study(
+    {"name": "stairs.rise", "from": 0.1, "to": 0.7, "count": 5},
+    {"name": "stairs.run", "values": [0.25, 0.32]},
+    {"name": "friction", "values": [0.31, 0.71]},  # no cell that another test may have asked
+    terrain={"kind": "stair", "rise": 0.1, "run": 0.3, "count": 1},
 )
 
 
@@ -90,12 +100,31 @@ def test_stopping_keeps_what_is_done(cluster: ClusterEngine, tmp_path: Path) -> 
 
 
 @pytest.mark.slow
+def test_results_that_are_gone_are_asked_again(cluster: ClusterEngine, tmp_path: Path) -> None:
+    """A worker may die with what it has done; the cluster is not started anew for that."""
+    store, ready = _store(DEADLY, tmp_path / "g.zarr"), _store(STEP, tmp_path / "r.zarr")
+    fill_grid(ready, cluster, None, lambda: False)  # so that the cluster runs
+    client, pid = cluster._client, cluster.scheduler_pid
+    gone: set[str] = set()
+
+    def lose_all_once(progress: Progress) -> None:
+        keys = {key for key in client.futures if key.startswith("cells-")} - gone
+        gone.update(keys)
+        client.cancel([Future(key, client) for key in keys])
+
+    fill_grid(store, cluster, lose_all_once, lambda: False)
+    assert gone
+    assert store.counts()["done"] == 20
+    assert cluster.scheduler_pid == pid
+
+
+@pytest.mark.slow
 def test_a_cell_that_kills_its_worker_is_found_and_recorded(
     cluster: ClusterEngine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A worker dies at one cell: that cell fails, with a reason, and all others are done."""
     monkeypatch.setattr("stairwright.studies.cluster.evaluate_batch", _deadly)
-    store = _store(MAP, tmp_path / "d.zarr")
+    store = _store(DEADLY, tmp_path / "d.zarr")
     ready = _store(STEP, tmp_path / "r.zarr")
     fill_grid(ready, cluster, None, lambda: False)  # so that nothing is computed in this process
     fill_grid(store, cluster, None, lambda: False)

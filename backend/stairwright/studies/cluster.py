@@ -35,7 +35,7 @@ MOST_RESTARTS = 3  # of this machine's cluster in one study
 _LOOK = 0.25  # s between looks whether it was stopped
 _COUNT_EVERY = 2.0  # s between counts of workers
 _EACH = 0.5  # s between reports while the cluster starts
-_LOST = ("CommClosedError", "FutureCancelledError", "CancelledError", "TimeoutError", "OSError")
+_MOST_LOST = 20  # batches whose results went with a worker, in one pass
 
 
 class ClusterLost(StairwrightError):
@@ -59,7 +59,9 @@ class ClusterEngine:
         return None if self._local is None else self._local.pid
 
     def evaluate(self, study: Study, cells: Sequence[int], stopped: Stopped) -> Iterator[Finished]:
-        """See `Engine`. While this machine's workers start, cells are evaluated here.
+        """See `Engine`. While this machine's workers first start, cells are evaluated here.
+
+        Not when they start again: one of the cells may be what ended them.
 
         Raises:
             ClusterLost: If the scheduler is gone, and cannot be replaced.
@@ -68,7 +70,7 @@ class ClusterEngine:
         left = dict.fromkeys(cells)
         for restarts in range(MOST_RESTARTS + 1):
             try:
-                for finished in self._evaluate(study, list(left), stopped):
+                for finished in self._evaluate(study, list(left), stopped, here=restarts == 0):
                     for cell in finished:
                         left.pop(cell, None)
                     yield finished
@@ -89,11 +91,13 @@ class ClusterEngine:
             self._local.close()
         self._local = None
 
-    def _evaluate(self, study: Study, cells: list[int], stopped: Stopped) -> Iterator[Finished]:
+    def _evaluate(
+        self, study: Study, cells: list[int], stopped: Stopped, here: bool
+    ) -> Iterator[Finished]:
         if self._client is None:
             with ThreadPoolExecutor(1, "connect") as aside:
                 connected = aside.submit(self._connect)
-                if self._address is None:
+                if here and self._address is None:
                     for finished in _meanwhile(study, cells, stopped, connected):
                         cells = cells[len(finished) :]
                         yield finished
@@ -150,6 +154,7 @@ class _Run:
         self._todo = deque(cells)
         self._split: deque[list[int]] = deque()  # batches that killed their workers, in halves
         self._suspects: deque[int] = deque()  # cells that may have, or were only beside one
+        self._lost = 0  # batches whose results were no longer there when they were fetched
         self._alone: int | None = None  # the suspect that is tried with nothing beside it
         self._sizes = sizes
         self._flying: dict[Any, list[int]] = {}
@@ -219,12 +224,15 @@ class _Run:
         except OtherVersion:
             raise
         except (Exception, CancelledError) as error:
-            kind = type(error).__name__
-            if kind in _LOST or future.status in ("cancelled", "lost"):
-                raise ClusterLost(
-                    "the scheduler is gone: what was done is kept, ask again to go on"
-                ) from error
-            return self._failed(cells, f"{kind}: {error}")
+            if future.status != "error":  # it was done, and what it gave is gone
+                if self._client.status != "running" or self._lost == _MOST_LOST:
+                    raise ClusterLost(
+                        "the scheduler is gone: what was done is kept, ask again to go on"
+                    ) from error
+                self._lost += 1
+                self._submit(cells, f"again-{self._lost}-")
+                return {}
+            return self._failed(cells, f"{type(error).__name__}: {error}")
         self._alone = None
         self._sizes.learn(len(cells), batch.seconds)
         return batch.records
