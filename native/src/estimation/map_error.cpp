@@ -74,13 +74,21 @@ Vec2 Estimator::across(std::size_t piece) const {
 
 Vec2 Estimator::normal(std::size_t piece) const { return path_.pieces()[piece].at(0.0, path_.radius()).normal; }
 
-bool Estimator::is_face(std::size_t piece) const { return normal(piece).z < kTread; }
+bool Estimator::is_face(std::size_t piece) const { return normal(piece).z < kTread || is_low_drop(piece); }
+
+// Whether the piece is an edge down that is lower than the wheel, with no face below it but the tread.
+bool Estimator::is_low_drop(std::size_t piece) const {
+    const auto& pieces = path_.pieces();
+    if (!pieces[piece].arc || piece + 1 == pieces.size() || pieces[piece + 1].arc) return false;
+    const Vec2 last = pieces[piece].at(pieces[piece].length, path_.radius()).normal;
+    return normal(piece).z > kTread && last.z < kTread && last.x > 0.0 && normal(piece + 1).z > kTread && !std::ranges::binary_search(low_edges_, piece);
+}
 
 // The face or tread that a wheel on that piece of the curve is on. Round an edge that leads up it is still the face below;
 // one that is lower than the wheel has nothing but the edge.
 std::size_t Estimator::face_below(std::size_t piece) const {
     const Piece& edge = path_.pieces()[piece];
-    if (!edge.arc) return piece;
+    if (!edge.arc || is_low_drop(piece)) return piece;
     if (!is_face(piece) || normal(piece).x > 0.0) return kNoPiece;
     if (piece > 0 && !path_.pieces()[piece - 1].arc && is_face(piece - 1)) return piece - 1;
     return std::ranges::binary_search(path_.corners(), edge.s) ? piece : kNoPiece;
@@ -114,7 +122,8 @@ void Estimator::believe_map(std::size_t face) {
     correct(error);
 }
 
-// Of the face or tread that a rear wheel is on and of the next one; not while it may still lean on the one before.
+// Of the tread that a rear wheel is on and of the face behind it, or the other way round; not while it may still lean on the
+// one before. Where a tread follows another one, how high that is says nothing yet.
 void Estimator::recall(WheelState& rear) {
     const Piece& now = path_.pieces()[rear.face];
     if (rear.face == rear.recalled || rear.s < now.s + std::min(kInto, 0.5 * now.length) || rear.s > now.s + now.length) return;
@@ -123,7 +132,7 @@ void Estimator::recall(WheelState& rear) {
     std::size_t seen = 0;
     for (std::size_t k = rear.face; k < found_.size() && seen < rear.told.size(); ++k) {
         if (face_below(k) != k) continue;
-        ++seen;
+        if (seen++ > 0 && is_face(k) == is_face(rear.face)) break;
         if (!found_[k]) continue;
         rear.told[seen - 1] = k;
         const Vec2 across = this->across(k);
