@@ -45,10 +45,12 @@ double most_likely(const Piece& line, const WheelBelief& w) {
     return dot(q, e) / dot(q, t);
 }
 
+// Round an edge the direction of the force tells the place, too.
 double most_likely_on_arc(const Piece& arc, const WheelBelief& w, double radius) {
     double best = std::numeric_limits<double>::infinity(), found = 0.0, step = arc.length / kArcSteps;
     const auto look = [&](double d) {
-        const double value = w.spread.distance(w.centre - arc.at(d, radius).centre);
+        const CurvePoint at = arc.at(d, radius);
+        const double value = w.spread.distance(w.centre - at.centre) + face_cost(w, at.normal);
         if (value < best) best = value, found = d;
     };
     for (int k = 0; k <= kArcSteps; ++k) look(k * step);
