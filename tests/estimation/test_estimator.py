@@ -112,6 +112,19 @@ def test_a_tread_below_that_is_met_on_the_edge_is_noticed(name, drop) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(("name", "drop", "tread"), [("b2w", 0.09, 0.35), ("go2w", 0.07, 0.40)])
+def test_edges_down_that_are_lower_than_a_wheel_are_found(name, drop, tread) -> None:
+    """Nothing but an arc leads from tread to tread; each edge is another one on the map, still."""
+    points = [(-1.3, 0.0)]
+    for step in range(3):
+        points += [(step * tread, -step * drop), (step * tread, -(step + 1) * drop)]
+    plan = sw.plan({"points": [*points, (3 * tread + 1.2, -3 * drop)]}, name, 0.6)
+    run, judged = sensed(plan, face_place_error=[0.03, -0.03, 0.03])
+    assert run.outcome == "success", run.reason
+    assert np.abs(judged[:, 7]).max() < 0.035
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "top", "length", "lean", "errors"),
     [
@@ -265,14 +278,19 @@ def test_a_stored_run_that_tells_no_sensing_was_ideal(plan: Plan) -> None:
     assert Rollout.model_validate(document).controller.sensing == "ideal"
 
 
-def path() -> _core.WheelPath:
-    points = np.array([(-1.0, 0.0), (0.0, 0.0), (0.0, 0.2), (1.0, 0.2)])
-    return _core.WheelPath(points, RADIUS)
+UP = [(-1.0, 0.0), (0.0, 0.0), (0.0, 0.2), (1.0, 0.2)]
+DOWN = [(-1.0, 0.0), (0.0, 0.0), (0.0, -0.2), (1.0, -0.2)]
 
 
-def matched(x: float, z: float, force: tuple[float, float] = (0.0, 30.0)) -> dict[str, object]:
+def matched(
+    x: float,
+    z: float,
+    force: tuple[float, float] = (0.0, 30.0),
+    points: list[tuple[float, float]] = UP,
+) -> dict[str, object]:
+    path = _core.WheelPath(np.array(points), RADIUS)
     spread = (0.03**2, 0.0, 0.002**2)  # unsure along, sure of the height
-    return dict(_core.curve_match(path(), (x, z), spread, force, 0.0, 10.0, float("nan"), 0.1))
+    return dict(_core.curve_match(path, (x, z), spread, force, 0.0, 10.0, float("nan"), 0.1))
 
 
 def test_a_wheel_that_rises_is_on_the_face_although_the_tread_is_nearer() -> None:
@@ -285,6 +303,13 @@ def test_a_wheel_that_rises_is_on_the_face_although_the_tread_is_nearer() -> Non
 def test_a_push_tells_that_the_face_is_reached() -> None:
     assert not matched(-0.07, RADIUS)["corner"]
     assert matched(-0.07, RADIUS, (-40.0, 30.0))["corner"]
+
+
+def test_a_force_that_leans_tells_that_a_wheel_is_round_an_edge() -> None:
+    lean = np.radians(25)
+    force = (90 * np.sin(lean), 90 * np.cos(lean))
+    assert matched(-0.02, RADIUS, force, DOWN)["s"] > 1.0 + 0.5 * RADIUS * lean
+    assert matched(-0.02, RADIUS, points=DOWN)["s"] == pytest.approx(0.98)
 
 
 def test_a_wheel_cannot_be_beyond_a_face_that_it_does_not_feel() -> None:

@@ -70,15 +70,14 @@ CurveMatch match(const WheelPath& path, const WheelBelief& wheel, double last, d
     const auto& pieces = path.pieces();
     const double lower = std::isnan(last) ? -1.0 : last - window, upper = std::isnan(last) ? 1e9 : last + window;
     WheelBelief unsure = wheel;
-    unsure.spread.zz += wheel.low_edge_height;
+    unsure.spread.zz += wheel.unsure_height;
     CurveMatch best;
     best.cost = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < pieces.size(); ++k) {
         const Piece& piece = pieces[k];
         const bool first = k == 0, end = k + 1 == pieces.size();
         if ((piece.s + piece.length < lower && !end) || (piece.s > upper && !first)) continue;
-        const bool low = wheel.low_edge != kNoPiece && (k == wheel.low_edge || k == wheel.low_edge + 1);
-        const WheelBelief& believed = low ? unsure : wheel;
+        const WheelBelief& believed = k >= wheel.unsure && k < wheel.unsure + wheel.unsure_count ? unsure : wheel;
         double d = piece.arc ? most_likely_on_arc(piece, believed, path.radius()) : most_likely(piece, believed);
         const double free = d;
         d = std::clamp(d, first ? -1e9 : 0.0, end ? 1e9 : piece.length);

@@ -176,8 +176,13 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const double speed = std::hypot(velocity_[0] + own_speed[0], velocity_[2] + own_speed[2]);
     const double motion = kForceAtRest + (1.0 - kForceAtRest) * std::min(1.0, speed / kForceSpeed);
     belief.force_deviation = motion * (noise_.force * weight_ + 0.15 * norm(w.felt));
-    w.low_edge = next_low_edge(w);
-    belief.low_edge = w.low_edge, belief.low_edge_height = noise_.tread_height * noise_.tread_height;
+    w.low_edge = next_edge(low_edges_, w);
+    if (w.low_edge != kNoPiece) {
+        belief.unsure = w.low_edge, belief.unsure_count = 2;  // it may be none
+    } else if (const std::size_t drop = next_edge(low_drops_, w); drop != kNoPiece) {
+        belief.unsure = drop + 1, belief.unsure_count = 1;
+    }
+    belief.unsure_height = noise_.tread_height * noise_.tread_height;
     const CurveMatch on = match(path_, belief, w.s, kWindow);
     // A leg that swings feels a little, too: of a wall it has to be more than that.
     w.force_deviation = belief.force_deviation;
@@ -229,6 +234,7 @@ void Estimator::enter_face(int i, const CurveMatch& on) {
     const std::size_t at = on.corner ? kNoPiece : face_below(on.piece);
     if (at == kNoPiece) return;
     if (at == on.piece && at != w.face) w.face = at, w.put_back = w.landed = 0.0;
+    if (is_low_drop(at)) return;  // what is below is unsure once the wheel is there
     // In a corner a wheel goes to and fro between two faces, and measures both: what is unsure is so once it has left it.
     const double corner = std::min(kNearCorner, 0.5 * path_.pieces()[at].length);
     if (at == w.clear || std::abs(nearest_corner(on.s) - on.s) < corner) return;
@@ -239,15 +245,17 @@ void Estimator::enter_face(int i, const CurveMatch& on) {
     w.clear_before = w.clear, w.clear = at;
     if (known) return;
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
+    const std::size_t before = at > 0 && is_low_drop(at - 1) ? at - 1 : w.clear_before;
     const double height = 0.5 * noise_.tread_height * noise_.tread_height, place = 0.5 * noise_.face_place * noise_.face_place;
     if (!tread) {
         // It may end higher or lower than drawn: down one that leans, farther on or back as well.
         covariance_.add_noise(own, {normal(at).x > 0.0 ? -across(at).z : 0.0, 1.0}, height);
-    } else if (was_tread) {  // a slope may rise more or less than drawn
+    } else if (was_tread && before == w.clear_before) {  // a slope may rise more or less than drawn
         if (std::abs(cross(normal(w.clear_before), normal(at))) > kBend) covariance_.add_noise(own + 1, height);
     } else {
-        if (i == 0 && !has_found(w.clear_before)) believe_map(w.clear_before);
+        if (i == 0 && !has_found(before)) believe_map(before);
         covariance_.add_noise(own, place);
+        if (before != w.clear_before) covariance_.add_noise(own + 1, height);  // without a face it has not been said yet
     }
 }
 

@@ -1,4 +1,6 @@
-// Edges that lead down or up by no more than what heights may be off: they may be none, and where one is none it must not be
+// Edges that a wheel passes without a face: from tread to tread there is nothing but an arc.
+//
+// Those that lead down or up by no more than what heights may be off: they may be none, and where one is none it must not be
 // taken for one that comes later. Until a wheel is clear of it on the tread behind it, only its rolling says where it is.
 #include <algorithm>
 #include <cmath>
@@ -17,13 +19,15 @@ constexpr double kBend = 0.3;     // sine of a turn; less is no more than a bend
 }  // namespace
 
 void Estimator::note_low_edges() {
-    low_edges_.clear();
+    low_edges_.clear(), low_drops_.clear();
     const auto& pieces = path_.pieces();
     for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
         if (!pieces[k].arc || pieces[k + 1].arc || is_face(k + 1)) continue;
         const CurvePoint begin = pieces[k].at(0.0, path_.radius()), end = pieces[k].at(pieces[k].length, path_.radius());
         const bool down = cross(end.normal, normal(k + 1)) > kBend;
-        if ((down || leads_up(k)) && std::abs(begin.centre.z - end.centre.z) < kHeights * noise_.tread_height) low_edges_.push_back(k);
+        const bool low = std::abs(begin.centre.z - end.centre.z) < kHeights * noise_.tread_height;
+        if (low && (down || leads_up(k))) low_edges_.push_back(k);
+        if (!low && begin.normal.z > kTread && end.normal.z < kTread && end.normal.x > 0.0) low_drops_.push_back(k);
     }
 }
 
@@ -31,9 +35,11 @@ bool Estimator::leads_up(std::size_t edge) const {
     return std::ranges::binary_search(path_.corners(), path_.pieces()[edge].s) && normal(edge).x < -kBend;
 }
 
+bool Estimator::is_low_drop(std::size_t piece) const { return std::ranges::binary_search(low_drops_, piece); }
+
 // The one near to a wheel that is not clear of it yet.
-std::size_t Estimator::next_low_edge(const WheelState& w) const {
-    for (const std::size_t k : low_edges_) {
+std::size_t Estimator::next_edge(const std::vector<std::size_t>& edges, const WheelState& w) const {
+    for (const std::size_t k : edges) {
         const Piece &edge = path_.pieces()[k], &below = path_.pieces()[k + 1];
         if (edge.s < w.s + kWindow && w.s < below.s + std::min(kWindow, below.length) && w.clear != k + 1) return k;
     }

@@ -76,14 +76,6 @@ Vec2 Estimator::normal(std::size_t piece) const { return path_.pieces()[piece].a
 
 bool Estimator::is_face(std::size_t piece) const { return normal(piece).z < kTread || is_low_drop(piece); }
 
-// Whether the piece is an edge down that is lower than the wheel, with no face below it but the tread.
-bool Estimator::is_low_drop(std::size_t piece) const {
-    const auto& pieces = path_.pieces();
-    if (!pieces[piece].arc || piece + 1 == pieces.size() || pieces[piece + 1].arc) return false;
-    const Vec2 last = pieces[piece].at(pieces[piece].length, path_.radius()).normal;
-    return normal(piece).z > kTread && last.z < kTread && last.x > 0.0 && normal(piece + 1).z > kTread && !std::ranges::binary_search(low_edges_, piece);
-}
-
 // The face or tread that a wheel on that piece of the curve is on. Round an edge that leads up it is still the face below;
 // one that is lower than the wheel has nothing but the edge.
 std::size_t Estimator::face_below(std::size_t piece) const {

@@ -42,9 +42,10 @@ struct WheelBelief {
     Vec2 force;         // of the ground, world x-z [N]
     double traction = 0.0;  // see WheelForce [N]
     double force_deviation = 0.0;  // standard deviation of the force's components [N]
-    // An edge that may be none and the tread below it, which may be higher: first of the two pieces, and the variance [m^2].
-    std::size_t low_edge = kNoPiece;
-    double low_edge_height = 0.0;
+    // Pieces that may be higher or lower than all others, as is what comes below an edge: the first one, how many, and the
+    // variance [m^2].
+    std::size_t unsure = kNoPiece, unsure_count = 0;
+    double unsure_height = 0.0;
 };
 
 // How much better the push of a steep face ahead, against which the wheel stands, explains the force that it feels than

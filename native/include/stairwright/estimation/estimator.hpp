@@ -176,7 +176,7 @@ class Estimator {
     bool before_drop(const CurveMatch& on) const;
     void note_low_edges();
     bool leads_up(std::size_t edge) const;  // from a corner
-    std::size_t next_low_edge(const WheelState& wheel) const;
+    std::size_t next_edge(const std::vector<std::size_t>& edges, const WheelState& wheel) const;
     void leave_low_edge(int wheel, const CurveMatch& on, const Error& along_z, Vec2 centre, Error& error);
     bool over_low_edge(const WheelState& wheel, const CurveMatch& on) const;
     double nearest_corner(double s) const;  // along the curve, to the place `s` on it [m]
@@ -199,7 +199,7 @@ class Estimator {
     double contradicted_ = 0.0;  // for how long by all wheels that touch [s]
     Covariance covariance_;
     std::array<WheelState, 4> wheels_;
-    std::vector<std::size_t> low_edges_;  // pieces of the curve, see note_low_edges
+    std::vector<std::size_t> low_edges_, low_drops_;  // pieces of the curve, see low_edges.cpp
     std::vector<std::optional<double>> found_;  // of each piece, by front wheels: offset along of a face, up of a tread [m]
     Estimate estimate_;
 };
