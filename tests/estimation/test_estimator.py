@@ -37,11 +37,15 @@ def plan(request: pytest.FixtureRequest) -> Plan:
 
 def sensed(plan: Plan, seed: int = 0, **deviation: Any) -> tuple[Rollout, np.ndarray]:
     """A rollout by the robot's own sensors, and the filter's errors against the truth."""
-    settings = parse_settings(ROBOT)
-    run = Run(plan, plan.friction, settings, Disturbance(**deviation), seed, 50.0)
-    result = run.result(run.simulate(None), keep_plan=False)
+    result, run = climbed(plan, seed, **deviation)
     assert run.native is not None
     return result, np.asarray(run.native.judged)
+
+
+def climbed(plan: Plan, seed: int = 0, **deviation: Any) -> tuple[Rollout, Run]:
+    settings = parse_settings(ROBOT)
+    run = Run(plan, plan.friction, settings, Disturbance(**deviation), seed, 50.0)
+    return run.result(run.simulate(None), keep_plan=False), run
 
 
 @pytest.mark.slow
@@ -74,9 +78,11 @@ def test_climbs_what_is_not_as_drawn(plan: Plan, deviation: dict[str, object]) -
 def test_a_face_that_comes_early_calls_no_wheel_back() -> None:
     """Front wheels meet the third riser 6 cm early, against the last, while the rear ones climb."""
     plan = sw.plan("stairs-us-7-11", "a1_wheeled", 0.6)
-    run, judged = sensed(plan, face_place_error=[0.03, 0.03, -0.03, 0.03, 0.03])
-    assert run.outcome == "success", run.reason
-    assert judged[:, 11].max() > 0.05  # it has noticed
+    result, run = climbed(plan, face_place_error=[0.03, 0.03, -0.03, 0.03, 0.03])
+    assert result.outcome == "success", result.reason
+    assert run.change is not None
+    drawn, found = plan.terrain.vertices, run.change.followed.terrain.vertices
+    assert np.abs(found - drawn).max() > 0.05  # it has noticed
 
 
 @pytest.mark.slow
