@@ -1,6 +1,7 @@
 #include "stairwright/control/legs_apart.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace stairwright::control {
 
@@ -10,6 +11,7 @@ constexpr double kRoom = 0.03;   // m between front and rear legs; where less is
 constexpr double kTread = 0.9;   // cosine of the slope of the ground that wheels stay back on
 constexpr double kGain = 100.0;  // 1/s
 constexpr double kSpeed = 0.3;   // m/s
+constexpr double kHeight = 0.005;  // m that heights are off as a rule
 
 }  // namespace
 
@@ -26,7 +28,8 @@ std::array<Vec2, 2> LegsApart::ground(const WheelPath& path, const Reference& pl
 }
 
 void LegsApart::watch(const Reference& planned, const Reference& fitted, const WheelPath& path, const std::array<Vec2, 2>& ground, double dt) {
-    const double nearer = std::max(0.0, ground[kRear].x - ground[kFront].x);
+    const Vec2 off = ground[kRear] - ground[kFront];
+    const double nearer = std::hypot(std::max(0.0, off.x), std::max(0.0, std::abs(off.z) - kHeight));
     double lacking = nearer > 0.0 || back_ > 0.0 ? std::min(kRoom, apart(planned)) - apart(fitted) : 0.0;
     if (path.normal(planned.value.wheels[kRear]).z < kTread) lacking = std::min(lacking, 0.0);
     const double next = std::clamp(back_ + std::clamp(kGain * lacking, -kSpeed, kSpeed) * dt, 0.0, std::max(nearer, back_ - kSpeed * dt));
