@@ -253,7 +253,7 @@ void Estimator::enter_face(int i, const CurveMatch& on) {
     } else if (was_tread && before == w.clear_before) {  // a slope may rise more or less than drawn
         if (std::abs(cross(normal(w.clear_before), normal(at))) > kBend) covariance_.add_noise(own + 1, height);
     } else {
-        if (i == 0 && !has_found(before)) believe_map(before);
+        if (i == 0 && !has_found(before)) pass(before);
         covariance_.add_noise(own, place);
         if (before != w.clear_before) covariance_.add_noise(own + 1, height);  // without a face it has not been said yet
     }

@@ -12,6 +12,7 @@ namespace stairwright::estimation {
 namespace {
 
 constexpr double kSettled = 0.12;   // s that wheels must be on a face before its place counts as found
+constexpr double kPassed = 0.015;   // m; how well front wheels must know where they are on a face that they have passed
 constexpr double kRecalled = 0.006;  // m; how well rear wheels know what front wheels found
 constexpr double kReach = 0.5;  // m along the curve that a face or tread is looked for
 constexpr double kInto = 0.02;  // m that a wheel must be on a face or tread
@@ -50,6 +51,7 @@ void Estimator::find_map_error() {
     const double off = dot(across(at), offset_[0]);
     found_.resize(path_.pieces().size());
     found_[at] = off;
+    for (const int rear : {2, 3}) recall(wheels_[rear]);  // whether they know of it is in the map error
     const double least = path_.on_arc(left.s) ? kLeastEdge : left.on_face ? kLeastFace : kLeastTread;
     if (std::abs(off) < least) return;
     estimate_.map_error = MapError{left.on_face, s, left.on_face ? Vec2{off, 0.0} : Vec2{0.0, off}, rear_knows(s, left.on_face) ? 2 : 1};
@@ -114,25 +116,35 @@ void Estimator::believe_map(std::size_t face) {
     correct(error);
 }
 
+// Front wheels are past a face on which they have not stayed for long, such as an edge that is lower than they.
+void Estimator::pass(std::size_t face) {
+    believe_map(face);
+    const double variance = covariance_(kPlace, kPlace) + 2.0 * covariance_(kPlace, kFrontOffset) + covariance_(kFrontOffset, kFrontOffset);
+    if (variance > kPassed * kPassed) return;
+    found_.resize(path_.pieces().size());
+    found_[face] = dot(across(face), offset_[0]);
+}
+
 // Of the tread that a rear wheel is on and of the face behind it, or the other way round; not while it may still lean on the
 // one before. Where a tread follows another one, how high that is says nothing yet.
 void Estimator::recall(WheelState& rear) {
     const Piece& now = path_.pieces()[rear.face];
-    if (rear.face == rear.recalled || rear.s < now.s + std::min(kInto, 0.5 * now.length) || rear.s > now.s + now.length) return;
-    rear.recalled = rear.face, rear.told = {};
+    if (rear.s < now.s + std::min(kInto, 0.5 * now.length) || rear.s > now.s + now.length) return;
+    if (rear.face != rear.recalled) rear.recalled = rear.face, rear.told = {};
     Error error{};
+    bool news = false;
     std::size_t seen = 0;
     for (std::size_t k = rear.face; k < found_.size() && seen < rear.told.size(); ++k) {
         if (face_below(k) != k) continue;
         if (seen++ > 0 && is_face(k) == is_face(rear.face)) break;
-        if (!found_[k]) continue;
-        rear.told[seen - 1] = k;
+        if (!found_[k] || rear.told[seen - 1] == k) continue;
+        rear.told[seen - 1] = k, news = true;
         const Vec2 across = this->across(k);
         Error row{};
         row[kRearOffset] = across.x, row[kRearOffset + 1] = across.z;
         covariance_.update(row, *found_[k] - dot(across, offset_[1]), kRecalled * kRecalled, error);
     }
-    correct(error);
+    if (news) correct(error);
 }
 
 Vec2 Estimator::correct_map(WheelPath path, const MapError& found) {

@@ -165,6 +165,7 @@ class Estimator {
     // What front wheels find of a face or tread the rear wheels know when they get there.
     bool has_found(std::size_t piece) const { return piece < found_.size() && found_[piece]; }
     void believe_map(std::size_t face);
+    void pass(std::size_t face);
     void recall(WheelState& rear);
     bool rear_knows(double s, bool face) const;
     std::size_t face_or_tread(double s, bool face) const;  // the piece nearest to the place `s`
