@@ -245,7 +245,7 @@ void Estimator::enter_face(int i, const CurveMatch& on) {
     w.clear_before = w.clear, w.clear = at;
     if (known) return;
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
-    const std::size_t before = at > 0 && is_low_drop(at - 1) ? at - 1 : w.clear_before;
+    const std::size_t before = last_face(w.clear_before, at);  // it may be too short for a wheel to be clear on
     const double height = 0.5 * noise_.tread_height * noise_.tread_height, place = 0.5 * noise_.face_place * noise_.face_place;
     if (!tread) {
         // It may end higher or lower than drawn: down one that leans, farther on or back as well.

@@ -88,6 +88,13 @@ std::size_t Estimator::face_below(std::size_t piece) const {
     return std::ranges::binary_search(path_.corners(), edge.s) ? piece : kNoPiece;
 }
 
+// The last face between two pieces, `from` if there is none.
+std::size_t Estimator::last_face(std::size_t from, std::size_t to) const {
+    for (std::size_t k = to; k > from + 1; --k)
+        if (face_below(k - 1) == k - 1 && is_face(k - 1)) return k - 1;
+    return from;
+}
+
 std::size_t Estimator::face_or_tread(double s, bool face) const {
     const auto& pieces = path_.pieces();
     std::size_t best = pieces.size();

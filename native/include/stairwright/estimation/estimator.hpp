@@ -170,6 +170,7 @@ class Estimator {
     bool rear_knows(double s, bool face) const;
     std::size_t face_or_tread(double s, bool face) const;  // the piece nearest to the place `s`
     bool is_face(std::size_t piece) const;
+    std::size_t last_face(std::size_t from, std::size_t to) const;
     bool is_low_drop(std::size_t piece) const;
     Vec2 across(std::size_t piece) const;
     Vec2 normal(std::size_t piece) const;  // where it begins
