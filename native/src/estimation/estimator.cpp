@@ -231,29 +231,37 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
 // Every face lies and every tread is as high as the map says only more or less: what is ahead is anew unsure.
 void Estimator::enter_face(int i, const CurveMatch& on) {
     WheelState& w = wheels_[i];
+    const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
+    const double height = 0.5 * noise_.tread_height * noise_.tread_height, place = 0.5 * noise_.face_place * noise_.face_place;
+    if (!on.corner && on.piece == w.low_edge && on.piece != w.clear && leads_up(on.piece)) {
+        w.clear_before = w.clear, w.clear = on.piece;
+        covariance_.add_noise(own + 1, 2.0 * height);
+        return;
+    }
     const std::size_t at = on.corner ? kNoPiece : face_below(on.piece);
     if (at == kNoPiece) return;
     if (at == on.piece && at != w.face) w.face = at, w.put_back = w.landed = 0.0;
     if (is_low_drop(at)) return;  // what is below is unsure once the wheel is there
     // In a corner a wheel goes to and fro between two faces, and measures both: what is unsure is so once it has left it.
     const double corner = std::min(kNearCorner, 0.5 * path_.pieces()[at].length);
-    if (at == w.clear || std::abs(nearest_corner(on.s) - on.s) < corner) return;
+    if (at == w.clear) return;
+    // An edge that is lower than the wheel may be all but passed when the wheel meets it.
+    const bool edge = path_.pieces()[at].arc;
+    if (!edge && std::abs(nearest_corner(on.s) - on.s) < corner) return;
     // Near to the edge before it the direction of its force may still tell where it is on that one, see measure_turn.
-    if (path_.on_arc(on.s - std::min(kClearOfEdge, 0.5 * path_.pieces()[at].length))) return;
+    if (!edge && path_.on_arc(on.s - std::min(kClearOfEdge, 0.5 * path_.pieces()[at].length))) return;
     const bool tread = !is_face(at), was_tread = !is_face(w.clear);
     const bool known = at == w.clear_before;  // it comes back to it
     w.clear_before = w.clear, w.clear = at;
     if (known) return;
-    const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
     const std::size_t before = last_face(w.clear_before, at);  // it may be too short for a wheel to be clear on
-    const double height = 0.5 * noise_.tread_height * noise_.tread_height, place = 0.5 * noise_.face_place * noise_.face_place;
     if (!tread) {
         // It may end higher or lower than drawn: down one that leans, farther on or back as well.
         covariance_.add_noise(own, {normal(at).x > 0.0 ? -across(at).z : 0.0, 1.0}, height);
-    } else if (was_tread && before == w.clear_before) {  // a slope may rise more or less than drawn
+    } else if (was_tread && before == w.clear_before && !path_.pieces()[before].arc) {  // a slope may rise more or less than drawn
         if (std::abs(cross(normal(w.clear_before), normal(at))) > kBend) covariance_.add_noise(own + 1, height);
     } else {
-        if (i == 0 && !has_found(before)) pass(before);
+        if (i == 0 && is_face(before) && !has_found(before)) pass(before);
         covariance_.add_noise(own, place);
         if (before != w.clear_before) covariance_.add_noise(own + 1, height);  // without a face it has not been said yet
     }

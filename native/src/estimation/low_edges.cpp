@@ -52,11 +52,14 @@ bool Estimator::over_low_edge(const WheelState& w, const CurveMatch& on) const {
     return on.piece == w.low_edge + 1 || (on.piece == w.low_edge && !leads_up(on.piece));
 }
 
-// A wheel that is clear of it measures how high that tread is, of which nothing was known.
+// A wheel that is clear of it measures how high that tread is, of which nothing was known; but where the wheel has felt the
+// edge on its way up, the height and its place there are what that can be told from.
 void Estimator::leave_low_edge(int i, const CurveMatch& on, const Error& along_z, Vec2 centre, Error& error) {
     WheelState& w = wheels_[i];
     if (w.low_edge == kNoPiece || w.clear != w.low_edge + 1) return;
+    const bool felt = w.clear_before == w.low_edge;
     w.low_edge = kNoPiece;
+    if (felt) return;
     covariance_.add_noise((i / 2 == 0 ? kFrontOffset : kRearOffset) + 1, noise_.tread_height * noise_.tread_height);
     covariance_.update(along_z, on.point.centre.z - centre.z, noise_.place * noise_.place, error);
 }
