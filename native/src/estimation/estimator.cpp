@@ -21,8 +21,6 @@ constexpr double kHop = 0.1;            // s in the air that are no more than a 
 constexpr double kHopSpeed = 0.2;       // m/s of the trunk from which on a riser is met so
 constexpr double kSure = 0.02;         // s that both faces of a corner must be felt before that counts
 constexpr double kMostScale = 0.025;   // of the wheels: more is slip
-constexpr double kClearOfEdge = 0.01;   // m
-constexpr double kBend = 0.1;           // sine of the turn from one tread to the next from which on they are two
 constexpr double kContradicted = 0.05;  // s
 constexpr double kWrongVelocity = 0.5;  // m/s
 constexpr double kMostMapError = 0.12;  // m
@@ -226,45 +224,6 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     correct(error);
     if (on.corner && on.after.x < -kTread)
         for (const std::size_t pair : {0, 1}) estimate_.found[pair] += error[kPlace] + error[kFrontOffset + 2 * pair];
-}
-
-// Every face lies and every tread is as high as the map says only more or less: what is ahead is anew unsure.
-void Estimator::enter_face(int i, const CurveMatch& on) {
-    WheelState& w = wheels_[i];
-    const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
-    const double height = 0.5 * noise_.tread_height * noise_.tread_height, place = 0.5 * noise_.face_place * noise_.face_place;
-    if (!on.corner && on.piece == w.low_edge && on.piece != w.clear && leads_up(on.piece)) {
-        w.clear_before = w.clear, w.clear = on.piece;
-        covariance_.add_noise(own + 1, 2.0 * height);
-        return;
-    }
-    const std::size_t at = on.corner ? kNoPiece : face_below(on.piece);
-    if (at == kNoPiece) return;
-    if (at == on.piece && at != w.face) w.face = at, w.put_back = w.landed = 0.0;
-    if (is_low_drop(at)) return;  // what is below is unsure once the wheel is there
-    // In a corner a wheel goes to and fro between two faces, and measures both: what is unsure is so once it has left it.
-    const double corner = std::min(kNearCorner, 0.5 * path_.pieces()[at].length);
-    if (at == w.clear) return;
-    // An edge that is lower than the wheel may be all but passed when the wheel meets it.
-    const bool edge = path_.pieces()[at].arc;
-    if (!edge && std::abs(nearest_corner(on.s) - on.s) < corner) return;
-    // Near to the edge before it the direction of its force may still tell where it is on that one, see measure_turn.
-    if (!edge && path_.on_arc(on.s - std::min(kClearOfEdge, 0.5 * path_.pieces()[at].length))) return;
-    const bool tread = !is_face(at), was_tread = !is_face(w.clear);
-    const bool known = at == w.clear_before;  // it comes back to it
-    w.clear_before = w.clear, w.clear = at;
-    if (known) return;
-    const std::size_t before = last_face(w.clear_before, at);  // it may be too short for a wheel to be clear on
-    if (!tread) {
-        // It may end higher or lower than drawn: down one that leans, farther on or back as well.
-        covariance_.add_noise(own, {normal(at).x > 0.0 ? -across(at).z : 0.0, 1.0}, height);
-    } else if (was_tread && before == w.clear_before && !path_.pieces()[before].arc) {  // a slope may rise more or less than drawn
-        if (std::abs(cross(normal(w.clear_before), normal(at))) > kBend) covariance_.add_noise(own + 1, height);
-    } else {
-        if (i == 0 && is_face(before) && !has_found(before)) pass(before);
-        covariance_.add_noise(own, place);
-        if (before != w.clear_before) covariance_.add_noise(own + 1, height);  // without a face it has not been said yet
-    }
 }
 
 // A filter that is surer of a wrong velocity, as after a slide, than wheels can tell it turns down all that they say, for

@@ -19,7 +19,7 @@ constexpr double kTrunkClearance = 0.06;   // m of trunk clearance beyond which 
 // Of the cost terms at a user's weight of 1, per node.
 constexpr double kComWeight = 15.0;     // 1/m
 constexpr double kRoomWeight = 2.0;     // 1/m, of trunk and links
-constexpr double kEarlyWeight = 100.0;   // 1/m, of clearance where faces come early; nobody weighs that
+constexpr double kEarlyWeight = 100.0;  // 1/m, of clearance where faces come early; nobody weighs that
 constexpr double kTorqueWeight = 0.3;
 constexpr double kPitchWeight = 0.05;   // 1/rad
 constexpr double kRateWeight = 20.0;    // 1/m^2, of the squared step from node to node

@@ -161,6 +161,7 @@ class Estimator {
     void feel_face_ahead(WheelState& wheel, const CurveMatch& on, const WheelBelief& belief, double dt);
     std::optional<MapError> face_ahead() const;
     void believe_wheels_again(double dt);
+    std::size_t clear_on(const WheelState& wheel, const CurveMatch& on) const;
     void enter_face(int wheel, const CurveMatch& on);
     // What front wheels find of a face or tread the rear wheels know when they get there.
     bool has_found(std::size_t piece) const { return piece < found_.size() && found_[piece]; }
