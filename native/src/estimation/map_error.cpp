@@ -133,7 +133,8 @@ void Estimator::pass(std::size_t face) {
 }
 
 // Of the tread that a rear wheel is on and of the face behind it, or the other way round; not while it may still lean on the
-// one before. Where a tread follows another one, how high that is says nothing yet.
+// one before, and of the face not before it is the nearer one: what that is off says nothing of the edge behind the wheel,
+// which the plan would have it roll back over. Where a tread follows another one, how high that is says nothing yet.
 void Estimator::recall(WheelState& rear) {
     const Piece& now = path_.pieces()[rear.face];
     if (rear.s < now.s + std::min(kInto, 0.5 * now.length) || rear.s > now.s + now.length) return;
@@ -143,7 +144,7 @@ void Estimator::recall(WheelState& rear) {
     std::size_t seen = 0;
     for (std::size_t k = rear.face; k < found_.size() && seen < rear.told.size(); ++k) {
         if (face_below(k) != k) continue;
-        if (seen++ > 0 && is_face(k) == is_face(rear.face)) break;
+        if (seen++ > 0 && (is_face(k) == is_face(rear.face) || (is_face(k) && rear.s < now.s + 0.5 * now.length))) break;
         if (!found_[k] || rear.told[seen - 1] == k) continue;
         rear.told[seen - 1] = k, news = true;
         const Vec2 across = this->across(k);
