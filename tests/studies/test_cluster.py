@@ -33,20 +33,18 @@ from stairwright.studies.worker import evaluate_batch
 
 from .small import STEP, identical, study
 
-MAP = study(
-    {"name": "stairs.rise", "from": 0.1, "to": 0.7, "count": 5},
-    {"name": "stairs.run", "values": [0.25, 0.32]},
-    {"name": "friction", "values": [0.3, 0.7]},
-    terrain={"kind": "stair", "rise": 0.1, "run": 0.3, "count": 1},  # soon refused
-)
+
+def _map(*friction: float) -> dict[str, object]:
+    return study(
+        {"name": "stairs.rise", "from": 0.1, "to": 0.7, "count": 5},
+        {"name": "stairs.run", "values": [0.25, 0.32]},
+        {"name": "friction", "values": friction},
+        terrain={"kind": "stair", "rise": 0.1, "run": 0.3, "count": 1},  # soon refused
+    )
 
 
-DEADLY = study(
-    {"name": "stairs.rise", "from": 0.1, "to": 0.7, "count": 5},
-    {"name": "stairs.run", "values": [0.25, 0.32]},
-    {"name": "friction", "values": [0.31, 0.71]},  # no cell that another test may have asked
-    terrain={"kind": "stair", "rise": 0.1, "run": 0.3, "count": 1},
-)
+MAP = _map(0.3, 0.7)
+DEADLY = _map(0.31, 0.71)  # no cell that another test may have asked
 
 
 def _store(document: dict[str, object], path: Path) -> ResultStore:

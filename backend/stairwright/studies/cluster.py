@@ -36,6 +36,7 @@ _LOOK = 0.25  # s between looks whether it was stopped
 _COUNT_EVERY = 2.0  # s between counts of workers
 _EACH = 0.5  # s between reports while the cluster starts
 _MOST_LOST = 20  # batches whose results went with a worker, in one pass
+_GONE = "the scheduler is gone: what was done is kept, ask again to go on"
 
 
 class ClusterLost(StairwrightError):
@@ -212,7 +213,7 @@ class _Run:
             while True:
                 arrived.append(self._landed.get_nowait())
         if self._client.status not in ("running", "connecting"):
-            raise ClusterLost("the scheduler is gone: what was done is kept, ask again to go on")
+            raise ClusterLost(_GONE)
         return arrived
 
     def _taken(self, future: Any) -> Finished:
@@ -224,15 +225,14 @@ class _Run:
         except OtherVersion:
             raise
         except (Exception, CancelledError) as error:
-            if future.status != "error":  # it was done, and what it gave is gone
-                if self._client.status != "running" or self._lost == _MOST_LOST:
-                    raise ClusterLost(
-                        "the scheduler is gone: what was done is kept, ask again to go on"
-                    ) from error
-                self._lost += 1
-                self._submit(cells, f"again-{self._lost}-")
-                return {}
-            return self._failed(cells, f"{type(error).__name__}: {error}")
+            if future.status == "error":
+                return self._failed(cells, f"{type(error).__name__}: {error}")
+            # It was done, and what it gave is gone.
+            if self._client.status != "running" or self._lost == _MOST_LOST:
+                raise ClusterLost(_GONE) from error
+            self._lost += 1
+            self._submit(cells, f"again-{self._lost}-")
+            return {}
         self._alone = None
         self._sizes.learn(len(cells), batch.seconds)
         return batch.records
