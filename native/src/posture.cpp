@@ -111,8 +111,6 @@ double trunk_clearance(const Terrain& terrain, const RobotModel& robot, const Bo
     return least;
 }
 
-namespace {
-
 double link_clearance(const Terrain& terrain, const Leg& leg, const LegPoints& p, int link, double query_radius) {
     double least = query_radius;
     const auto visit = [&](const Capsule& c) { least = std::min(least, terrain.link_clearance(c.a, c.b, c.radius, query_radius)); };
@@ -122,6 +120,8 @@ double link_clearance(const Terrain& terrain, const Leg& leg, const LegPoints& p
         visit_capsules(leg.calf, p.knee, p.wheel - p.knee, visit);
     return least;
 }
+
+namespace {
 
 double least_of(const LinkClearances& links) {
     return std::min(std::min(links[0][0], links[0][1]), std::min(links[1][0], links[1][1]));

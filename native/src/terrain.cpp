@@ -79,12 +79,29 @@ double Terrain::link_clearance(Vec2 a, Vec2 b, double radius, double query_radiu
         if (p.x <= a.x && a.x <= q.x && q.x > p.x && a.z < p.z + (q.z - p.z) * (a.x - p.x) / (q.x - p.x)) inside = true;
     }
     if (best > 0.0 && !inside) return best - radius;
+    return -radius - (inside ? depth_below(a, b) : depth_beyond(a, b));
+}
+
+double Terrain::depth_below(Vec2 a, Vec2 b) const {
     double depth = 0.0;
     for (int k = 0; k < 5; ++k) {
         const Vec2 p = a + (0.25 * k) * (b - a);
         if (p.z < height(p.x)) depth = std::max({depth, distance(p, kDeepest), 1e-4});
     }
-    return -radius - (depth > 2e-4 ? depth : kPierced);
+    return depth > 2e-4 ? depth : kPierced;
+}
+
+double Terrain::depth_beyond(Vec2 a, Vec2 b) const {
+    double depth = 0.0, beyond = 0.0;  // of what lies beyond a-b since the profile last crossed it
+    bool crossed = false;
+    const double hi = std::max(a.x, b.x);
+    for (std::size_t i = first_segment(std::min(a.x, b.x)); i < segments() && vertices_[i].x <= hi; ++i) {
+        if (crossed) beyond = std::max(beyond, std::sqrt(point_segment_squared(vertices_[i], a, b)));
+        if (segment_distance_squared(a, b, vertices_[i], vertices_[i + 1]) > 0.0) continue;
+        if (crossed) depth = std::max(depth, beyond);
+        crossed = !crossed, beyond = 0.0;
+    }
+    return crossed ? std::max(depth, depth_below(a, b)) : depth;
 }
 
 double Terrain::polygon_clearance(const Polygon& polygon, Vec2 at, Turn pitch, double query_radius) const {

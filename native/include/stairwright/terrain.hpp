@@ -46,13 +46,17 @@ class Terrain {
     // Distance of a point from the profile, at most `query_radius`.
     double distance(Vec2 point, double query_radius) const;
     // Distance of the capsule a-b from the ground, at most `query_radius`; minus its depth if inside [m].
-    // The depth counts from the capsule's axis: the deepest of five points on it, so that it shrinks as the
-    // link backs out.
+    // The depth counts from the capsule's axis, so that it shrinks as the link backs out.
     double link_clearance(Vec2 a, Vec2 b, double radius, double query_radius) const;
     // Distance of a convex polygon of the trunk frame at `body`, at most `query_radius`; minus its depth if inside [m].
     double polygon_clearance(const Polygon& polygon, Vec2 at, Turn pitch, double query_radius) const;
 
   private:
+    // Depth of the axis of a link that is in the ground [m]: the deepest of five of its points.
+    double depth_below(Vec2 a, Vec2 b) const;
+    // Of one whose beginning is not: how far the corners that it cuts off stand out beyond it.
+    double depth_beyond(Vec2 a, Vec2 b) const;
+
     std::vector<Vec2> vertices_;
     std::vector<std::int32_t> first_;  // per bucket of x: the first segment that reaches into it
 };

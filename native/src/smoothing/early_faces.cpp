@@ -16,9 +16,10 @@ std::vector<std::array<double, 2>> early_faces(const RefineProblem& problem, std
                                                std::span<const NodeIntervals> intervals) {
     std::vector<std::array<double, 2>> out(nodes.size());
     const double confined = kConfined * problem.robot.scale();
-    if (std::ranges::any_of(intervals, [&](const NodeIntervals& of) { return of.full.upper - of.full.lower < confined; })) return out;
     const WheelPath& path = problem.path;
-    for (std::size_t node = 0; node < nodes.size(); ++node)
+    for (std::size_t node = 0; node < nodes.size(); ++node) {
+        const Interval& com = intervals[node].full;
+        if (com.upper - com.lower < confined) continue;
         for (const int pair : {kFront, kRear}) {
             const double s = nodes[node].s[pair];
             const std::size_t k = path.corner_from(s);
@@ -27,20 +28,25 @@ std::vector<std::array<double, 2>> early_faces(const RefineProblem& problem, std
             if (-path.normal(corner + kBeside).x >= kLeastSteep)
                 out[node][pair] = std::min(path.centre(corner).x - path.centre(s).x, kEarlyFace);
         }
+    }
     return out;
 }
 
-double early_clearance(const SmoothingProblem& problem, std::size_t node, const Body& body, const Posture& posture) {
-    double least = problem.objective.early.target;
+EarlyClearances early_clearances(const SmoothingProblem& problem, std::size_t node, const Body& body, const Posture& posture) {
+    const double wanted = problem.objective.early.target;
+    EarlyClearances out;
+    out.fill(wanted);
     for (const int pair : {kFront, kRear}) {
         const Vec2 nearer = {problem.early[node][pair], 0.0};
         if (nearer.x == 0.0) continue;
         const auto& [hip, knee, wheel] = posture.legs[pair];
-        const LegPoints leg = {hip + nearer, knee + nearer, wheel + nearer};
-        least = std::min(least, leg_clearance(problem.terrain, problem.robot.legs[pair].leg, leg, least));
-        least = std::min(least, trunk_clearance(problem.terrain, problem.robot, {body.x + nearer.x, body.z, body.pitch}, least));
+        const LegPoints at = {hip + nearer, knee + nearer, wheel + nearer};
+        const Leg& leg = problem.robot.legs[pair].leg;
+        double* of_pair = &out[3 * pair];
+        for (const int link : {0, 1}) of_pair[link] = link_clearance(problem.terrain, leg, at, link, wanted);
+        of_pair[2] = trunk_clearance(problem.terrain, problem.robot, {body.x + nearer.x, body.z, body.pitch}, wanted);
     }
-    return least;
+    return out;
 }
 
 }  // namespace stairwright::smoothing

@@ -11,7 +11,9 @@ namespace stairwright::smoothing {
 std::vector<std::array<double, 2>> early_faces(const RefineProblem& problem, std::span<const Node> nodes,
                                                std::span<const NodeIntervals> intervals);
 
-// Least clearance of trunk and leg if the next face of their wheels is so much nearer; no more than is wanted [m].
-double early_clearance(const SmoothingProblem& problem, std::size_t node, const Body& body, const Posture& posture);
+// Clearances of thigh, calf and trunk if the next face of the front wheels is so much nearer, then of the rear ones; no more
+// than is wanted [m]. Each for itself: of their least the derivative is that of one, which the others do not follow.
+using EarlyClearances = std::array<double, 6>;
+EarlyClearances early_clearances(const SmoothingProblem& problem, std::size_t node, const Body& body, const Posture& posture);
 
 }  // namespace stairwright::smoothing

@@ -95,7 +95,7 @@ PathCost path_cost(const RefineProblem& problem, std::span<const Node> path) {
     PathCost out;
     for (std::size_t k = 0; k < count; ++k) {
         const PoseGeometry geometry = pose_geometry(problem.terrain, problem.robot, bodies[k], wheels[k], query_radii(o));
-        rows.push_back(residuals(at, k, bodies[k], geometry, early_clearance(at, k, bodies[k], geometry.posture)));
+        rows.push_back(residuals(at, k, bodies[k], geometry, early_clearances(at, k, bodies[k], geometry.posture)));
         for (const double r : rows.back()) out.total += r * r;
     }
     std::vector<double> gradient(3 * count);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "early_faces.hpp"
-
 namespace stairwright::smoothing {
 
 namespace {
@@ -78,7 +76,8 @@ QueryRadii query_radii(const Objective& o) {
             std::max(o.legs.target, o.legs.least)};
 }
 
-Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry, double early) {
+Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry,
+                    const EarlyClearances& early) {
     const Objective& o = problem.objective;
     const NodeIntervals& interval = problem.intervals[node];
     const double x = geometry.posture.com.x;
@@ -93,7 +92,7 @@ Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Bod
     r[kReach] = hinge(geometry.posture.reach_slack, o.reach, o.hard);
     r[kTrunkRoom] = shortfall(geometry.trunk, o.trunk_room);
     r[kLinksRoom] = shortfall(geometry.links, o.links_room);
-    r[kEarlyFace] = shortfall(early, o.early);
+    for (std::size_t k = 0; k < early.size(); ++k) r[kEarlyFrontThigh + k] = shortfall(early[k], o.early);
     const auto& [front, rear] = problem.wheels[node];
     r[kPitch] = (body.pitch + o.slope_share * problem.slopes[node]) * o.pitch_weight;
     r[kHeight] = (body.z - 0.5 * (front.z + rear.z) - o.height) * o.height_weight;
@@ -111,6 +110,10 @@ NodeJacobian differentiate(const SmoothingProblem& problem, std::size_t node, co
     const QueryRadii radii = query_radii(problem.objective);
     NodeJacobian out;
     PoseGeometry moved = geometry;
+    const auto* early_at = &at[kEarlyFrontThigh];
+    const bool pressed = std::any_of(early_at, early_at + EarlyClearances{}.size(), [](double r) { return r > 0.0; });
+    EarlyClearances early;
+    early.fill(problem.objective.early.target);
     for (std::size_t a = 0; a < 3; ++a) {
         Body x = body;
         x.*axes[a] += kStep;
@@ -121,7 +124,7 @@ NodeJacobian differentiate(const SmoothingProblem& problem, std::size_t node, co
         if (at[kLinks] > 0.0 || at[kLinksRoom] > 0.0) 
             moved.links = links_clearance(problem.terrain, problem.robot, moved.posture, radii.links, geometry.by_link);
         if (at[kLegs] > 0.0) moved.legs = legs_distance(problem.robot, moved.posture.legs);
-        const double early = at[kEarlyFace] > 0.0 ? early_clearance(problem, node, x, moved.posture) : problem.objective.early.target;
+        if (pressed) early = early_clearances(problem, node, x, moved.posture);
         const Residuals r = residuals(problem, node, x, moved, early);
         for (int m = 0; m < kResiduals; ++m) out[a][m] = (r[m] - at[m]) * (1.0 / kStep);
     }

@@ -1,6 +1,7 @@
 // Residuals of one node, and their derivatives by finite differences.
 #pragma once
 
+#include "early_faces.hpp"
 #include "stairwright/smoothing/smoothing.hpp"
 
 namespace stairwright::smoothing {
@@ -8,7 +9,8 @@ namespace stairwright::smoothing {
 // Order of a node's residuals; the first ones, up to kHinges, are never negative.
 enum Residual {
     kComLow, kComHigh, kReserveLow, kReserveHigh, kLaggedLow, kLaggedHigh,
-    kTrunk, kLinks, kLegs, kJoints, kReach, kTrunkRoom, kLinksRoom, kEarlyFace,
+    kTrunk, kLinks, kLegs, kJoints, kReach, kTrunkRoom, kLinksRoom,
+    kEarlyFrontThigh, kEarlyFrontCalf, kEarlyFrontTrunk, kEarlyRearThigh, kEarlyRearCalf, kEarlyRearTrunk,
     kFrontThighLimit, kFrontCalfLimit, kFrontWheelLimit, kRearThighLimit, kRearCalfLimit, kRearWheelLimit,
     kPitch, kHeight, kFrontThigh, kFrontCalf, kRearThigh, kRearCalf, kResiduals,
 };
@@ -19,8 +21,8 @@ using NodeJacobian = std::array<Residuals, 3>;  // by x, z, pitch
 
 QueryRadii query_radii(const Objective& objective);  // nothing farther away pulls [m]
 
-// `early` is the node's early_clearance.
-Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry, double early);
+Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry,
+                    const EarlyClearances& early);
 NodeJacobian differentiate(const SmoothingProblem& problem, std::size_t node, const Body& body,
                            const PoseGeometry& geometry, const Residuals& at);
 // Residuals of a node that has moved a little from where `at` and `jacobian` were computed.
