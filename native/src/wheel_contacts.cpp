@@ -6,7 +6,8 @@ namespace stairwright {
 
 namespace {
 
-constexpr double kNoticed = 0.035;  // m round its edge that a wheel is by the time it has been noticed
+constexpr double kNoticed = 0.05;  // m round its edge that a wheel is by the time it has been noticed
+constexpr double kLeastNoticed = 0.35 * kNoticed;
 
 // What a wheel between two faces leans on.
 enum Lean { kFirstFace = 0, kSecondFace = 1, kBothFaces = 2 };
@@ -131,17 +132,17 @@ namespace {
 
 // What is left of `in_time` where a pair is over a drop before it is planned: of the drops that leave anything, the
 // farthest round.
-Interval early_interval(const WheelPath& path, WheelPlaces s, double friction, const Interval& in_time) {
+Interval early_interval(const WheelPath& path, WheelPlaces s, double friction, const Interval& in_time, bool always) {
     Interval out = in_time;
     for (const int pair : {kFront, kRear}) {
-        for (const double noticed : {kNoticed, 0.5 * kNoticed}) {
+        for (const double noticed : {kNoticed, 0.7 * kNoticed, kLeastNoticed}) {
             const double other = early_place(path, s[pair], noticed);
             if (other == s[pair]) break;
             Counted counted;
             add_turned(counted, path, s[pair], other, friction);
             counted.add_all(wheel_contacts(path, s[pair == kFront ? kRear : kFront], friction));
             const Interval both = out.intersect(com_interval(counted.span(), kGentleRays));
-            if (both.empty()) continue;
+            if (both.empty() && !(always && noticed == kLeastNoticed)) continue;
             out = both;
             break;
         }
@@ -151,7 +152,7 @@ Interval early_interval(const WheelPath& path, WheelPlaces s, double friction, c
 
 }  // namespace
 
-Interval lagged_interval(const WheelPath& path, WheelPlaces s, double friction, double lag) {
+Interval lagged_interval(const WheelPath& path, WheelPlaces s, double friction, double lag, bool always) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Interval out{-infinity, infinity};
     for (int a = kInTime; a <= kAhead; ++a) {
@@ -164,7 +165,7 @@ Interval lagged_interval(const WheelPath& path, WheelPlaces s, double friction, 
             if (out.empty()) return out;
         }
     }
-    return early_interval(path, s, friction, out);
+    return early_interval(path, s, friction, out, always);
 }
 
 NodeIntervals node_intervals(const WheelPath& path, WheelPlaces s, double friction, double reserve, double lag) {

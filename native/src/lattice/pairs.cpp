@@ -114,7 +114,7 @@ CellTable cell_table(const CellProblem& problem, const std::vector<SamplePair>& 
 }
 
 Interval lag_interval(const WheelPath& path, WheelPlaces s, const Interval& stated, double friction, double lag) {
-    const Interval found = of(lagged_interval(path, s, friction, lag));
+    const Interval found = of(lagged_interval(path, s, friction, lag, true));
     return found.empty() ? Interval{stated.middle(), stated.middle()} : found;
 }
 
