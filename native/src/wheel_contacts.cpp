@@ -132,7 +132,7 @@ namespace {
 
 // What is left of `in_time` where a pair is over a drop before it is planned: of the drops that leave anything, the
 // farthest round.
-Interval early_interval(const WheelPath& path, WheelPlaces s, double friction, const Interval& in_time, bool always) {
+Interval early_interval(const WheelPath& path, WheelPlaces s, double friction, const Interval& in_time, bool surely) {
     Interval out = in_time;
     for (const int pair : {kFront, kRear}) {
         for (const double noticed : {kNoticed, 0.7 * kNoticed, kLeastNoticed}) {
@@ -142,7 +142,7 @@ Interval early_interval(const WheelPath& path, WheelPlaces s, double friction, c
             add_turned(counted, path, s[pair], other, friction);
             counted.add_all(wheel_contacts(path, s[pair == kFront ? kRear : kFront], friction));
             const Interval both = out.intersect(com_interval(counted.span(), kGentleRays));
-            if (both.empty() && !(always && noticed == kLeastNoticed)) continue;
+            if (both.empty() && !(surely && noticed == kLeastNoticed)) continue;
             out = both;
             break;
         }
@@ -152,7 +152,7 @@ Interval early_interval(const WheelPath& path, WheelPlaces s, double friction, c
 
 }  // namespace
 
-Interval lagged_interval(const WheelPath& path, WheelPlaces s, double friction, double lag, bool always) {
+Interval lagged_interval(const WheelPath& path, WheelPlaces s, double friction, double lag, bool surely) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Interval out{-infinity, infinity};
     for (int a = kInTime; a <= kAhead; ++a) {
@@ -165,7 +165,7 @@ Interval lagged_interval(const WheelPath& path, WheelPlaces s, double friction, 
             if (out.empty()) return out;
         }
     }
-    return early_interval(path, s, friction, out, always);
+    return early_interval(path, s, friction, out, surely);
 }
 
 NodeIntervals node_intervals(const WheelPath& path, WheelPlaces s, double friction, double reserve, double lag) {

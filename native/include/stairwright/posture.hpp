@@ -55,9 +55,9 @@ double trunk_clearance(const Terrain& terrain, const RobotModel& robot, const Bo
 using LinkClearances = std::array<std::array<double, 2>, 2>;
 // A link that is so much farther from the ground than the nearest is left out where only the nearest counts.
 inline constexpr double kNearlyNearest = 1e-3;  // m
-// Of each link, exact for those that are nearly as near as the nearest; of others no more than that they are not.
 // Of a thigh (0) or a calf (1).
 double link_clearance(const Terrain& terrain, const Leg& leg, const LegPoints& at, int link, double query_radius);
+// Of each link, exact for those that are nearly as near as the nearest; of others no more than that they are not.
 LinkClearances link_clearances(const Terrain& terrain, const RobotModel& robot, const Posture& posture, double query_radius);
 // Of one leg.
 double leg_clearance(const Terrain& terrain, const Leg& leg, const LegPoints& at, double query_radius);

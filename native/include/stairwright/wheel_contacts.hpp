@@ -47,8 +47,9 @@ Interval steady_interval(const WheelPath& path, WheelPlaces s, double friction);
 
 // CoM interval that also holds if either wheel is `lag` behind its plan, or kStray ahead. A wheel that arrives late
 // at a corner pushes on the face behind it alone; plans that tolerate this are what a controller can follow. Empty
-// where no CoM suits all cases.
-Interval lagged_interval(const WheelPath& path, WheelPlaces s, double friction, double lag, bool always = false);
+// where no CoM suits all cases. What also holds on an edge that leads down and comes early is kept where anything does;
+// with `surely` it is empty where nothing does.
+Interval lagged_interval(const WheelPath& path, WheelPlaces s, double friction, double lag, bool surely = false);
 
 // What the smoothing keeps the CoM within. Where one of the stricter two is empty the one before it stands in;
 // before that, less lag.

@@ -8,11 +8,11 @@ namespace {
 
 constexpr double kEarlyFace = 0.06;  // m before its place that a face may come
 constexpr double kUnsureClimb = 0.04;  // m that wheels with little load may climb on the map before they feel the face
-constexpr double kFelt = -1.0;
+constexpr double kFelt = -1.0;       // no next face, or one that is felt
 constexpr double kConfined = 0.02;   // m, of the CoM of a robot with legs of 0.4 m
 constexpr double kLeastLevel = 0.99, kLeastSteep = 0.7;  // z of a tread's normal, -x of a face's
 
-// How far a wheel is from the next face, at most kEarlyFace [m]; kFelt where it is on none that it has not felt for certain.
+// How far a wheel is from the next face, at most kEarlyFace, and 0 where it begins to climb it [m]; or kFelt.
 double gap_before_face(const WheelPath& path, double s) {
     const std::vector<double>& corners = path.corners();
     std::size_t k = path.corner_from(s);
