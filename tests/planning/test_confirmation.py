@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from stairwright.planning.attempt import Blocked, Solved
 from stairwright.planning.infeasibility.bracket import Bracket
-from stairwright.planning.infeasibility.confirmation import _settled, alone
+from stairwright.planning.infeasibility.confirmation import _settled, alone, strengthened
 from stairwright.planning.problem import Limit
-from stairwright.planning.strategy import AT_ONCE, FINER, solve
+from stairwright.planning.strategy import AT_ONCE, FINER, ON_BRINKS, solve
 from stairwright.planning.threads import in_this_thread
 
 
@@ -28,7 +28,7 @@ class Asked:
 
     doubted: set[int] = field(default_factory=set)  # of those that some attempts do not do with
 
-    def feasible(self, _planner, ratio):
+    def feasible(self, _planner, ratio, _pool):
         self.steps.append(round(math.log(ratio, 1.02)))
         return self.steps[-1] in self.enough
 
@@ -48,9 +48,10 @@ class Asked:
     ],
 )
 @pytest.mark.parametrize("doubted", [set(), {*range(25)}, {22, 16, 13}])
-def test_all_of_planning_is_asked_on_both_sides_and_about_no_amount_twice(enough, doubted):
+@pytest.mark.parametrize("failed", [(), (10, 22), (29,)])
+def test_all_of_planning_is_asked_on_both_sides_and_about_no_amount_twice(enough, doubted, failed):
     quantity = Asked(enough, doubted=doubted)
-    cause = _settled(SimpleNamespace(torques=True), quantity, 30, in_this_thread())
+    cause = _settled(SimpleNamespace(), quantity, 30, failed, in_this_thread())
     low, high = (round(math.log(ratio, 1.02)) for ratio in (cause.lower, cause.upper))
     assert high == low + 1
     assert low not in enough
@@ -60,7 +61,7 @@ def test_all_of_planning_is_asked_on_both_sides_and_about_no_amount_twice(enough
 
 
 def test_what_searches_missed_is_found_by_asking_all_of_planning():
-    planner = SimpleNamespace(torques=False)
+    planner = SimpleNamespace()
     cause = alone(planner, Asked({*range(9, 61)}), 1.02**40, in_this_thread())
     assert round(math.log(cause.upper, 1.02)) == 9
     assert alone(planner, Asked(set()), 1.02**40, in_this_thread()) is None
@@ -95,6 +96,36 @@ def test_a_bracket_closes_round_what_works_whatever_is_asked_first(drawn):
         assert min(bracket.high + 1, most) in enough
 
 
+def test_what_attempts_have_missed_is_looked_for_near_by():
+    bracket = Bracket(60)
+    bracket.tell(10, works=False, settled=False)
+    bracket.tell(30, works=True)
+    asked = []
+    while (step := bracket.next_steps()[0]) > 24 or not bracket.settles(step):
+        asked.append(step)
+        bracket.tell(step, step >= 25, settled=False)
+    assert (step, asked) == (24, [23, 27, 25, 24])
+    bracket.tell(24, works=True)
+    downward = []
+    for _ in range(3):
+        downward += bracket.next_steps()
+        bracket.tell(downward[-1], works=True)
+    assert downward == [22, 18, 10]
+
+
+@pytest.mark.parametrize(("weak", "asked"), [("leg", 1), ("wheel", 6)])
+def test_motors_are_not_made_stronger_where_others_are_too_weak(weak, asked):
+    made = []
+
+    def attempt(_planner, ratio):
+        made.append(ratio)
+        return Blocked((0.0, 0.0), True, weak, share=0.91)
+
+    wheels = SimpleNamespace(quantity="wheel torque", most=10.0, attempt=attempt)
+    assert strengthened(SimpleNamespace(), wheels, 1.0, in_this_thread()) is None
+    assert len(made) == asked
+
+
 def test_attempts_that_are_likely_to_lead_are_made_before_others():
     made = []
 
@@ -105,7 +136,8 @@ def test_attempts_that_are_likely_to_lead_are_made_before_others():
         return Blocked((0.0, 0.0), True)
 
     planner = SimpleNamespace(attempt=attempt, torques=True, thin=0.01, unweighted=None)
-    found = solve(planner, in_this_thread(), any_path=True, likely=[FINER])
+    likely = [(ON_BRINKS, False), (FINER, True)]
+    found = solve(planner, in_this_thread(), any_path=True, likely=likely)
     assert isinstance(found, Solved)
     assert made == [AT_ONCE, FINER]
 

@@ -41,10 +41,11 @@ ON_BRINKS = Attempt(COARSE, LOOSEST, brinks=True)
 FINEST = Attempt(1.0, LOOSE)
 
 Tried = dict[Attempt, Solved | Blocked]
+Likely = Sequence[tuple[Attempt, bool]]  # attempts, and whether they are made within torques
 
 
 def solve(
-    planner: PathPlanner, pool: Executor, any_path: bool = False, likely: Sequence[Attempt] = ()
+    planner: PathPlanner, pool: Executor, any_path: bool = False, likely: Likely = ()
 ) -> Solved | Blocked:
     """The first path that passes the certificate and is not needlessly thin, or what blocks it.
 
@@ -119,7 +120,7 @@ def keeping_extra_margins(planner: PathPlanner) -> Solved | Blocked:
 
 
 def _search(
-    planner: PathPlanner, pool: Executor, any_path: bool = False, likely: Sequence[Attempt] = ()
+    planner: PathPlanner, pool: Executor, any_path: bool = False, likely: Likely = ()
 ) -> Solved | Blocked:
     """The three steps."""
     tried: Tried = {}
@@ -136,7 +137,7 @@ def _search(
         assert isinstance(at_once, Blocked)
         if at_once.weak and not planner.torques:
             return at_once
-        for attempt in likely if any_path else ():
+        for attempt in [how for how, torques in likely if torques == planner.torques]:
             found = planner.attempt(attempt)
             if isinstance(found, Solved):
                 return found

@@ -16,17 +16,17 @@ class Bracket:
 
     Attributes:
         most: The largest step.
-        hasty: Whether steps are asked about thoroughly only where that decides.
         known: Whether steps work.
         doubted: Steps that seem not to work, but have not been asked about thoroughly.
         misled: How many of them did work; after some all are asked about thoroughly.
+        stride: How far down the next step is while none below is known or thought not to work.
     """
 
     most: int
-    hasty: bool = False
     known: dict[int, bool] = field(default_factory=lambda: {0: False})
     doubted: set[int] = field(default_factory=set)
     misled: int = 0
+    stride: int = 0
 
     @property
     def high(self) -> int | None:
@@ -46,15 +46,22 @@ class Bracket:
         if not (works or settled):
             self.doubted.add(step)
             return
-        if works and step in self.doubted and (self.high is None or step < self.high):
-            self.misled += 1
-            self.doubted.clear()
+        if works:
+            high = self.high
+            if high is None:
+                self.stride = max(2, step // 4)
+            elif step < high and step in self.doubted:
+                self.misled += 1
+                self.doubted.clear()
+                self.stride = 2  # what is looked for is seldom far below
+            elif step < high:
+                self.stride *= 2
         self.known[step] = works
         self.doubted.discard(step)
 
     def settles(self, step: int) -> bool:
         """Whether to ask about a step thoroughly."""
-        trusting = self.hasty and self.high is not None and self.misled < _DECEPTIONS
+        trusting = self.high is not None and self.misled < _DECEPTIONS
         return not trusting or step in self.doubted
 
     def next_steps(self) -> tuple[int, ...]:
@@ -70,8 +77,8 @@ class Bracket:
             untold = () if high == self.most or high + 1 in self.known else (high + 1,)
             return (low, *untold) if low in self.doubted else untold
         # Down in strides until one does not work; then rather steps that do: they are told sooner.
-        step = high - ((high - low + 2) // 3 if low > 0 else max(2, self._first // 4))
-        return (min(max(step, low + 1), high - 1),)
+        stride = min(self.stride, (high - low + 2) // 3 if low > 0 else high - 1)
+        return (high - stride,)
 
     @property
     def _first(self) -> int:

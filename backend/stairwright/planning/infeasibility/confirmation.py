@@ -10,28 +10,27 @@ it.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from stairwright.planning.attempt import Blocked, Solved
 from stairwright.planning.infeasibility.bracket import Bracket
 from stairwright.planning.infeasibility.relaxation import Candidate
-from stairwright.planning.lattice.body_lattice import EXACT
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
 from stairwright.planning.path_planner import PathPlanner
 from stairwright.planning.smoothing.node_margins import FIRM_TORQUE
-from stairwright.planning.threads import race
+from stairwright.planning.threads import in_this_thread, race
 
 Ranked = list[tuple[Candidate, float]]  # candidates, and factors that open the way
 
 _STEP = 1.02
 # Planning is tried so many steps above the least factor, and at the largest one.
-_MORE = (0, 2, 6, 14, 26, 46, 70)
-_BETWEEN = 2  # of them is left out where not even a search that forgives nothing finds a way
+_MORE = (0, 10, 26, 50, 70)
 _RIVALS = 2  # candidates for which planning is tried
 _RISES = 6  # times that motors are made stronger, by as much as the path lacks that came of it
-_LOOKS = 20  # times that all of planning is asked, so that an answer comes in time
+_LOOKS = 30  # questions about amounts, so that an answer comes in time
 
 
 @dataclass(frozen=True)
@@ -74,29 +73,27 @@ def confirmed(
          for k, (one, ratio) in enumerate(ranked[:_RIVALS]) for more in _MORE},
     )  # fmt: skip
     whole = pieces(planner, places)[0].whole
-    tried = False
 
-    def lead(one: tuple[int, int]) -> Solved | Blocked | None:
+    def lead(one: tuple[int, int]) -> Solved | Blocked:
         step, k = one
-        candidate, least = ranked[k]
-        if step == _steps(least) + _BETWEEN and not candidate.opens(
-            planner, places, _ratio(candidate, step), EXACT
-        ):
-            return None
+        candidate = ranked[k][0]
         return candidate.attempt(planner, _ratio(candidate, step))
 
-    leading: tuple[Candidate, int] | None = None
+    failed: list[tuple[int, int]] = []
+    leading: tuple[int, int] | None = None
     with race(pool, lead, tries) as ends:
-        for (step, k), end in zip(tries, ends, strict=True):
+        for one, end in zip(tries, ends, strict=True):
             if isinstance(end, Solved):
-                leading = ranked[k][0], step
+                leading = one
                 break
-            if end is None:
-                continue
-            if not (whole or tried or end.opened):
+            if not (whole or failed or end.opened):
                 return Beyond(end.reached or planner.ends[0].wheels)
-            tried = True
-    return leading and _settled(planner, *leading, pool)
+            failed.append(one)
+    if leading is None:
+        return None
+    step, k = leading
+    doubted = [less for less, other in failed if other == k]
+    return _settled(planner, ranked[k][0], step, doubted, pool)
 
 
 def strengthened(
@@ -111,14 +108,14 @@ def strengthened(
         pool: Who tries.
     """
     step = _steps(share / FIRM_TORQUE)
-    for _ in range(_RISES):
-        if step > _steps(motors.most):
-            break
+    failed: list[int] = []
+    while len(failed) < _RISES and step <= _steps(motors.most):
         end = motors.attempt(planner, _ratio(motors, step))
         if isinstance(end, Solved):
-            return _settled(planner, motors, step, pool)
-        if not end.weak:
-            break
+            return _settled(planner, motors, step, failed, pool)
+        if motors.quantity != f"{end.weak} torque":
+            break  # others are too weak, or something else is missing
+        failed.append(step)
         # A path that takes more than there is tells how much it would need.
         step = max(step + 1, _steps(_ratio(motors, step) * end.share / FIRM_TORQUE))
     return None
@@ -130,24 +127,31 @@ def alone(planner: PathPlanner, candidate: Candidate, ratio: float, pool: Execut
     Searches that stand in for planning may have missed it.
     """
     step = _steps(ratio)
-    if not candidate.feasible(planner, _ratio(candidate, step)):
+    if not candidate.feasible(planner, _ratio(candidate, step), pool):
         return None
-    return _settled(planner, candidate, step, pool)
+    return _settled(planner, candidate, step, (), pool)
 
 
-def _settled(planner: PathPlanner, candidate: Candidate, step: int, pool: Executor) -> Cause | None:
+def _settled(
+    planner: PathPlanner, candidate: Candidate, step: int, doubted: Iterable[int], pool: Executor
+) -> Cause | None:
     """The step between a plan and none, looked for from one with which there is a plan.
 
-    Within torques, where all of planning takes several times as long as one attempt, the attempts
-    that had a plan with a little more tell where it may be; there all of planning is asked.
+    All of planning takes several times as long as one attempt: the attempts that had a plan with a
+    little more tell where it may be, and there all of planning is asked. Steps that are `doubted`
+    did not lead to a plan at the first attempt.
     """
 
-    def works(asked: tuple[int, bool]) -> bool:
-        step, settles = asked
-        ask = candidate.feasible if settles else candidate.feasible_likewise
-        return ask(planner, _ratio(candidate, step))
+    def works(one: tuple[int, bool]) -> bool:
+        step, settles = one
+        if not settles:
+            return candidate.feasible_likewise(planner, _ratio(candidate, step))
+        helpers = pool if len(asked) == 1 else in_this_thread()  # which is one of the pool's
+        return candidate.feasible(planner, _ratio(candidate, step), helpers)
 
-    bracket = Bracket(_steps(candidate.most), hasty=planner.torques)
+    bracket = Bracket(_steps(candidate.most))
+    for less in doubted:
+        bracket.tell(less, works=False, settled=False)
     bracket.tell(step, works=True)
     for _ in range(_LOOKS):
         asked = [(step, bracket.settles(step)) for step in bracket.next_steps()]

@@ -76,6 +76,13 @@ def _cause(
     places = list(blocked.stops)
     if not _whole(planner, places) and leads_past(planner, places):
         places.clear()  # some poses there lead on, but no way leads to them
+    if blocked.opened and leads_past(planner, places):
+        # Searches come through with whatever is changed, and as it is: plans alone tell what lacks.
+        meanwhile()
+        grip, *candidates = candidates
+        answer = confirmed(planner, [(grip, 1.0 + CLOSE)], places, pool)
+        if isinstance(answer, Cause):
+            return answer
     for _ in range(_ASKED):
         ranked, answer = _answered(planner, candidates, places, pool, meanwhile)
         if answer is not None:

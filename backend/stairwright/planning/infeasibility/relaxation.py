@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
@@ -16,7 +17,6 @@ from stairwright.planning.path_planner import PathPlanner, path_planner
 from stairwright.planning.smoothing.node_margins import JOINTS, Motor
 from stairwright.planning.standing import NoStandingPose
 from stairwright.planning.strategy import AT_ONCE, quick, solve
-from stairwright.planning.threads import in_this_thread
 from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 
@@ -77,16 +77,16 @@ class Candidate:
         """What comes of a quick attempt at a plan with the quantity changed so."""
         return self._planned(planner, ratio, quick)
 
-    def feasible(self, planner: PathPlanner, ratio: float) -> bool:
+    def feasible(self, planner: PathPlanner, ratio: float, pool: Executor) -> bool:
         """Whether all of planning, asked anew with the quantity changed so, has a plan."""
         above = self._outcomes_above(ratio)
-        likely = [how for (how, _), end in above.items() if isinstance(end, Solved)]
+        likely = [how for how, end in above.items() if isinstance(end, Solved)]
         # Motors that are too weak for a path are so with less torque.
         weak = self.kind == "torque" and _weak(above.get((AT_ONCE, False)))
 
         def ask(changed: PathPlanner) -> Solved | Blocked:
             asked = changed.within_torques if weak else changed.regardless
-            return solve(asked, in_this_thread(), any_path=True, likely=likely)
+            return solve(asked, pool, any_path=True, likely=likely)
 
         return isinstance(self._planned(planner, ratio, ask), Solved)
 

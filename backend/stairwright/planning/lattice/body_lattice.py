@@ -61,11 +61,9 @@ class Bounds(NamedTuple):
 # the lattice may take from a pose that is really possible (loose: smoothing must repair it); or so
 # much less that a search without success settles the matter (loosest; smoothing repairs many of its
 # finds, and sooner than a finer lattice would spare it the work); or what lies between (looser).
-# Where the bare bounds of lattice poses (exact) leave a path, 19 of 20 become plans.
 STRICT = Bounds(
     trunk=0.006, links=0.006, legs=_core.LEGS_GAP, reach=0.003, thigh=0.0, com=0.005, torque=0.95
 )
-EXACT = Bounds(0.0, 0.0, 0.0, 0.0, 0.0, com=0.0, torque=1.0)
 LOOSE = Bounds(
     trunk=-0.003, links=-0.003, legs=-0.003, reach=0.0, thigh=-0.02, com=-0.01, torque=1.1
 )
