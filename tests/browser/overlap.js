@@ -25,10 +25,11 @@
   }
   for (let a = 0; a < items.length; a++) for (let b = a + 1; b < items.length; b++) {
     const [p, q] = [items[a], items[b]];
+    const w = Math.min(p.r.right, q.r.right) - Math.max(p.r.left, q.r.left), h = Math.min(p.r.bottom, q.r.bottom) - Math.max(p.r.top, q.r.top);
+    if (w <= 1.5 || h <= 2.5) continue;
     if (p.e.contains(q.e) || q.e.contains(p.e)) continue;
     if (p.e.closest('.tag, .hint, .panel, dialog, .toast') !== q.e.closest('.tag, .hint, .panel, dialog, .toast')) continue;
-    const w = Math.min(p.r.right, q.r.right) - Math.max(p.r.left, q.r.left), h = Math.min(p.r.bottom, q.r.bottom) - Math.max(p.r.top, q.r.top);
-    if (w > 1.5 && h > 2.5) faults.push(`overlap: ${p.text} in ${name(p.e)} / ${q.text} in ${name(q.e)}`);
+    faults.push(`overlap: ${p.text} in ${name(p.e)} / ${q.text} in ${name(q.e)}`);
   }
   // What floats may let the pointer through to the drawing, but not to what it hides.
   const through = [...document.querySelectorAll('.through')];

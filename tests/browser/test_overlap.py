@@ -267,6 +267,7 @@ def test_the_other_workspaces_have_no_overlaps(product: Product, key: str, room:
 def test_a_lost_connection_has_no_overlaps(product: Product) -> None:
     """Where a corner is in hand and there is no way, too: all of that floats over the canvas."""
     page = product.page
+    product.choose_terrain("ramp-1-8")  # that there is no way is soon known
     field = page.get_by_label("Friction coefficient")
     field.fill("0.1")
     field.press("Enter")
