@@ -13,6 +13,7 @@ from stairwright.library import load_robot, load_terrain
 from stairwright.planning.certificate.tolerance.checks import NAMES
 
 CURB = {"name": "curb", "points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]], "friction": 0.6}
+STAIR = "single-stair-030"
 STAIRS = {
     "points": [[-1.5, 0], [0, 0], [0, 0.18], [0.28, 0.18], [0.28, 0.36], [0.56, 0.36],
                [0.56, 0.54], [2.0, 0.54]],
@@ -60,7 +61,7 @@ def test_friction_alone_is_planned_for() -> None:
 
 @pytest.mark.slow
 def test_too_much_is_told() -> None:
-    plan = sw.plan(STAIRS, "a1_wheeled", tolerance={"height": 0.05, "place": 0.06})
+    plan = sw.plan(STAIR, "a1_wheeled", tolerance={"height": 0.05, "place": 0.06})
     assert plan.status == "infeasible"
     problem = plan.problem
     assert problem is not None
@@ -69,7 +70,7 @@ def test_too_much_is_told() -> None:
     assert problem.limit.needed == 1.0
     assert 0.0 <= problem.limit.available < 1.0
     assert 0.0 <= problem.at[0] <= 0.6
-    assert sw.plan(STAIRS, "a1_wheeled").feasible
+    assert sw.plan(STAIR, "a1_wheeled").feasible
 
 
 @pytest.mark.slow

@@ -66,7 +66,7 @@ def test_the_torque_that_is_named_is_enough_and_little_less_is_not(motor, part):
         changed = sw.load_robot("b2w").model_dump()
         for name in names:
             changed["actuators"][name]["torque"] *= weak * ratio * share
-        feasible.append(sw.plan("single-stair-036", changed).feasible)
+        feasible.append(sw.plan("single-stair-036", changed, diagnose=False).feasible)
     assert feasible == [True, True, False]
     assert data["actuators"][part]["torque"] < limit.needed
 
