@@ -282,7 +282,7 @@ def _dies_at(process: subprocess.Popen[bytes], path: Path, cells: int) -> bool:
             process.kill()
             process.wait()
             return True
-        time.sleep(0.05)
+        time.sleep(0.1)  # looking is work, too
     return False
 
 
