@@ -68,6 +68,7 @@ NEXT_FRAME = """() => {
 
 
 def test_a_slow_scene_waits_until_the_hand_rests(page: Page) -> None:
+    page.set_viewport_size({"width": 1024, "height": 640})  # draws the scene with less work
     product = Product(page, scene=True).open()
     frame = page.frame_locator("iframe").first
     frame.locator("canvas").first.wait_for(state="attached", timeout=PATIENCE)
