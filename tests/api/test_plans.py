@@ -8,7 +8,7 @@ import pytest
 import stairwright as sw
 
 CURB = {"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
-WALL = {"points": [[-1.0, 0], [0, 0], [0, 3], [1, 3]]}
+WALL = {"points": [[-1.0, 0], [0, 0], [0, 1.3], [1, 1.3]]}
 
 
 def test_a_plan_is_solved_stored_and_found_again(api: httpx.Client) -> None:

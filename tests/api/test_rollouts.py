@@ -15,7 +15,7 @@ from stairwright.terrain.profile import Terrain
 from tests.conftest import Server
 
 CURB = {"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
-WALL = {"points": [[-1.0, 0], [0, 0], [0, 3], [1, 3]]}
+WALL = {"points": [[-1.0, 0], [0, 0], [0, 1.3], [1, 1.3]]}
 
 
 @pytest.fixture(scope="module")

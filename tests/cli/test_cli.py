@@ -22,7 +22,7 @@ from stairwright.library import robots, terrains
 from stairwright.resources import data_folder
 
 CURB = '{"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}'
-WALL = '{"points": [[-1.0, 0], [0, 0], [0, 3], [1, 3]]}'
+WALL = '{"points": [[-1.0, 0], [0, 0], [0, 1.3], [1, 1.3]]}'
 
 
 def run(*arguments: str | Path, status: int = 0) -> str:

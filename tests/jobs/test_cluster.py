@@ -39,7 +39,7 @@ from tests.conftest import Server
 pytestmark = pytest.mark.slow  # a cluster of processes takes seconds to start
 
 CURB = {"name": "curb", "points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
-WALL = {"name": "wall", "points": [[-1.0, 0], [0, 0], [0, 3.0], [1, 3.0]]}
+WALL = {"name": "wall", "points": [[-1.0, 0], [0, 0], [0, 1.3], [1, 1.3]]}
 
 
 @pytest.fixture(scope="module")

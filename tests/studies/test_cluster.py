@@ -36,7 +36,7 @@ from .small import STEP, identical, study
 
 def _map(*friction: float) -> dict[str, object]:
     return study(
-        {"name": "stairs.rise", "from": 0.1, "to": 0.7, "count": 5},
+        {"name": "stairs.rise", "values": [0.1, 0.2, 0.3, 0.4, 0.7]},
         {"name": "stairs.run", "values": [0.25, 0.32]},
         {"name": "friction", "values": friction},
         terrain={"kind": "stair", "rise": 0.1, "run": 0.3, "count": 1},  # soon refused
