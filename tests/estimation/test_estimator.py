@@ -223,6 +223,7 @@ def test_a_wrong_measure_of_length_is_learnt(plan: Plan) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("plan", ["a1_wheeled"], indirect=True)
 def test_the_same_seed_is_the_same_run(plan: Plan) -> None:
     one, again, other = sensed(plan, 7)[1], sensed(plan, 7)[1], sensed(plan, 8)[1]
     np.testing.assert_array_equal(one, again)
@@ -278,6 +279,7 @@ def test_a_robot_senses_by_itself_unless_its_controller_has_no_estimator() -> No
     assert parse_settings({"solver": "clarabel"}).sensing == "ideal"
 
 
+@pytest.mark.parametrize("plan", ["a1_wheeled"], indirect=True)
 def test_a_stored_run_that_tells_no_sensing_was_ideal(plan: Plan) -> None:
     document = rollout(plan, controller={"sensing": "ideal"}).model_dump(mode="json")
     del document["controller"]["sensing"]
