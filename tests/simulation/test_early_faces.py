@@ -46,6 +46,15 @@ def test_no_leg_meets_it_before_the_wheels_do(
 
 
 @pytest.mark.slow
+def test_the_trunk_goes_on_while_a_riser_holds_its_wheels() -> None:
+    """A calf that leads its wheel was laid on the edge by it, up to 6 cm on."""
+    plan = sw.plan(stair(0.176, 0.394, 4), "a1_wheeled_x", friction=0.6)
+    faces = [0.03, -0.03, 0.03, 0.03]
+    run = sw.rollout(plan, disturbance={"face_place_error": faces}, seed=3)
+    assert run.success, run.reason
+
+
+@pytest.mark.slow
 def test_an_edge_that_is_left_slowly_says_nothing_of_the_next_face() -> None:
     """Its wheels took the third riser for more tread, and pushed until they slipped."""
     plan = sw.plan(sw.load_terrain("stairs-building"), "a1_wheeled", friction=0.6)
@@ -57,4 +66,13 @@ def test_an_edge_that_is_left_slowly_says_nothing_of_the_next_face() -> None:
 def test_a_rear_wheel_stays_off_the_front_one_on_a_short_tread() -> None:
     plan = sw.plan(stair(0.093, 0.396, 3), "go2w", friction=0.6)
     run = sw.rollout(plan, disturbance={"face_place_error": [0.03, -0.03, -0.03]}, seed=3)
+    assert run.success, run.reason
+
+
+@pytest.mark.slow
+def test_an_edge_that_comes_early_does_not_tip_what_stands_on_it() -> None:
+    """Front wheels carried all but a few newtons when they were over it, the second one down."""
+    plan = sw.plan(stair(0.179, 0.3635, 3, direction="down"), "go2w", friction=0.6)
+    faces = [0.03, -0.03, -0.03, -0.03, 0.03, -0.03]
+    run = sw.rollout(plan, disturbance={"face_place_error": faces}, seed=3)
     assert run.success, run.reason

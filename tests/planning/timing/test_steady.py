@@ -16,7 +16,7 @@ def shares(plan: sw.Plan, torque: float) -> np.ndarray:
 
 def test_motion_fits_beside_standing() -> None:
     data = sw.load_robot("a1_wheeled").model_dump()
-    data["actuators"]["leg"]["torque"] *= 0.31
+    data["actuators"]["leg"]["torque"] *= 0.30
     weak = sw.Robot.model_validate(data)
     plan = sw.plan("stairs-us-7-11", weak, friction=0.6)
     effort = shares(plan, weak.torque_limits[0, 0])
