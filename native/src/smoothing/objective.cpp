@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "early_faces.hpp"
 #include "residuals.hpp"
 #include "stairwright/smoothing/densify.hpp"
 #include "stairwright/smoothing/resample.hpp"
 #include "stairwright/whole.hpp"
+#include "surprises.hpp"
 
 namespace stairwright::smoothing {
 
@@ -19,7 +19,7 @@ constexpr double kTrunkClearance = 0.06;   // m of trunk clearance beyond which 
 // Of the cost terms at a user's weight of 1, per node.
 constexpr double kComWeight = 15.0;     // 1/m
 constexpr double kRoomWeight = 2.0;     // 1/m, of trunk and links
-constexpr double kEarlyWeight = 100.0;  // 1/m, of clearance where faces come early; nobody weighs that
+constexpr double kSurpriseWeight = 100.0;  // 1/m, of clearance where the ground is not as drawn; nobody weighs that
 constexpr double kTorqueWeight = 0.3;
 constexpr double kPitchWeight = 0.05;   // 1/rad
 constexpr double kRateWeight = 20.0;    // 1/m^2, of the squared step from node to node
@@ -61,7 +61,7 @@ Objective objective(const RefineProblem& problem, const NodeSpacing& spacing, do
     o.reach = MarginTerm{0.006 * size, 150.0 * root, 0.0005}.with(more.reach);
     const double room = kRoomWeight * root * std::sqrt(w.clearance);
     o.trunk_room = MarginTerm{kTrunkClearance * size, room}.with(more.trunk);
-    o.early = {safe, kEarlyWeight * root};
+    o.surprised = {safe, kSurpriseWeight * root};
     o.links_room = {calf_end_clearance(problem.robot, safe), room};
     o.torque_weight = kTorqueWeight * root * std::sqrt(w.torque);
     o.torque_room = {0.2, 8.0 * root, kFirmTorque};
@@ -89,13 +89,13 @@ PathCost path_cost(const RefineProblem& problem, std::span<const Node> path) {
     const auto [wheels, contacts, slopes, bodies] = geometry_along(problem.path, nodes);
     const double share = u.back() / static_cast<double>(count - 1) / kUsualSpacing;
     const Objective o = objective(problem, spacing, share);
-    const std::vector<std::array<double, 2>> early = early_faces(problem, nodes, intervals);
-    const SmoothingProblem at{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, {}, early, {}, o};
+    const std::vector<std::array<Surprise, 2>> met = surprises(problem, nodes, intervals);
+    const SmoothingProblem at{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, {}, met, {}, o};
     std::vector<Residuals> rows;
     PathCost out;
     for (std::size_t k = 0; k < count; ++k) {
         const PoseGeometry geometry = pose_geometry(problem.terrain, problem.robot, bodies[k], wheels[k], query_radii(o));
-        rows.push_back(residuals(at, k, bodies[k], geometry, early_clearances(at, k, bodies[k], geometry.posture)));
+        rows.push_back(residuals(at, k, bodies[k], geometry, surprise_clearances(at, k, bodies[k], geometry.posture)));
         for (const double r : rows.back()) out.total += r * r;
     }
     std::vector<double> gradient(3 * count);

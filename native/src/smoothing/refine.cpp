@@ -4,12 +4,12 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "early_faces.hpp"
 #include "stairwright/smoothing/densify.hpp"
 #include "stairwright/smoothing/objective.hpp"
 #include "stairwright/smoothing/resample.hpp"
 #include "stairwright/smoothing/smoothing.hpp"
 #include "stairwright/whole.hpp"
+#include "surprises.hpp"
 
 namespace stairwright::smoothing {
 
@@ -118,8 +118,8 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
     std::vector<std::vector<WheelLoads>> loads;
     if (problem.torques)
         loads = loads_along(problem.path, nodes, changes, problem.friction, problem.lag, problem.robot.mass * kGravity);
-    const std::vector<std::array<double, 2>> early = early_faces(problem, nodes, intervals);
-    const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, loads, early, fixed,
+    const std::vector<std::array<Surprise, 2>> met = surprises(problem, nodes, intervals);
+    const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, loads, met, fixed,
                                      objective(problem, spacing, hop / kUsualSpacing)};
     smooth(smoothing, bodies, kIterations, spacing.thorough);
     for (std::size_t k = 0; k < n; ++k) nodes[k].body = bodies[k];

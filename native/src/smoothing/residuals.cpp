@@ -77,7 +77,7 @@ QueryRadii query_radii(const Objective& o) {
 }
 
 Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry,
-                    const EarlyClearances& early) {
+                    const SurpriseClearances& surprised) {
     const Objective& o = problem.objective;
     const NodeIntervals& interval = problem.intervals[node];
     const double x = geometry.posture.com.x;
@@ -92,7 +92,7 @@ Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Bod
     r[kReach] = hinge(geometry.posture.reach_slack, o.reach, o.hard);
     r[kTrunkRoom] = shortfall(geometry.trunk, o.trunk_room);
     r[kLinksRoom] = shortfall(geometry.links, o.links_room);
-    for (std::size_t k = 0; k < early.size(); ++k) r[kEarlyFrontThigh + k] = shortfall(early[k], o.early);
+    for (std::size_t k = 0; k < surprised.size(); ++k) r[kSurprisedFrontThigh + k] = shortfall(surprised[k], o.surprised);
     const auto& [front, rear] = problem.wheels[node];
     r[kPitch] = (body.pitch + o.slope_share * problem.slopes[node]) * o.pitch_weight;
     r[kHeight] = (body.z - 0.5 * (front.z + rear.z) - o.height) * o.height_weight;
@@ -110,10 +110,10 @@ NodeJacobian differentiate(const SmoothingProblem& problem, std::size_t node, co
     const QueryRadii radii = query_radii(problem.objective);
     NodeJacobian out;
     PoseGeometry moved = geometry;
-    const auto* early_at = &at[kEarlyFrontThigh];
-    const bool pressed = std::any_of(early_at, early_at + EarlyClearances{}.size(), [](double r) { return r > 0.0; });
-    EarlyClearances early;
-    early.fill(problem.objective.early.target);
+    SurpriseClearances surprised;
+    surprised.fill(problem.objective.surprised.target);
+    const auto* lacks = &at[kSurprisedFrontThigh];
+    const bool pressed = std::any_of(lacks, lacks + surprised.size(), [](double r) { return r > 0.0; });
     for (std::size_t a = 0; a < 3; ++a) {
         Body x = body;
         x.*axes[a] += kStep;
@@ -124,8 +124,8 @@ NodeJacobian differentiate(const SmoothingProblem& problem, std::size_t node, co
         if (at[kLinks] > 0.0 || at[kLinksRoom] > 0.0) 
             moved.links = links_clearance(problem.terrain, problem.robot, moved.posture, radii.links, geometry.by_link);
         if (at[kLegs] > 0.0) moved.legs = legs_distance(problem.robot, moved.posture.legs);
-        if (pressed) early = early_clearances(problem, node, x, moved.posture);
-        const Residuals r = residuals(problem, node, x, moved, early);
+        if (pressed) surprised = surprise_clearances(problem, node, x, moved.posture);
+        const Residuals r = residuals(problem, node, x, moved, surprised);
         for (int m = 0; m < kResiduals; ++m) out[a][m] = (r[m] - at[m]) * (1.0 / kStep);
     }
     return out;

@@ -1,7 +1,7 @@
 // Residuals of one node, and their derivatives by finite differences.
 #pragma once
 
-#include "early_faces.hpp"
+#include "surprises.hpp"
 #include "stairwright/smoothing/smoothing.hpp"
 
 namespace stairwright::smoothing {
@@ -10,7 +10,7 @@ namespace stairwright::smoothing {
 enum Residual {
     kComLow, kComHigh, kReserveLow, kReserveHigh, kLaggedLow, kLaggedHigh,
     kTrunk, kLinks, kLegs, kJoints, kReach, kTrunkRoom, kLinksRoom,
-    kEarlyFrontThigh, kEarlyFrontCalf, kEarlyFrontTrunk, kEarlyRearThigh, kEarlyRearCalf, kEarlyRearTrunk,
+    kSurprisedFrontThigh, kSurprisedFrontCalf, kSurprisedFrontTrunk, kSurprisedRearThigh, kSurprisedRearCalf, kSurprisedRearTrunk,
     kFrontThighLimit, kFrontCalfLimit, kFrontWheelLimit, kRearThighLimit, kRearCalfLimit, kRearWheelLimit,
     kPitch, kHeight, kFrontThigh, kFrontCalf, kRearThigh, kRearCalf, kResiduals,
 };
@@ -22,7 +22,7 @@ using NodeJacobian = std::array<Residuals, 3>;  // by x, z, pitch
 QueryRadii query_radii(const Objective& objective);  // nothing farther away pulls [m]
 
 Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Body& body, const PoseGeometry& geometry,
-                    const EarlyClearances& early);
+                    const SurpriseClearances& surprised);
 NodeJacobian differentiate(const SmoothingProblem& problem, std::size_t node, const Body& body,
                            const PoseGeometry& geometry, const Residuals& at);
 // Residuals of a node that has moved a little from where `at` and `jacobian` were computed.

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "early_faces.hpp"
 #include "residuals.hpp"
 
 namespace stairwright::smoothing {
@@ -97,7 +96,7 @@ class Smoother {
             fresh_[k] = has_moved(nodes_[k], seen_[k].body);
             if (fresh_[k]) {
                 geometry_[k] = pose_geometry(problem_.terrain, problem_.robot, nodes_[k], problem_.wheels[k], radii_);
-                residuals_[k] = residuals(problem_, k, nodes_[k], geometry_[k], early_clearances(problem_, k, nodes_[k], geometry_[k].posture));
+                residuals_[k] = residuals(problem_, k, nodes_[k], geometry_[k], surprise_clearances(problem_, k, nodes_[k], geometry_[k].posture));
             } else {
                 residuals_[k] = extrapolate(seen_[k].residuals, seen_[k].jacobian, seen_[k].body, nodes_[k]);
             }

@@ -29,7 +29,7 @@ struct Objective {
     MarginTerm trunk, links, legs;  // clearances [m]
     MarginTerm joints;              // joint ranges [rad]
     MarginTerm reach;               // hip-wheel distances [m]
-    MarginTerm early;               // clearances where the next face comes early [m]
+    MarginTerm surprised;           // clearances where the ground is not as drawn [m]
     MarginTerm trunk_room, links_room;  // clearances beyond what is safe [m]
     double torque_weight = 0.0;     // of each leg joint's torque over its limit
     MarginTerm torque_room;         // of each motor, as a share of its torque; where loads are known
@@ -42,6 +42,13 @@ struct Objective {
     Evenness evenness;
 };
 
+// Ground that wheels may meet other than drawn.
+struct Surprise {
+    enum Kind { none, early_face, other_tread } kind = none;
+    double gap = 0.0;  // to an early face, as far as it may be early [m]
+    Vec2 edge;         // above the other tread
+};
+
 struct SmoothingProblem {
     const Terrain& terrain;
     const RobotModel& robot;
@@ -50,7 +57,7 @@ struct SmoothingProblem {
     std::span<const double> slopes;          // of the lines from the rear to the front wheels [rad]
     std::span<const NodeIntervals> intervals;
     std::span<const std::vector<WheelLoads>> loads;  // by node, see loads_along, where motors are weak; else empty
-    std::span<const std::array<double, 2>> early;     // by node, see early_faces [m]
+    std::span<const std::array<Surprise, 2>> surprises;  // by node, see surprises
     std::vector<bool> fixed;  // nodes that must not move
     Objective objective;
 };
