@@ -9,8 +9,6 @@ import { marks, shareOf } from "./axis";
 
 /** The drawing is stretched to the width of the axis. */
 const WIDTH = 1000;
-/** A stretch shorter than this share of the axis has no room for its name. */
-const NAMED = 0.085;
 
 interface Profile {
   limits: readonly string[];
@@ -72,7 +70,7 @@ function Band({ at, limits }: Profile) {
             class={`limit ${name}`}
             style={{ left: `${edge(from) * 100}%`, width: `${width * 100}%` }}
           >
-            {width > NAMED && <span>{limitTitle(name)}</span>}
+            <span>{limitTitle(name)}</span>
           </i>
         );
       })}
