@@ -44,7 +44,7 @@ def _stem() -> subprocess.Popen[str]:
 
 def _import_all() -> None:
     """Starts no thread: none would be there after a fork."""
-    import alembic.command
+    import alembic.command  # noqa: F401
     import uvicorn.lifespan.on
     import uvicorn.loops.auto
     import uvicorn.protocols.http.httptools_impl
