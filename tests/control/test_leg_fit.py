@@ -101,7 +101,7 @@ def test_a_leg_that_climbs_a_face_that_came_early_keeps_off_its_edge() -> None:
     plan = sw.plan("stairs-us-7-11", "a1_wheeled_x", 0.6)
     robot = plan.robot_description
     path, rows = climbing(plan)
-    off = np.array([[-0.05, 0.0], [0.03, 0.0]])
+    off = np.array([[-0.045, 0.0], [0.03, 0.0]])
     with_load, fit = [], []
     for row in rows[::8]:
         share = row[FORCES][1] / (row[FORCES][1] + row[FORCES][3])
@@ -111,5 +111,5 @@ def test_a_leg_that_climbs_a_face_that_came_early_keeps_off_its_edge() -> None:
         moved[JOINTS] = kinematics.inverse(robot, x, z, row[PITCH], wheels(robot, row) + off)
         with_load.append(room(plan, moved, off[0]))
         fit.append(room(plan, fitted(robot, row, off, path), off[0]))
-    assert min(fit) > max(0.0035, min(with_load) + 0.002)
+    assert min(fit) > max(0.004, min(with_load) + 0.002)
     assert np.all(np.array(fit) > np.array(with_load) - 1e-6)
