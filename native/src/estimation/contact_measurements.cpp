@@ -21,7 +21,6 @@ constexpr double kLevel = 0.95;        // cosine of the slope of a face on which
 constexpr double kMissed = 0.004;       // m put back: the face is not where the map has it
 constexpr double kSearchNoise = 0.01;   // m^2 of variance for a metre that a face is farther on
 constexpr double kSame = 1e-6;          // m
-constexpr double kBounce = 0.1;          // s after a wheel has met a face in which its tyre gives way and comes back
 constexpr double kGivesWay = 4.0;       // of the variance of a place meanwhile: some millimetres
 constexpr double kGate = 9.0;           // of a normalised innovation squared
 
@@ -59,9 +58,11 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
         if (dot(wheels_[i].felt, n) < wheels_[i].force_deviation) return;  // it only seems to be there
         if (n.x < 0.0) wheels_[i].met = nearest_corner(on.s);  // down a face it is the tread below that is to be felt
     }
+    const bool passed = on.beyond != 0 && on.blocked;
+    if (passed && on.piece + 1 == wheels_[i].low_edge) return;  // it may be on that edge, which is lower than drawn
     covariance_.update(row(n), dot(n, off), variance, error);
     if (path_.pieces()[on.piece].arc) measure_turn(i, n, row({n.z, -n.x}), dt, error);
-    if (on.beyond == 0 || !on.blocked || on.piece + 1 == wheels_[i].low_edge) return;
+    if (!passed) return;
     const Vec2 t = {n.z, -n.x};
     if (std::abs(wheels_[i].met - nearest_corner(on.s)) < kSame) {  // no news of a face that it has felt
         covariance_.update(row(t), dot(t, off), variance, error);

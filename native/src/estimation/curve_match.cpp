@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "faces.hpp"
 
@@ -45,19 +46,22 @@ double most_likely(const Piece& line, const WheelBelief& w) {
     return dot(q, e) / dot(q, t);
 }
 
+// How far before its begin an arc may go on: an edge up that a corner cuts off may be higher than drawn [m].
+double below(const Piece& arc, double radius) { return radius * std::max(0.0, std::numbers::pi - std::max(arc.a, 0.5 * std::numbers::pi)); }
+
 // Round an edge the direction of the force tells the place, too.
-double most_likely_on_arc(const Piece& arc, const WheelBelief& w, double radius) {
-    double best = std::numeric_limits<double>::infinity(), found = 0.0, step = arc.length / kArcSteps;
+double most_likely_on_arc(const Piece& arc, const WheelBelief& w, double begin, double radius) {
+    double best = std::numeric_limits<double>::infinity(), found = 0.0, step = (arc.length - begin) / kArcSteps;
     const auto look = [&](double d) {
         const CurvePoint at = arc.at(d, radius);
         const double value = w.spread.distance(w.centre - at.centre) + face_cost(w, at.normal);
         if (value < best) best = value, found = d;
     };
-    for (int k = 0; k <= kArcSteps; ++k) look(k * step);
+    for (int k = 0; k <= kArcSteps; ++k) look(begin + k * step);
     for (int k = 0; k < 5; ++k) {
         step *= 0.5;
         const double at = found;
-        look(std::max(0.0, at - step)), look(std::min(arc.length, at + step));
+        look(std::max(begin, at - step)), look(std::min(arc.length, at + step));
     }
     return found;
 }
@@ -78,11 +82,13 @@ CurveMatch match(const WheelPath& path, const WheelBelief& wheel, double last, d
         const bool first = k == 0, end = k + 1 == pieces.size();
         if ((piece.s + piece.length < lower && !end) || (piece.s > upper && !first)) continue;
         const WheelBelief& believed = k >= wheel.unsure && k < wheel.unsure + wheel.unsure_count ? unsure : wheel;
-        double d = piece.arc ? most_likely_on_arc(piece, believed, path.radius()) : most_likely(piece, believed);
+        const bool cut = piece.arc && std::ranges::binary_search(path.corners(), piece.s);
+        const double begin = first ? -1e9 : cut ? -below(piece, path.radius()) : 0.0;
+        double d = piece.arc ? most_likely_on_arc(piece, believed, begin, path.radius()) : most_likely(piece, believed);
         const double free = d;
-        d = std::clamp(d, first ? -1e9 : 0.0, end ? 1e9 : piece.length);
+        d = std::clamp(d, begin, end ? 1e9 : piece.length);
         CurveMatch found;
-        found.piece = k, found.s = piece.s + d, found.point = piece.at(d, path.radius());
+        found.piece = k, found.s = piece.s + (cut ? std::max(d, 0.0) : d), found.point = piece.at(d, path.radius());
         found.before = found.after = found.point.normal;
         found.beyond = free > d + kEnd ? 1 : free < d - kEnd ? -1 : 0;
         if (found.beyond != 0 && k + found.beyond < pieces.size()) {

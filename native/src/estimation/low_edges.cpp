@@ -46,9 +46,11 @@ std::size_t Estimator::next_edge(const std::vector<std::size_t>& edges, const Wh
     return kNoPiece;
 }
 
-// Up an edge that is there a wheel feels it, and measures it.
+// Up an edge that is there a wheel feels it, and measures it. The corner at the foot of one that leads down lies the nearer to
+// it the lower that is.
 bool Estimator::over_low_edge(const WheelState& w, const CurveMatch& on) const {
-    if (w.low_edge == kNoPiece || on.corner) return false;
+    if (w.low_edge == kNoPiece) return false;
+    if (on.corner) return !leads_up(w.low_edge) && on.s > path_.pieces()[w.low_edge].s && on.s <= path_.pieces()[w.low_edge + 1].s;
     return on.piece == w.low_edge + 1 || (on.piece == w.low_edge && !leads_up(on.piece));
 }
 

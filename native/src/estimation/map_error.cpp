@@ -155,6 +155,20 @@ void Estimator::recall(WheelState& rear) {
     if (news) correct(error);
 }
 
+// Where all four wheels are on one tread, past the same face, what it is off is the same for both pairs.
+void Estimator::stand_on_one_piece() {
+    const std::size_t piece = wheels_[0].clear;
+    if (std::ranges::any_of(wheels_, [&](const WheelState& w) { return w.clear != piece; })) {
+        shared_ = 0;
+    } else if (shared_ != piece && !is_face(piece)) {
+        shared_ = piece;
+        Error error{}, row{};
+        row[kFrontOffset] = 1.0, row[kRearOffset] = -1.0;
+        covariance_.update(row, offset_[1].x - offset_[0].x, kRecalled * kRecalled, error);
+        correct(error);
+    }
+}
+
 Vec2 Estimator::correct_map(WheelPath path, const MapError& found) {
     const Vec2 by = found.off;
     // A face is moved by itself, with a tread all that is behind it.

@@ -168,6 +168,7 @@ class Estimator {
     void believe_map(std::size_t face);
     void pass(std::size_t face);
     void recall(WheelState& rear);
+    void stand_on_one_piece();
     bool rear_knows(double s, bool face) const;
     std::size_t face_or_tread(double s, bool face) const;  // the piece nearest to the place `s`
     bool is_face(std::size_t piece) const;
@@ -199,6 +200,7 @@ class Estimator {
     std::array<Vec2, 2> offset_{};
     double scale_ = 0.0;
     bool started_ = false;
+    std::size_t shared_ = 0;  // the piece of the curve that all wheels have been on since they came to it, 0 for none
     double contradicted_ = 0.0;  // for how long by all wheels that touch [s]
     Covariance covariance_;
     std::array<WheelState, 4> wheels_;
