@@ -21,6 +21,7 @@ constexpr double kLevel = 0.95;        // cosine of the slope of a face on which
 constexpr double kMissed = 0.004;       // m put back: the face is not where the map has it
 constexpr double kSearchNoise = 0.01;   // m^2 of variance for a metre that a face is farther on
 constexpr double kSame = 1e-6;          // m
+constexpr double kBounce = 0.1;          // s after a wheel has met a face in which its tyre gives way and comes back
 constexpr double kGivesWay = 4.0;       // of the variance of a place meanwhile: some millimetres
 constexpr double kGate = 9.0;           // of a normalised innovation squared
 
@@ -55,11 +56,13 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
     }
     const Vec2 n = on.point.normal;
     if (n.z < kTread) {
-        if (dot(wheels_[i].felt, n) < wheels_[i].force_deviation) return;  // it only seems to be there
+        // Less only seems to be one; the leg of a wheel that has just landed swings, and feels one behind it, too.
+        const bool swings = n.x > 0.0 && wheels_[i].landed < kBounce;
+        if (dot(wheels_[i].felt, n) < (swings ? noise_.force * weight_ : wheels_[i].force_deviation)) return;
         if (n.x < 0.0) wheels_[i].met = nearest_corner(on.s);  // down a face it is the tread below that is to be felt
     }
     const bool passed = on.beyond != 0 && on.blocked;
-    if (passed && on.piece + 1 == wheels_[i].low_edge) return;  // it may be on that edge, which is lower than drawn
+    if (passed && wheels_[i].low_edge && on.piece + 1 == wheels_[i].low_edge->first) return;  // it may be on that edge, which is lower than drawn
     covariance_.update(row(n), dot(n, off), variance, error);
     if (path_.pieces()[on.piece].arc) measure_turn(i, n, row({n.z, -n.x}), dt, error);
     if (!passed) return;

@@ -18,7 +18,7 @@ constexpr double kBend = 0.1;          // sine of the turn from one tread to the
 // The face or tread that a wheel is on clear of others, or the edge up that is lower than it; kNoPiece if there is none.
 std::size_t Estimator::clear_on(const WheelState& w, const CurveMatch& on) const {
     if (on.corner) return kNoPiece;
-    if (on.piece == w.low_edge && leads_up(on.piece)) return on.piece;
+    if (w.low_edge && w.low_edge->first <= on.piece && on.piece <= w.low_edge->last) return w.low_edge->up ? w.low_edge->last : kNoPiece;
     const std::size_t at = face_below(on.piece);
     if (at == kNoPiece || is_low_drop(at)) return kNoPiece;
     const Piece& piece = path_.pieces()[at];
@@ -41,7 +41,7 @@ void Estimator::enter_face(int i, const CurveMatch& on) {
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
     const double height = noise_.tread_height * noise_.tread_height, place = 0.5 * noise_.face_place * noise_.face_place;
     const std::size_t passed = last_face(w.clear_before, at);  // it may be too short for a wheel to be clear on
-    if (at == w.low_edge) {
+    if (w.low_edge && at == w.low_edge->last) {
         covariance_.add_noise(own + 1, height);
     } else if (is_face(at)) {
         // It may end higher or lower than drawn: down one that leans, farther on or back as well.

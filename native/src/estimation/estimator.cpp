@@ -60,7 +60,7 @@ const Estimate& Estimator::step(const Readings& readings, double dt) {
     for (WheelState& w : wheels_) w.missed = w.contradicts = false;
     for (int i = 0; i < 4; ++i) measure(i, readings, dt);
     for (int i = 2; i < 4; ++i) recall(wheels_[i]);
-    stand_on_one_piece();
+    come_to_landing();
     // One wheel that has found the face is enough: a robot that comes obliquely does not touch with both.
     for (int pair = 0; pair < 2; ++pair) estimate_.searching[pair] = wheels_[2 * pair].missed && wheels_[2 * pair + 1].missed;
     started_ = true;
@@ -169,17 +169,18 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const double least = noise_.place * noise_.place;
     belief.spread.xx += least, belief.spread.zz += least;
     belief.force = w.felt, belief.traction = w.traction;
-    // At rest no acceleration mixes with the ground's force; where a wheel has just landed its leg still swings.
+    // At rest no acceleration mixes with the ground's force.
     const Vec3 spin = cross3(rate_, {w.place.x, side, w.place.z});
     const Vec3 own_speed = times(R, {spin[0] + w.rate.x, spin[1], spin[2] + w.rate.z});
     const double speed = std::hypot(velocity_[0] + own_speed[0], velocity_[2] + own_speed[2]);
-    const double motion = w.landed < kBounce ? 1.0 : kForceAtRest + (1.0 - kForceAtRest) * std::min(1.0, speed / kForceSpeed);
+    const double motion = kForceAtRest + (1.0 - kForceAtRest) * std::min(1.0, speed / kForceSpeed);
     belief.force_deviation = motion * (noise_.force * weight_ + 0.15 * norm(w.felt));
-    w.low_edge = next_edge(low_edges_, w);
-    if (w.low_edge != kNoPiece) {
-        belief.unsure = w.low_edge, belief.unsure_count = 2;  // it may be none
-    } else if (const std::size_t drop = next_edge(low_drops_, w); drop != kNoPiece) {
-        belief.unsure = drop + 1, belief.unsure_count = 1;
+    const auto low = std::ranges::find_if(low_edges_, [&](const LowEdge& edge) { return is_near(w, edge.first, edge.last); });
+    w.low_edge = low == low_edges_.end() ? std::nullopt : std::optional(*low);
+    if (w.low_edge) {
+        belief.unsure = low->first, belief.unsure_count = low->last + 2 - low->first;  // it may be none
+    } else if (const auto drop = std::ranges::find_if(low_drops_, [&](std::size_t k) { return is_near(w, k, k); }); drop != low_drops_.end()) {
+        belief.unsure = *drop + 1, belief.unsure_count = 1;
     }
     belief.unsure_height = noise_.tread_height * noise_.tread_height;
     const CurveMatch on = match(path_, belief, w.s, kWindow);

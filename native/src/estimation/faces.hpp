@@ -7,7 +7,6 @@ constexpr double kTread = 0.7;         // cosine of the slope of a face that is 
 constexpr double kNearCorner = 0.006;  // m; which way a wheel rolls this near to a concave corner is open
 constexpr double kBeside = 1e-6;       // m before or past a corner, where the one or the other face is
 constexpr double kWindow = 0.12;       // m; a wheel is looked for this far from where it was
-constexpr double kBounce = 0.1;        // s after a wheel has met a face in which its tyre gives way and comes back
 constexpr double kBeyondDoubt = 3.0;   // standard deviations
 
 }  // namespace stairwright::estimation

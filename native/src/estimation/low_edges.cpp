@@ -21,46 +21,49 @@ constexpr double kBend = 0.3;     // sine of a turn; less is no more than a bend
 void Estimator::note_low_edges() {
     low_edges_.clear(), low_drops_.clear();
     const auto& pieces = path_.pieces();
-    for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
-        if (!pieces[k].arc || pieces[k + 1].arc || is_face(k + 1)) continue;
+    const auto steep = [&](std::size_t k) { return k < pieces.size() && !pieces[k].arc && is_face(k); };
+    const auto in_corner = [&](std::size_t k) { return std::ranges::binary_search(path_.corners(), pieces[k].s); };
+    for (std::size_t k = 1; k + 1 < pieces.size(); ++k) {
+        if (!pieces[k].arc) continue;
         const CurvePoint begin = pieces[k].at(0.0, path_.radius()), end = pieces[k].at(pieces[k].length, path_.radius());
-        const bool down = cross(end.normal, normal(k + 1)) > kBend;
-        const bool low = std::abs(begin.centre.z - end.centre.z) < kHeights * noise_.tread_height;
-        if (low && (down || leads_up(k))) low_edges_.push_back(k);
-        if (!low && begin.normal.z > kTread && end.normal.z < kTread && end.normal.x > 0.0) low_drops_.push_back(k);
+        LowEdge edge{k, k, begin.normal.x < -kBend};
+        if (edge.up && !in_corner(k) && steep(k - 1)) edge.first = k - 1;
+        if (!edge.up && steep(k + 1)) edge.last = k + 1;
+        const std::size_t below = edge.last + 1;
+        if (below == pieces.size() || pieces[below].arc || is_face(below)) continue;
+        const Piece& last = pieces[edge.last];
+        const CurvePoint to = last.at(last.length, path_.radius());
+        const bool cornered = edge.up ? in_corner(edge.first) : cross(to.normal, normal(below)) > kBend;
+        const bool low = std::abs(pieces[edge.first].at(0.0, path_.radius()).centre.z - to.centre.z) < kHeights * noise_.tread_height;
+        if (low && cornered) low_edges_.push_back(edge);
+        if (!low && edge.last == k && begin.normal.z > kTread && end.normal.z < kTread && end.normal.x > 0.0) low_drops_.push_back(k);
     }
-}
-
-bool Estimator::leads_up(std::size_t edge) const {
-    return std::ranges::binary_search(path_.corners(), path_.pieces()[edge].s) && normal(edge).x < -kBend;
 }
 
 bool Estimator::is_low_drop(std::size_t piece) const { return std::ranges::binary_search(low_drops_, piece); }
 
-// The one near to a wheel that is not clear of it yet.
-std::size_t Estimator::next_edge(const std::vector<std::size_t>& edges, const WheelState& w) const {
-    for (const std::size_t k : edges) {
-        const Piece &edge = path_.pieces()[k], &below = path_.pieces()[k + 1];
-        if (edge.s < w.s + kWindow && w.s < below.s + std::min(kWindow, below.length) && w.clear != k + 1) return k;
-    }
-    return kNoPiece;
+// Whether a wheel between the begin of the one piece and the end of the other one is not clear of them yet.
+bool Estimator::is_near(const WheelState& w, std::size_t first, std::size_t last) const {
+    const Piece &begin = path_.pieces()[first], &below = path_.pieces()[last + 1];
+    return begin.s < w.s + kWindow && w.s < below.s + std::min(kWindow, below.length) && w.clear != last + 1;
 }
 
 // Up an edge that is there a wheel feels it, and measures it. The corner at the foot of one that leads down lies the nearer to
 // it the lower that is.
 bool Estimator::over_low_edge(const WheelState& w, const CurveMatch& on) const {
-    if (w.low_edge == kNoPiece) return false;
-    if (on.corner) return !leads_up(w.low_edge) && on.s > path_.pieces()[w.low_edge].s && on.s <= path_.pieces()[w.low_edge + 1].s;
-    return on.piece == w.low_edge + 1 || (on.piece == w.low_edge && !leads_up(on.piece));
+    if (!w.low_edge) return false;
+    const auto [first, last, up] = *w.low_edge;
+    if (on.corner) return !up && on.s > path_.pieces()[first].s && on.s <= path_.pieces()[last + 1].s;
+    return on.piece == last + 1 || (!up && first <= on.piece && on.piece <= last);
 }
 
 // A wheel that is clear of it measures how high that tread is, of which nothing was known; but where the wheel has felt the
 // edge on its way up, the height and its place there are what that can be told from.
 void Estimator::leave_low_edge(int i, const CurveMatch& on, const Error& along_z, Vec2 centre, Error& error) {
     WheelState& w = wheels_[i];
-    if (w.low_edge == kNoPiece || w.clear != w.low_edge + 1) return;
-    const bool felt = w.clear_before == w.low_edge;
-    w.low_edge = kNoPiece;
+    if (!w.low_edge || w.clear != w.low_edge->last + 1) return;
+    const bool felt = w.clear_before == w.low_edge->last;
+    w.low_edge.reset();
     if (felt) return;
     covariance_.add_noise((i / 2 == 0 ? kFrontOffset : kRearOffset) + 1, noise_.tread_height * noise_.tread_height);
     covariance_.update(along_z, on.point.centre.z - centre.z, noise_.place * noise_.place, error);

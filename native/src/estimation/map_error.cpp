@@ -88,10 +88,12 @@ std::size_t Estimator::face_below(std::size_t piece) const {
     return std::ranges::binary_search(path_.corners(), edge.s) ? piece : kNoPiece;
 }
 
-// The last face between two pieces, `from` if there is none.
+// The last face between two pieces, `from` if there is none. That of a low edge down nothing measures.
 std::size_t Estimator::last_face(std::size_t from, std::size_t to) const {
-    for (std::size_t k = to; k > from + 1; --k)
-        if (face_below(k - 1) == k - 1 && is_face(k - 1)) return k - 1;
+    for (std::size_t k = to; k > from + 1; --k) {
+        const auto down = [&](const LowEdge& edge) { return !edge.up && edge.first <= k - 1 && k - 1 <= edge.last; };
+        if (face_below(k - 1) == k - 1 && is_face(k - 1) && std::ranges::none_of(low_edges_, down)) return k - 1;
+    }
     return from;
 }
 
@@ -155,18 +157,17 @@ void Estimator::recall(WheelState& rear) {
     if (news) correct(error);
 }
 
-// Where all four wheels are on one tread, past the same face, what it is off is the same for both pairs.
-void Estimator::stand_on_one_piece() {
+// Where all four wheels are on the landing, past the last face, what that is off is the same for both pairs. Before, front wheels
+// may have news of the face ahead already.
+void Estimator::come_to_landing() {
     const std::size_t piece = wheels_[0].clear;
-    if (std::ranges::any_of(wheels_, [&](const WheelState& w) { return w.clear != piece; })) {
-        shared_ = 0;
-    } else if (shared_ != piece && !is_face(piece)) {
-        shared_ = piece;
-        Error error{}, row{};
-        row[kFrontOffset] = 1.0, row[kRearOffset] = -1.0;
-        covariance_.update(row, offset_[1].x - offset_[0].x, kRecalled * kRecalled, error);
-        correct(error);
-    }
+    if (landed_ || is_face(piece) || last_face(piece, path_.pieces().size()) != piece) return;
+    if (std::ranges::any_of(wheels_, [&](const WheelState& w) { return w.clear != piece; })) return;
+    landed_ = true;
+    Error error{}, row{};
+    row[kFrontOffset] = 1.0, row[kRearOffset] = -1.0;
+    covariance_.update(row, offset_[1].x - offset_[0].x, kRecalled * kRecalled, error);
+    correct(error);
 }
 
 Vec2 Estimator::correct_map(WheelPath path, const MapError& found) {

@@ -118,6 +118,11 @@ class Estimator {
     Judgement judge(const control::RobotState& truth) const;
 
   private:
+    // Pieces of the curve from tread to tread that may be none, see low_edges.cpp: an arc, and a face that leads to it or from it.
+    struct LowEdge {
+        std::size_t first, last;
+        bool up;
+    };
     struct WheelState {
         Vec2 place, rate;         // in the trunk frame, and its rate there [m, m/s]
         LegPlaces leg;            // world, with the trunk point as origin
@@ -130,7 +135,7 @@ class Estimator {
         std::array<std::size_t, 2> told{};  // pieces of which they had found something then, 0 for none
         std::size_t face = 0;  // piece of the curve, the last straight one
         std::size_t clear = 0, clear_before = 0;  // the last faces and treads that it was on clear of corners
-        std::size_t low_edge = kNoPiece;  // the edge near to it that may be none, see low_edges.cpp
+        std::optional<LowEdge> low_edge;  // the one near to it
         bool missed = false;      // it is put back now
         bool contradicts = false; // it rolls otherwise than the filter can believe
         double put_back = 0.0;    // how far it has been put back on that piece, see Estimator::put_back [m]
@@ -168,7 +173,7 @@ class Estimator {
     void believe_map(std::size_t face);
     void pass(std::size_t face);
     void recall(WheelState& rear);
-    void stand_on_one_piece();
+    void come_to_landing();
     bool rear_knows(double s, bool face) const;
     std::size_t face_or_tread(double s, bool face) const;  // the piece nearest to the place `s`
     bool is_face(std::size_t piece) const;
@@ -179,8 +184,7 @@ class Estimator {
     std::size_t face_below(std::size_t piece) const;
     bool before_drop(const CurveMatch& on) const;
     void note_low_edges();
-    bool leads_up(std::size_t edge) const;  // from a corner
-    std::size_t next_edge(const std::vector<std::size_t>& edges, const WheelState& wheel) const;
+    bool is_near(const WheelState& wheel, std::size_t first, std::size_t last) const;
     void leave_low_edge(int wheel, const CurveMatch& on, const Error& along_z, Vec2 centre, Error& error);
     bool over_low_edge(const WheelState& wheel, const CurveMatch& on) const;
     double nearest_corner(double s) const;  // along the curve, to the place `s` on it [m]
@@ -200,11 +204,12 @@ class Estimator {
     std::array<Vec2, 2> offset_{};
     double scale_ = 0.0;
     bool started_ = false;
-    std::size_t shared_ = 0;  // the piece of the curve that all wheels have been on since they came to it, 0 for none
+    bool landed_ = false;        // all wheels are on the landing, and agree on how far that is off
     double contradicted_ = 0.0;  // for how long by all wheels that touch [s]
     Covariance covariance_;
     std::array<WheelState, 4> wheels_;
-    std::vector<std::size_t> low_edges_, low_drops_;  // pieces of the curve, see low_edges.cpp
+    std::vector<LowEdge> low_edges_;
+    std::vector<std::size_t> low_drops_;  // pieces of the curve, see low_edges.cpp
     std::vector<std::optional<double>> found_;  // of each piece, by front wheels: offset along of a face, up of a tread [m]
     Estimate estimate_;
 };
