@@ -14,3 +14,23 @@ def test_a_low_edge_that_is_none_is_not_taken_for_one_that_comes_later(robot):
     plan = sw.plan({"points": points}, robot, 0.6)
     run = sw.rollout(plan, disturbance={"step_height_error": [0.02]})
     assert run.outcome == "success", run.reason
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("robot", ["a1_wheeled", "a1_wheeled_x", "go2w"])
+def test_a_low_edge_that_leans_may_be_lower_still(robot: str) -> None:
+    """A face of 2.7 cm that is 7 mm was waited for without end, while the robot drove on."""
+    points = [(-1.3, 0.0), (0.0, 0.0), (0.0166, 0.027), (0.67, 0.027), (0.687, 0.0), (2.0, 0.0)]
+    plan = sw.plan({"points": points}, robot, 0.6)
+    run = sw.rollout(plan, disturbance={"step_height_error": [-0.02, 0.02]})
+    assert run.outcome == "success", run.reason
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("length", [0.4, 0.25])
+def test_an_edge_higher_than_drawn_pushes_from_lower_down(length: float) -> None:
+    """Its force says that the wheel is less far round it than the corner before it lets it be."""
+    points = [(-1.3, 0.0), (0.0, 0.0), (length, -0.085), (length, -0.062), (1.9, -0.062)]
+    plan = sw.plan({"points": points}, "a1_wheeled", 0.6)
+    run = sw.rollout(plan, disturbance={"step_height_error": [0.02]})
+    assert run.outcome == "success", run.reason
