@@ -56,9 +56,7 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
     }
     const Vec2 n = on.point.normal;
     if (n.z < kTread) {
-        // Less only seems to be one; the leg of a wheel that has just landed swings, and feels one behind it, too.
-        const bool swings = n.x > 0.0 && wheels_[i].landed < kBounce;
-        if (dot(wheels_[i].felt, n) < (swings ? noise_.force * weight_ : wheels_[i].force_deviation)) return;
+        if (dot(wheels_[i].felt, n) < wheels_[i].force_deviation) return;  // it only seems to be there
         if (n.x < 0.0) wheels_[i].met = nearest_corner(on.s);  // down a face it is the tread below that is to be felt
     }
     const bool passed = on.beyond != 0 && on.blocked;

@@ -10,7 +10,6 @@ namespace stairwright::estimation {
 
 namespace {
 
-constexpr double kClearOfEdge = 0.01;  // m
 constexpr double kBend = 0.1;          // sine of the turn from one tread to the next from which on they are two
 
 }  // namespace
@@ -22,7 +21,7 @@ std::size_t Estimator::clear_on(const WheelState& w, const CurveMatch& on) const
     const std::size_t at = face_below(on.piece);
     if (at == kNoPiece || is_low_drop(at)) return kNoPiece;
     const Piece& piece = path_.pieces()[at];
-    if (piece.arc) return at;  // it may be all but passed when the wheel meets it
+    if (piece.arc || at != on.piece) return at;  // it may be all but passed when the wheel meets it, or is round its edge
     // In a corner a wheel goes to and fro between two faces, and measures both: what is unsure is so once it has left it.
     if (std::abs(nearest_corner(on.s) - on.s) < std::min(kNearCorner, 0.5 * piece.length)) return kNoPiece;
     // Near to the edge before it the direction of its force may still tell where it is on that one, see measure_turn.
@@ -36,7 +35,7 @@ void Estimator::enter_face(int i, const CurveMatch& on) {
     const std::size_t at = clear_on(w, on);
     if (at == kNoPiece || at == w.clear) return;
     const bool known = at == w.clear_before;  // it comes back to it
-    w.clear_before = w.clear, w.clear = at;
+    w.clear_before = w.clear, w.clear = at, w.since_clear = 0.0;
     if (known) return;
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
     const double height = noise_.tread_height * noise_.tread_height, place = 0.5 * noise_.face_place * noise_.face_place;

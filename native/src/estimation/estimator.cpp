@@ -183,6 +183,8 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
         belief.unsure = *drop + 1, belief.unsure_count = 1;
     }
     belief.unsure_height = noise_.tread_height * noise_.tread_height;
+    w.since_clear += (velocity_[0] + own_speed[0]) * dt;
+    if (w.since_clear > -kClearOfEdge) belief.past = w.clear;
     const CurveMatch on = match(path_, belief, w.s, kWindow);
     // A leg that swings feels a little, too: of a wall it has to be more than that.
     w.force_deviation = belief.force_deviation;

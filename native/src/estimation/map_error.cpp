@@ -183,7 +183,7 @@ Vec2 Estimator::correct_map(WheelPath path, const MapError& found) {
     for (int i = 0; i < 4; ++i) {
         WheelState& w = wheels_[i];
         w.s = path_.project(place_ + offset_[i / 2] + w.leg.wheel, 0.0, path_.length());
-        w.put_back = w.known = w.stopped = 0.0, w.met = -1e9, w.recalled = 0, w.told = {};
+        w.put_back = w.known = w.stopped = w.since_clear = 0.0, w.met = -1e9, w.recalled = 0, w.told = {};
         const auto& pieces = path_.pieces();
         for (std::size_t k = 0; k < pieces.size(); ++k)
             if (!pieces[k].arc && pieces[k].s <= w.s) w.face = w.clear = w.clear_before = k;

@@ -46,6 +46,7 @@ struct WheelBelief {
     // variance [m^2].
     std::size_t unsure = kNoPiece, unsure_count = 0;
     double unsure_height = 0.0;
+    std::size_t past = 0;  // edges before this piece it has left behind, and has not come back to
 };
 
 // How much better the push of a steep face ahead, against which the wheel stands, explains the force that it feels than

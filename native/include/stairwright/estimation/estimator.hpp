@@ -135,6 +135,7 @@ class Estimator {
         std::array<std::size_t, 2> told{};  // pieces of which they had found something then, 0 for none
         std::size_t face = 0;  // piece of the curve, the last straight one
         std::size_t clear = 0, clear_before = 0;  // the last faces and treads that it was on clear of corners
+        double since_clear = 0.0;  // how far it has come since [m]
         std::optional<LowEdge> low_edge;  // the one near to it
         bool missed = false;      // it is put back now
         bool contradicts = false; // it rolls otherwise than the filter can believe
