@@ -36,16 +36,20 @@ def test_a_larger_robot_keeps_farther_from_the_ground():
 
 # Every terrain once, and every robot; `benchmarks/robots.py` asks all pairs.
 PAIRS = [(REAL[k % len(REAL)], terrain) for k, terrain in enumerate(sorted(sw.terrains()))]
+DRIVEN = {"m20": "loading-dock", "go2w": "stairs-us-7-11", "d1": "stairs-building"}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("robot", "terrain"), PAIRS)
 def test_every_preset_is_planned_or_refused_with_a_reason(robot, terrain):
     plan = sw.plan(terrain, robot)
-    if plan.feasible:
-        assert sw.rollout(plan).outcome == "success"
-    else:
-        assert plan.problem.limit is not None
+    assert plan.feasible or plan.problem.limit is not None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("robot", "terrain"), DRIVEN.items())
+def test_what_is_planned_of_a_preset_is_driven(robot, terrain):
+    """A dock and two flights; `test_a_stair_is_climbed` drives the other robots."""
+    assert sw.rollout(sw.plan(terrain, robot)).outcome == "success"
 
 
 @pytest.mark.parametrize("method", ["path", "critical"])
