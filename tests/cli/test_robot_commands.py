@@ -36,18 +36,15 @@ def test_a_file_is_imported(maker: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_without_an_output_the_robot_is_printed(maker: Path, tmp_path: Path) -> None:
+def test_without_an_output_the_robot_is_printed_as_options_have_it(
+    maker: Path, tmp_path: Path
+) -> None:
     printed = tmp_path / "printed.yaml"
-    printed.write_text(run("robot", "import", maker))
-    assert sw.load_robot(printed) == sw.import_robot(maker).robot
-
-
-@pytest.mark.slow
-def test_options(maker: Path) -> None:
-    arguments = ("--abduction", "-0.05", "--wheel-radius", "0.09", "--json")
-    robot = json.loads(run("robot", "import", maker, *arguments))["robot"]
-    assert robot["abduction"] == -0.05
-    assert robot["wheel"]["radius"] == 0.09
+    arguments = ("--abduction", "-0.05", "--wheel-radius", "0.09")
+    printed.write_text(run("robot", "import", maker, *arguments))
+    robot = sw.load_robot(printed)
+    assert robot.abduction == -0.05
+    assert robot.wheel.radius == 0.09
 
 
 @pytest.mark.parametrize(
@@ -94,7 +91,7 @@ def test_robots_are_converted_to_the_newest_schema(suffix: str, tmp_path: Path) 
 @pytest.mark.slow
 def test_what_was_imported_is_planned_with(maker: Path, tmp_path: Path) -> None:
     out, curb = tmp_path / "robot.yaml", tmp_path / "curb.json"
-    run("robot", "import", maker, "-o", out)
+    sw.import_robot(maker).robot.save(str(out))
     curb.write_text('{"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}')
     assert "feasible" in run("plan", curb, "--robot", out)
     run("export", out, "-o", tmp_path / "robot.xml")
