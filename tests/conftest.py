@@ -231,7 +231,7 @@ def start_server(
 @pytest.fixture(scope="session")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """One real server for all tests that do not mind what other tests saved there."""
-    with serve(tmp_path_factory.mktemp("server") / "data", cold=True) as running:
+    with serve(tmp_path_factory.mktemp("server") / "data") as running:
         yield running
 
 

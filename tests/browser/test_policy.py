@@ -64,6 +64,8 @@ def test_the_page_keeps_its_policy_and_its_theme(strict: Page, server: Server) -
     product = Product(strict, scene=True).open()
     canvas = strict.frame_locator("iframe").first.locator("canvas").first
     canvas.wait_for(state="attached", timeout=PATIENCE)
+    # It has loaded what it needs, and drawing it takes a core.
+    strict.locator("iframe").first.evaluate("frame => { frame.style.display = 'none' }")
     product.drag(2, 0, -3).planned()
     product.fresh("curb-015").run()
     assert (watched.elsewhere, watched.denied, product.errors) == ([], [], [])
