@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,6 +26,8 @@ SIZES: list[ViewportSize] = [
     {"width": 820, "height": 1180},
     PHONE,
 ]
+# A desk's layout, a tablet's and a phone's at their smallest: states other than the first one.
+NARROW: list[ViewportSize] = [SIZES[0], SIZES[3], PHONE]
 TABS = ("Scene", "Results", "Profile")
 # Two frames: what a new size changes has been laid out then.
 DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
@@ -35,14 +38,18 @@ def _faults(product: Product) -> list[str]:
     return [str(fault) for fault in product.page.evaluate(FAULTS)]
 
 
-def _everywhere(product: Product, *themes: str) -> list[str]:
-    """The faults at all sizes; where tabs are, in each of them."""
+def _everywhere(
+    product: Product,
+    sizes: Sequence[ViewportSize] = NARROW,
+    themes: Sequence[str] = ("light",),
+) -> list[str]:
+    """The faults at these sizes; where tabs are, in each of them."""
     page = product.page
     found = []
-    for theme in themes or ("light",):
+    for theme in themes:
         if page.evaluate("document.documentElement.dataset.theme") != theme:
             page.locator("[aria-label*=theme]").click()
-        for size in SIZES:
+        for size in sizes:
             page.set_viewport_size(size)
             areas = page.get_by_role("navigation", name="Areas")
             for tab in TABS if areas.is_visible() else ("",):
@@ -75,24 +82,25 @@ def test_the_check_finds_what_is_cut_off_or_covered(product: Product) -> None:
 
 def test_a_planned_page_has_no_overlaps(product: Product) -> None:
     """In both themes, which differ in colours: other states are looked at in one."""
-    assert _everywhere(product, "light", "dark") == []
+    assert _everywhere(product, SIZES, ("light", "dark")) == []
 
 
-@pytest.mark.parametrize("size", [(844, 390), (375, 667)], ids=["lying", "small"])
-def test_a_low_phone_scrolls_what_has_no_room(product: Product, size: tuple[int, int]) -> None:
+def test_a_low_phone_scrolls_what_has_no_room(product: Product) -> None:
+    """One that lies, and a small one."""
     page = product.page
-    page.set_viewport_size({"width": size[0], "height": size[1]})
     try:
-        for tab in TABS:
-            areas = page.get_by_role("navigation", name="Areas")
-            areas.get_by_role("button", name=tab).click()
-            assert _faults(product) == [], tab
-        canvas = page.locator(".canvas").bounding_box()
-        assert canvas is not None
-        assert canvas["height"] > 180
-        clock = page.get_by_role("slider", name="Time")
-        clock.scroll_into_view_if_needed()
-        clock.click()
+        for width, height in ((844, 390), (375, 667)):
+            page.set_viewport_size({"width": width, "height": height})
+            for tab in TABS:
+                areas = page.get_by_role("navigation", name="Areas")
+                areas.get_by_role("button", name=tab).click()
+                assert _faults(product) == [], (width, tab)
+            canvas = page.locator(".canvas").bounding_box()
+            assert canvas is not None
+            assert canvas["height"] > 180
+            clock = page.get_by_role("slider", name="Time")
+            clock.scroll_into_view_if_needed()
+            clock.click()
     finally:
         page.set_viewport_size(DESK)
 
@@ -150,7 +158,7 @@ def test_a_comparison_has_no_overlaps(product: Product) -> None:
     switch = product.page.get_by_role("switch", name="Compare A with B")
     switch.click()
     product.run()
-    assert _everywhere(product) == []
+    assert _everywhere(product, SIZES) == []
     switch.click()
 
 
@@ -252,15 +260,15 @@ def test_a_robot_that_stopped_and_its_disturbances_have_no_overlaps(product: Pro
     page.get_by_role("radio", name="Plan", exact=True).click()
 
 
-@pytest.mark.parametrize(("key", "room"), [("2", "robot"), ("3", "map"), ("4", "runs")])
-def test_the_other_workspaces_have_no_overlaps(product: Product, key: str, room: str) -> None:
+def test_the_other_workspaces_have_no_overlaps(product: Product) -> None:
     page = product.page
-    page.keyboard.press(key)
-    page.locator(f".app[data-workspace={room}]").wait_for()
-    if room == "runs":
-        for pin in page.locator(".run-pin[aria-pressed=false]").all()[:2]:
-            pin.click()
-    assert _everywhere(product) == []
+    for key, room in (("2", "robot"), ("3", "map"), ("4", "runs")):
+        page.keyboard.press(key)
+        page.locator(f".app[data-workspace={room}]").wait_for()
+        if room == "runs":
+            for pin in page.locator(".run-pin[aria-pressed=false]").all()[:2]:
+                pin.click()
+        assert _everywhere(product, SIZES) == [], room
     page.keyboard.press("1")
 
 

@@ -23,6 +23,8 @@ REFUSED = (ValueError, TypeError, IndexError, InputError, MemoryError)
 LONGEST = 240.0  # s that one line may take
 FRICTION = (1e-6, 0.05, 0.6, 5.0)
 HURRIED = {"speed": 1.0}  # what follows a plan is the same at any speed
+# Their rollouts succeed like any other's, and are dear here.
+EASY = {"flat trunk", "wheels larger than itself", "any thigh", "knees opposed"}
 
 
 def use(core: Path) -> None:
@@ -39,22 +41,22 @@ def use(core: Path) -> None:
     vars(sw)["_core"] = module
 
 
-def planned(terrain: Any, robot: Any, friction: float, **options: bool) -> list[sw.Plan]:
-    """By every method."""
-    methods = ("path", "critical", "nominal")
-    return [sw.plan(terrain, robot, friction, method, **options) for method in methods]
+def planned(terrain: Any, robot: Any, critical: float = 0.6, **options: bool) -> list[sw.Plan]:
+    """By every method; `critical` is the friction of that one."""
+    methods = {"path": 0.6, "critical": critical, "nominal": 0.6}
+    return [sw.plan(terrain, robot, mu, method, **options) for method, mu in methods.items()]
 
 
 def drawn() -> Iterator[str]:
     """Profiles like those that people draw, and rollouts of the path and another plan of each."""
     from tests.planning.drawn import random_profile
 
-    for k, seed in enumerate((6, 11, 14, 17)):  # those that are soon driven, two of each A1
+    for k, seed in enumerate((6, 11)):  # those that are soon driven, one of each A1
         name = ("a1_wheeled", "a1_wheeled_x")[seed % 2]
-        plans = planned(random_profile(seed), name, 0.6)
+        plans = planned(random_profile(seed), name)
         ends = [
-            sw.rollout(plan, seed=seed, friction=FRICTION[k], controller=HURRIED).outcome
-            for plan in (plans[0], plans[1 + k // 2])
+            sw.rollout(plan, seed=seed, friction=friction, controller=HURRIED).outcome
+            for plan, friction in ((plans[0], FRICTION[k]), (plans[1 + k], FRICTION[2 + k]))
         ]
         yield f"{seed}: {[plan.status for plan in plans]} {ends}"
 
@@ -65,9 +67,9 @@ def terrains() -> Iterator[str]:
 
     for k, (name, points) in enumerate(hostile.terrains().items()):
         robot = ("a1_wheeled", "a1_wheeled_x")[k % 2]
-        # What would open a pit takes longer than all the others, and runs what they do.
-        plans = planned({"points": points}, robot, 0.6, diagnose=not name.startswith("pit"))
-        plans.append(sw.plan({"points": points}, robot, FRICTION[k % 4], "critical"))
+        # What would open these takes longer than all the others, and runs what a cliff does.
+        diagnose = not name.startswith(("pit", "wall"))
+        plans = planned({"points": points}, robot, FRICTION[k % 4], diagnose=diagnose)
         yield f"{name}: {[plan.status for plan in plans]}"
 
 
@@ -78,11 +80,11 @@ def robots() -> Iterator[str]:
 
     step = {"points": [(-0.6, 0), (0, 0), (0, 0.1), (0.6, 0.1)]}
     slope = {"points": [(-0.6, 0), (0, 0), (0.3, 0.1), (0.8, 0.1)]}
-    unlike = {f"random {seed}": random_robot(seed) for seed in range(4)}
+    unlike = {f"random {seed}": random_robot(seed) for seed in range(2)}
     for k, (name, robot) in enumerate((hostile.robots() | unlike).items()):
         ground = (step, slope)[k % 2]
-        plans = planned(ground, robot, 0.6)
-        driven = [plan for plan in plans if plan.executable][:1]
+        plans = planned(ground, robot)
+        driven = [plan for plan in plans if plan.executable and name not in EASY][:1]
         outcomes = [sw.rollout(plan, controller=HURRIED).outcome for plan in driven]
         yield f"{name}: {[plan.status for plan in plans]} {outcomes}"
 
@@ -91,7 +93,7 @@ def wrecks() -> Iterator[str]:
     """Plans of poses that no planner makes, carried out: the simulator's state may be anything."""
     plan = sw.plan("single-stair-030", "a1_wheeled", method="critical").model_dump()
     random = np.random.default_rng(3)
-    for k in range(12):
+    for k in range(6):
         wreck = {**plan, "poses": [dict(pose) for pose in plan["poses"]]}
         for pose in wreck["poses"]:
             size = 10.0 ** random.uniform(-2, (3, 8, 300)[k % 3])
@@ -213,7 +215,7 @@ def calls() -> Iterator[str]:
         "uneven robot": uneven,
     }
     for name, ask in asked.items():
-        refused, times = 0, 3 if ask is uneven else 100
+        refused, times = 0, 3 if ask is uneven else 60
         for _ in range(times):
             try:
                 ask()
