@@ -54,12 +54,15 @@ STEP_UP = """fields => fields.forEach(field => {
 
 
 @pytest.mark.slow
-def test_every_number_of_every_preset_makes_a_robot_that_the_service_takes(
+def test_every_number_of_a_preset_makes_a_robot_that_the_service_takes(
     product: Product,
 ) -> None:
-    """Each is stepped up once, all together: shapes, moments and heights stay possible."""
-    page = product.page
-    for name in sw.robots():
+    """Each is stepped up once, all together: shapes, moments and heights stay possible.
+
+    Of presets that differ in kind: knees back, free knees, of 50 kg.
+    """
+    page = product.choose_terrain("curb-015").page
+    for name in ("a1_wheeled", "m20", "anymal_wheels"):
         choose(product, name)
         fields = page.locator(".rows .num")
         fields.evaluate_all(STEP_UP)
@@ -99,17 +102,17 @@ def test_an_own_robot_is_saved_listed_and_deleted(product: Product) -> None:
     page.get_by_role("button", name="Dismiss").click()
 
 
-@pytest.mark.parametrize("name", ["YAML", "URDF", "MJCF"])
-def test_an_edited_robot_is_downloaded(product: Product, name: str, tmp_path: Path) -> None:
+def test_an_edited_robot_is_downloaded(product: Product, tmp_path: Path) -> None:
     page = product.page
     enter(product, "front.calf.length", "0.215")
-    page.get_by_role("button", name="Download robot").click()
-    with page.expect_download() as download:
-        page.get_by_role("menuitem", name=name).click()
-    path = tmp_path / download.value.suggested_filename
-    download.value.save_as(path)
-    found = sw.load_robot(str(path)) if name == "YAML" else sw.import_robot(path).robot
-    assert found.calf.length == pytest.approx(0.215, abs=1e-6)
+    for name in ("YAML", "URDF", "MJCF"):
+        page.get_by_role("button", name="Download robot").click()
+        with page.expect_download() as download:
+            page.get_by_role("menuitem", name=name).click()
+        path = tmp_path / download.value.suggested_filename
+        download.value.save_as(path)
+        found = sw.load_robot(str(path)) if name == "YAML" else sw.import_robot(path).robot
+        assert found.calf.length == pytest.approx(0.215, abs=1e-6), name
 
 
 def test_a_file_is_read_reported_and_opened(product: Product, tmp_path: Path) -> None:
@@ -165,11 +168,8 @@ def test_two_robots_stand_side_by_side_and_change_places(product: Product) -> No
     page.get_by_role("button", name="Swap A and B").click()
 
 
-@pytest.mark.parametrize(
-    ("theme", "size"), [("light", DESK), ("light", LAPTOP), ("light", PHONE), ("dark", DESK)]
-)
+@pytest.mark.parametrize(("theme", "size"), [("light", PHONE), ("dark", DESK)])
 def test_axe_finds_nothing(product: Product, theme: str, size: ViewportSize) -> None:
-    """Themes differ in colours alone: of the dark one, one size is looked at."""
     page = product.page
     page.set_viewport_size(size)
     if page.evaluate("document.documentElement.dataset.theme") != theme:
@@ -179,14 +179,15 @@ def test_axe_finds_nothing(product: Product, theme: str, size: ViewportSize) -> 
     assert found == []
 
 
-@pytest.mark.parametrize("size", [DESK, LAPTOP])
-def test_nothing_overflows(product: Product, size: ViewportSize) -> None:
+def test_nothing_overflows(product: Product) -> None:
     page = product.page
     enter(product, "hips", "0.3")  # which then tells what it was
-    page.set_viewport_size(size)
-    wide = page.evaluate(
-        """() => [...document.querySelectorAll('.robot-room :is(.hd, .rows, .shelf, .entry)')]
-            .filter(e => e.scrollWidth > e.clientWidth + 1).map(e => e.className)"""
-    )
+    wide = []
+    for size in (DESK, LAPTOP):
+        page.set_viewport_size(size)
+        wide += page.evaluate(
+            """() => [...document.querySelectorAll('.robot-room :is(.hd, .rows, .shelf, .entry)')]
+                .filter(e => e.scrollWidth > e.clientWidth + 1).map(e => e.className)"""
+        )
     page.set_viewport_size(DESK)
     assert wide == []

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
-
-import stairwright as sw
 
 from .conftest import DESK, PHONE, Product
 from .robot_room import LAPTOP, choose, field, pull, robot_room, state
@@ -92,33 +91,32 @@ CROSSED = """() => {
 }"""
 
 
-@pytest.mark.parametrize("name", sw.robots())
-def test_dimension_lines_do_not_cross(product: Product, name: str) -> None:
-    page = product.page
-    choose(product, name)
-    page.set_viewport_size(LAPTOP)
-    found = [page.evaluate(CROSSED)]
-    for quantity, dx, dy in (("front.thigh.length", -25, 25), ("height", 0, 25)):
-        pull(product, quantity, dx, dy)
-        found.append(page.evaluate(CROSSED))
-    page.set_viewport_size(PHONE)
-    page.wait_for_function("() => document.querySelector('.side-view svg').clientWidth < 400")
-    found.append(page.evaluate(CROSSED))
-    page.set_viewport_size(DESK)
-    page.get_by_role("button", name="Reset robot").click()
-    assert found == [[]] * 4
+# Small, with knees that bend both ways, and large with short links.
+ROBOTS = ("a1_wheeled_x", "m20", "anymal_wheels")
 
 
-@pytest.mark.parametrize("name", sw.robots())
-def test_on_a_phone_the_drawing_fills_the_width_and_fingers_can_pull_it(
+@pytest.mark.parametrize("name", ROBOTS)
+def test_dimension_lines_do_not_cross_and_on_a_phone_fingers_can_pull_them(
     product: Product, name: str
 ) -> None:
     page = product.page
     choose(product, name)
     page.set_viewport_size(PHONE)
     page.wait_for_function("() => document.querySelector('.side-view svg').clientWidth < 400")
-    drawn = page.evaluate(DRAWN)
+    crossed, drawn = page.evaluate(CROSSED), page.evaluate(DRAWN)
+    page.set_viewport_size(LAPTOP)
+    crossed += page.evaluate(CROSSED)
+    for quantity, dx, dy in (("front.thigh.length", -25, 25), ("height", 0, 25)):
+        pull(product, quantity, dx, dy)
+        crossed += page.evaluate(CROSSED)
     page.set_viewport_size(DESK)
+    page.get_by_role("button", name="Reset robot").click()
+    assert crossed == []
+    _fills_the_width(drawn)
+
+
+def _fills_the_width(drawn: dict[str, Any]) -> None:
+    """The drawing does; labels and wheels lie apart, and grips are as large as fingertips."""
     view, labels = drawn["view"], drawn["labels"]
     left = min(each["left"] for each in drawn["dimensions"])
     right = max(each["right"] for each in drawn["dimensions"])
@@ -132,7 +130,7 @@ def test_on_a_phone_the_drawing_fills_the_width_and_fingers_can_pull_it(
             radius = (wheel["right"] - wheel["left"]) / 2
             x, y = wheel["left"] + radius, wheel["top"] + radius
             beside = max(a["left"] - x, 0, x - a["right"]), max(a["top"] - y, 0, y - a["bottom"])
-            assert math.hypot(*beside) > radius - 3, (name, a, wheel)
+            assert math.hypot(*beside) > radius - 3, (a, wheel)
     assert len(drawn["grips"]) > 10
     for grip in drawn["grips"]:
         assert min(grip["right"] - grip["left"], grip["bottom"] - grip["top"]) >= 24 - 1e-3
