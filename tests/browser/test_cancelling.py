@@ -18,7 +18,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 
 def test_running_can_be_cancelled(shared: Product, server: Any) -> None:
-    product = shared.fresh("ramp-30deg-025")
+    product = shared.fresh("curb-015")
     held: list[Route] = []
     # The answer to the start is held back, so that the rollout runs until it is cancelled.
     product.page.route("**/rollouts", lambda route: held.append(route))
@@ -43,7 +43,7 @@ def test_running_can_be_cancelled(shared: Product, server: Any) -> None:
 
 
 def test_a_cancelled_rollout_leaves_the_plan_on_screen(shared: Product) -> None:
-    product = shared.fresh("ramp-30deg-025")
+    product = shared.fresh("curb-015")
     product.run()
     shown = product.page.locator(".tag2")
     assert shown.inner_text().startswith("rollout")
@@ -56,7 +56,7 @@ def test_a_cancelled_rollout_leaves_the_plan_on_screen(shared: Product) -> None:
 
 
 def test_a_and_b_are_one_rollout_to_wait_for_and_to_cancel(shared: Product) -> None:
-    product = shared.fresh("ramp-30deg-025")
+    product = shared.fresh("curb-015")
     page = product.page
     page.get_by_role("switch", name="Compare A with B").click()
     page.locator(".rb.cmp").wait_for()

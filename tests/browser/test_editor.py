@@ -190,12 +190,12 @@ def _stroke(product: Product, a: tuple[float, float], b: tuple[float, float]) ->
     product.planned()
 
 
-@pytest.mark.parametrize(("key", "corners"), [("s", 2), ("r", 2), ("p", 1)])
-def test_tools_draw_on_an_empty_canvas(product: Product, key: str, corners: int) -> None:
-    _empty(product)
-    product.page.keyboard.press(key)
-    _stroke(product, (400, 380), (520, 340))
-    assert product.corners() >= 2 + corners
+def test_tools_draw_on_an_empty_canvas(product: Product) -> None:
+    for key, corners in (("s", 2), ("r", 2), ("p", 1)):
+        _empty(product)
+        product.page.keyboard.press(key)
+        _stroke(product, (400, 380), (520, 340))
+        assert product.corners() >= 2 + corners, key
 
 
 def _alone(product: Product) -> None:

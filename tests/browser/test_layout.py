@@ -159,7 +159,7 @@ def test_a_tablet_standing_up_shows_everything_at_once(product: Product) -> None
 
 def test_results_fit_their_dock(product: Product) -> None:
     """Every figure can be seen without scrolling, from the smallest desk up."""
-    page = product.fresh("ramp-30deg-025").page
+    page = product.fresh("curb-015").page
     product.run()
     card = page.get_by_role("region", name="Results", exact=True)
     try:

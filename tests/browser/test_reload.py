@@ -18,8 +18,8 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 @pytest.fixture
 def climb(product: Product) -> Product:
-    """A flight that takes the simulator some seconds."""
-    product.open().draw_flight(6)
+    """A flight that takes the simulator a second or two."""
+    product.open().draw_flight(3)
     product.linked('"stair-')
     return product
 

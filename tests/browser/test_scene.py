@@ -31,15 +31,10 @@ def product(browser: Browser, server: Server) -> Iterator[Product]:
         assert opened.errors == []
 
 
-def test_the_scene_draws_and_hides_viser_panel(product: Product) -> None:
-    frame = product.page.frame_locator("iframe")
-    frame.locator("canvas").first.wait_for(timeout=30_000)
-    panel = frame.locator("[data-floating-window]")
-    assert panel.count() == 0 or not panel.first.is_visible()
-
-
-def test_the_scene_is_saved_as_a_picture(product: Product) -> None:
+def test_the_scene_is_drawn_without_visers_panel_and_saved_as_a_picture(product: Product) -> None:
     page = product.page
+    panel = page.frame_locator("iframe").locator("[data-floating-window]")
+    assert panel.count() == 0 or not panel.first.is_visible()
     page.keyboard.press("l")
     legend = page.get_by_role("group", name="Shown in the scene")
     with page.expect_request(lambda sent: '"support":false' in (sent.post_data or "")):
@@ -55,7 +50,7 @@ def test_the_scene_is_saved_as_a_picture(product: Product) -> None:
 def test_the_replay_is_saved_as_a_video(product: Product) -> None:
     page = product.page
     page.get_by_role("button", name="Record the replay as a video").click()
-    page.wait_for_timeout(2000)
+    page.wait_for_timeout(1000)
     with page.expect_download(timeout=PATIENCE) as saved:
         page.get_by_role("button", name="Stop and save the video").click()
     assert saved.value.suggested_filename == "three-stairs-up-a1_wheeled_x-scene.webm"

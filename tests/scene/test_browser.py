@@ -154,6 +154,11 @@ def test_embedded_scene_shows_the_robot_and_no_panel(site, visit, plan):
     site.sessions["a"].camera("side")
     site.sessions["a"].playback(progress=plan["poses"][-1]["progress"])
     wait_until(page, lambda shot: legs(shot) != before)
+    # Another session sees nothing of it.
+    site.open("e").show(theme="light")
+    other = visit("/scene/e/?embedded=1")
+    wait_until(other, lambda shot: shot[5:40, 5:40].mean() > 200 and legs(shot) == (0, 0))
+    assert site.sessions["a"].clients == site.sessions["e"].clients == 1
 
 
 def test_a_frame_without_focus_comes_back_after_the_server_does(site, visit, plan):
@@ -200,7 +205,7 @@ def test_opened_alone_it_has_a_working_panel(site, visit):
     assert page.problems == []
 
 
-def test_the_camera_follows_the_robot_and_keeps_its_angle(site, visit, plan):
+def test_the_camera_follows_the_robot_and_keeps_its_angle_above_the_ground(site, visit, plan):
     session = site.open("f")
     session.show(plan=plan)
     page = visit("/scene/f/?embedded=1")
@@ -220,14 +225,7 @@ def test_the_camera_follows_the_robot_and_keeps_its_angle(site, visit, plan):
     assert rested == 2
     np.testing.assert_allclose(client.camera.position - client.camera.look_at, offset, atol=0.02)
     assert seen(pixels(page))
-
-
-def test_the_camera_cannot_stay_below_the_ground(site, visit, plan):
-    session = site.open("g")
-    session.show(plan=plan)
-    page = visit("/scene/g/?embedded=1")
-    wait_until(page, seen)
-    (client,) = session._server.get_clients().values()
+    # Nor can it stay below the ground.
     height = page.viewport_size["height"]
     middle = page.viewport_size["width"] / 2
     for _ in range(2):  # turned upwards from below, as far as it goes
@@ -238,13 +236,3 @@ def test_the_camera_cannot_stay_below_the_ground(site, visit, plan):
     page.wait_for_timeout(700)
     assert client.camera.position[2] > 0.0
     assert client.camera.position[2] < 0.5  # it was turned down there
-
-
-def test_two_sessions_do_not_see_each_other(site, visit, plan):
-    site.open("d").show(plan=plan)
-    site.open("e").show(theme="light")
-    one, other = visit("/scene/d/?embedded=1"), visit("/scene/e/?embedded=1")
-    wait_until(one, seen)
-    shot = wait_until(other, lambda shot: shot[5:40, 5:40].mean() > 200)
-    assert legs(shot) == (0, 0)
-    assert site.sessions["d"].clients == site.sessions["e"].clients == 1
