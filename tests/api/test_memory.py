@@ -14,7 +14,7 @@ import pytest
 from stairwright.jobs.worker import RESTLESS
 
 MOST = 300.0  # MiB; measured 259 to 290
-PLANS, ROLLOUTS = 50, 10
+PLANS, ROLLOUTS = 20, 4
 TERRAINS = ("curb-015", "ramp-1-8", "single-stair-036", "stairs-us-7-11", "three-stairs-up")
 
 

@@ -102,7 +102,7 @@ def test_documents_are_those_of_this_process(dask_cluster: LocalCluster, tmp_pat
     async def story(found: DaskSimulators) -> None:
         assert found.workers == 2
         one = Run(RolloutQuestion(_ask(CURB), 0.6, {}, 3), "me")
-        many = Run(TrialsQuestion(digest, 0.6, {}, 5, count=4, ranges=ranges), "me")
+        many = Run(TrialsQuestion(digest, 0.6, {}, 5, count=2, ranges=ranges), "me")
         product, several = await asyncio.gather(found.carry_out(one), found.carry_out(many))
         made = sw.Rollout.model_validate(orjson.loads(kept.content(product.digest)))
         expected_run = rollout(plan, 0.6, seed=3)
@@ -111,7 +111,7 @@ def test_documents_are_those_of_this_process(dask_cluster: LocalCluster, tmp_pat
         assert product.plan is not None
         made_plan = sw.Plan.model_validate_json(kept.content(product.plan.digest))
         assert made_plan == plan.model_copy(update={"solve_time": made_plan.solve_time})
-        expected = sw.trials(plan, 4, seed=5, ranges=ranges)
+        expected = sw.trials(plan, 2, seed=5, ranges=ranges)
         assert kept.content(several.digest) == expected.model_dump_json().encode()
         assert product.summary["outcome"] == "success"
         assert several.summary["successes"] == expected.successes
@@ -254,9 +254,9 @@ def test_the_service_uses_the_cluster(
     told: list[float] = []
     with start_server(STAIRWRIGHT_SCHEDULER=address) as server, sw.Client(server.url) as service:
         plan = service.plan(CURB)
-        found = service.trials(plan.id, 4, "laboratory", seed=3, progress=told.append)
+        found = service.trials(plan.id, 2, "laboratory", seed=3, progress=told.append)
         figures = httpx.get(f"{server.url}/metrics").text
-    assert found == sw.trials(plan, 4, bundle="laboratory", seed=3)
+    assert found == sw.trials(plan, 2, bundle="laboratory", seed=3)
     assert told[-1] == 1.0
     assert "stairwright_simulators 2.0" in figures
     assert 'worker_deaths_total{pool="rollouts"}' not in figures  # no processes of its own

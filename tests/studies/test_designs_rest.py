@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import json
-import signal
 import time
-from collections.abc import Callable
-from contextlib import AbstractContextManager
 from typing import Any
 
 import httpx
 import pytest
 
 import stairwright as sw
-from tests.conftest import Server
 
 from .test_design import TORQUE, _document
 
@@ -131,20 +127,3 @@ def test_the_budget_is_the_services(api: httpx.Client) -> None:
     assert answer.status_code == 422
     assert "2,002 cells are more than the budget of 2,000" in answer.json()["detail"]
     assert "STAIRWRIGHT_STUDY_CELLS" in answer.json()["detail"]
-
-
-def test_the_server_is_killed_and_the_search_goes_on(
-    start_server: Callable[..., AbstractContextManager[Server]],
-) -> None:
-    variables = {"STAIRWRIGHT_STUDY_WORKERS": "1"}
-    with start_server(**variables) as server:
-        api = httpx.Client(base_url=f"{server.url}/api/v1", timeout=60)
-        name = api.post("/designs", json=LONG).json()["id"]
-        before = _until(api, name, 2)["tried"]
-        server.process.send_signal(signal.SIGKILL)
-        server.process.wait()
-    time.sleep(1.0)
-    with start_server(**variables) as server:
-        api = httpx.Client(base_url=f"{server.url}/api/v1", timeout=60)
-        _until(api, name, before + 2)
-        assert _listed(api, name)["state"] == "running"

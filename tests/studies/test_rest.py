@@ -22,6 +22,7 @@ from tests.conftest import Server
 from tests.in_process import served
 
 from .small import STEP, identical, study
+from .test_designs_rest import LONG as SEARCH
 
 pytestmark = pytest.mark.slow  # a server of its own
 
@@ -190,13 +191,14 @@ def test_without_the_packages_it_says_what_to_install(
     assert "not there: zarr" in answer.json()["detail"]
 
 
-def test_the_server_is_killed_and_the_study_goes_on(
+def test_the_server_is_killed_and_the_study_and_what_waits_for_it_go_on(
     start_server: Callable[..., AbstractContextManager[Server]],
 ) -> None:
     variables = {"STAIRWRIGHT_STUDY_WORKERS": "1"}
     with start_server(**variables) as server:
         api = httpx.Client(base_url=f"{server.url}/api/v1", timeout=60)
         name = api.post("/studies", json=LONG).json()["id"]
+        waiting = api.post("/designs", json=SEARCH).json()["id"]
         while (before := api.get(f"/studies/{name}").json()["done"]) < 10:
             time.sleep(0.1)
         time.sleep(WRITE_EVERY)
@@ -218,6 +220,12 @@ def test_the_server_is_killed_and_the_study_goes_on(
             time.sleep(0.1)
         cells = api.get(f"/studies/{name}/cells").json()["cell"]
         assert len(cells) == len(set(cells))
+        # What waited behind it was not forgotten, and is carried out when it is its turn.
+        assert api.get(f"/designs/{waiting}").json()["state"] == "queued"
+        api.post(f"/studies/{name}/cancel")
+        while (now := api.get(f"/designs/{waiting}").json()["state"]) != "running":
+            assert now == "queued"
+            time.sleep(0.1)
 
 
 def _kill_runner(server: Server) -> None:
