@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 
-@pytest.fixture
-def climb(product: Product) -> Product:
+@pytest.fixture(scope="module")
+def climb(shared: Product) -> Product:
     """A flight that takes the simulator a second or two."""
-    product.open().draw_flight(3)
-    product.linked('"stair-')
-    return product
+    shared.fresh().draw_flight(3)
+    shared.linked('"stair-')
+    return shared
 
 
 def test_a_rollout_is_waited_for_after_a_reload(climb: Product) -> None:

@@ -28,9 +28,10 @@ def run() -> Rollout:
     return rollout.model_copy(update={"reason": "</script><img src=x onerror=alert(1)><!--"})
 
 
-@pytest.fixture
-def replay(browser: Browser, run: Rollout, tmp_path) -> Iterator[Page]:
-    save(run, tmp_path / "run.html")
+@pytest.fixture(scope="module")
+def opened(browser: Browser, run: Rollout, tmp_path_factory) -> Iterator[Page]:
+    file = tmp_path_factory.mktemp("replay") / "run.html"
+    save(run, file)
     with browser.new_context(
         offline=True,
         viewport={"width": 1200, "height": 800},
@@ -42,9 +43,17 @@ def replay(browser: Browser, run: Rollout, tmp_path) -> Iterator[Page]:
         page.on("pageerror", lambda error: page.problems.append(str(error)))
         page.on("console", lambda m: page.problems.append(m.text) if m.type == "error" else None)
         page.on("request", lambda request: page.asked.append(request.url))
-        page.goto((tmp_path / "run.html").as_uri())
-        expect(page.locator("#clock")).to_contain_text("0.00 /")
+        page.goto(file.as_uri())
+        expect(page.locator("#clock")).to_contain_text(" 0.00 /")
         yield page
+
+
+@pytest.fixture
+def replay(opened: Page) -> Page:
+    """The page that these tests share, at the start of the run."""
+    opened.evaluate("replay.setTime(0)")
+    expect(opened.locator("#clock")).to_contain_text(" 0.00 /")
+    return opened
 
 
 def pixels(page: Page) -> np.ndarray:

@@ -19,6 +19,7 @@ STAIRS = {
                [0.56, 0.54], [2.0, 0.54]],
     "friction": 0.6,
 }  # fmt: skip
+RAMP = {"points": [[-1.5, 0], [0, 0], [0.6, 0.2], [2.0, 0.2]], "friction": 0.6}
 
 
 def test_a_plan_says_what_it_stands() -> None:
@@ -75,7 +76,7 @@ def test_too_much_is_told() -> None:
 
 @pytest.mark.slow
 def test_friction_that_is_too_low_is_told_as_ever() -> None:
-    plan = sw.plan(STAIRS, "a1_wheeled", tolerance={"friction": 0.5})
+    plan = sw.plan(RAMP, "a1_wheeled", tolerance={"friction": 0.5})
     assert plan.problem is not None
     assert plan.problem.kind == "statics"
     assert plan.tolerance is not None
@@ -89,8 +90,9 @@ def test_a_fast_plan_keeps_its_tolerance() -> None:
 
 
 def test_ground_without_faces_has_nothing_that_could_be_off() -> None:
-    ramp = {"points": [[-1.5, 0], [0, 0], [0.6, 0.2], [2.0, 0.2]], "friction": 0.7}
-    plan = sw.plan(ramp, "a1_wheeled", tolerance={"height": 0.03, "place": 0.03})
+    plan = sw.plan(
+        {**RAMP, "friction": 0.7}, "a1_wheeled", tolerance={"height": 0.03, "place": 0.03}
+    )
     assert plan.feasible, plan.problem
 
 

@@ -108,7 +108,7 @@ def test_an_impossible_terrain_is_told_all_the_same() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("robot", ["a1_wheeled", "a1_wheeled_x", "go2w"])
+@pytest.mark.parametrize("robot", ["a1_wheeled", "go2w"])
 def test_it_rolls_out_sooner(robot: str) -> None:
     steady = sw.rollout(sw.plan("curb-015", robot))
     fast = sw.rollout(sw.plan("curb-015", robot, timing="fast"))
