@@ -35,7 +35,8 @@ PATIENT = ("--timeout", "10")  # of a machine that has other things to do
 
 @pytest.fixture(scope="module")
 def plan() -> Plan:
-    return sw.plan("single-stair-036", "go2w", friction=0.6)
+    stair = {"points": [(-0.9, 0.0), (0.0, 0.0), (0.0, 0.36), (0.9, 0.36)]}
+    return sw.plan(stair, "go2w", friction=0.6)
 
 
 def renew(place: Path, bundle: Path) -> None:

@@ -44,6 +44,7 @@ def _map(*friction: float) -> dict[str, object]:
 
 
 MAP = _map(0.3, 0.7)
+QUICK = study({"name": "step.height", "values": [0.05]})
 DEADLY = _map(0.31, 0.71)  # no cell that another test may have asked
 
 
@@ -100,7 +101,7 @@ def test_stopping_keeps_what_is_done(cluster: ClusterEngine, tmp_path: Path) -> 
 @pytest.mark.slow
 def test_results_that_are_gone_are_asked_again(cluster: ClusterEngine, tmp_path: Path) -> None:
     """A worker may die with what it has done; the cluster is not started anew for that."""
-    store, ready = _store(DEADLY, tmp_path / "g.zarr"), _store(STEP, tmp_path / "r.zarr")
+    store, ready = _store(DEADLY, tmp_path / "g.zarr"), _store(QUICK, tmp_path / "r.zarr")
     fill_grid(ready, cluster, None, lambda: False)  # so that the cluster runs
     client, pid = cluster._client, cluster.scheduler_pid
     gone: set[str] = set()
@@ -123,7 +124,7 @@ def test_a_cell_that_kills_its_worker_is_found_and_recorded(
     """A worker dies at one cell: that cell fails, with a reason, and all others are done."""
     monkeypatch.setattr("stairwright.studies.cluster.evaluate_batch", _deadly)
     store = _store(DEADLY, tmp_path / "d.zarr")
-    ready = _store(STEP, tmp_path / "r.zarr")
+    ready = _store(QUICK, tmp_path / "r.zarr")
     fill_grid(ready, cluster, None, lambda: False)  # so that nothing is computed in this process
     fill_grid(store, cluster, None, lambda: False)
     assert store.counts() == {"pending": 0, "done": 11, "refused": 0, "failed": 1}
