@@ -9,7 +9,6 @@ from stairwright.planning.leading_end import better_led
 from stairwright.planning.plan import Plan, PlanTiming
 from stairwright.robot.turning import Facing
 from stairwright.simulation.replanning import plan_anew
-from stairwright.terrain.stairs import stair
 
 DROP = {"points": [[-1.2, 0.25], [0.0, 0.25], [0.0, 0.0], [1.2, 0.0]]}
 WALL = {"points": [[-1.2, 0.0], [0.0, 0.0], [0.0, 1.0], [1.2, 1.0]]}
@@ -29,17 +28,6 @@ def test_a1_wheeled_goes_down_with_its_rear_in_front(backward: Plan) -> None:
     assert backward.timing.total < 0.9 * forward.timing.total
     assert backward.certificate is not None
     assert backward.certificate.passed
-
-
-@pytest.mark.slow
-def test_down_five_stairs_too() -> None:
-    flight = stair(0.18, 0.28, 5, direction="down", approach=1.18, platform=1.0)
-    plan = sw.plan(flight, "a1_wheeled", 0.6, timing="fast")
-    assert plan.facing == "backward"
-    run = sw.rollout(plan)
-    assert run.success
-    assert run.metrics.speed_stairs is not None
-    assert run.metrics.speed_stairs > 0.3
 
 
 def test_it_stays_forward_where_that_is_as_good() -> None:
