@@ -165,6 +165,17 @@ def test_rows_without_a_border(tmp_path: Path) -> None:
     assert engine.asked < 31 * 12 * 3
 
 
+def test_where_all_passes_the_least_friction_that_was_asked_is_named(tmp_path: Path) -> None:
+    axes = [
+        {"name": "step.height", "values": [0.05, 0.1]},
+        {"name": "friction", "boundary": [0.1, 0.6], "tolerance": 0.05},
+    ]
+    store, _ = _filled(prepared(study(*axes)), lambda *_: True, tmp_path / "a.zarr")
+    data = border_dataset(store)
+    assert (data.boundary == 0.1).all()
+    assert np.isnan(data.beyond).all()
+
+
 def _fill_some(store: ResultStore, engine: Rule, limit: int) -> None:
     seen: list[int] = []
     fill_boundary(store, engine, lambda p: seen.extend(p.new), lambda: len(seen) > limit)

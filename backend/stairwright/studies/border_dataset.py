@@ -33,7 +33,9 @@ def border_dataset(store: ResultStore) -> xr.Dataset:
     assert axis is not None
     rows, complete_ = searched_rows(store)
     rising = rows.rising
-    found = [border(known, rising) for known in rows.known]
+    # Where nothing changes: more friction is what passes, of all else less.
+    high = axis.name == "friction" if rising is None else rising
+    found = [border(known, high) for known in rows.known]
     unit = target(axis.name, study.method).unit
     columns: dict[str, list[Any]] = {
         "boundary": [_value(axis.points, each.inside) for each in found],
