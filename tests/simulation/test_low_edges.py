@@ -34,3 +34,14 @@ def test_an_edge_higher_than_drawn_pushes_from_lower_down(length: float) -> None
     plan = sw.plan({"points": points}, "a1_wheeled", 0.6)
     run = sw.rollout(plan, disturbance={"step_height_error": [0.02]})
     assert run.outcome == "success", run.reason
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("box", [(0.12, 0.13, 0.16), (0.10, 0.14, 0.135)], ids=str)
+def test_a_riser_on_a_short_box_is_not_its_edge_once_more(box: tuple[float, ...]) -> None:
+    """Floor and riser together push as an edge does that the wheel is not round yet."""
+    low, length, high = box
+    points = [(-1.3, 0.0), (0.0, 0.0), (0.0, low), (length, low), (length, high), (1.5, high)]
+    plan = sw.plan({"points": points}, "a1_wheeled", 0.6)
+    run = sw.rollout(plan, seed=1, disturbance={"face_place_error": [0.03, -0.03]})
+    assert run.outcome == "success", run.reason
