@@ -54,7 +54,7 @@ double most_likely_on_arc(const Piece& arc, const WheelBelief& w, double begin, 
     double best = std::numeric_limits<double>::infinity(), found = 0.0, step = (arc.length - begin) / kArcSteps;
     const auto look = [&](double d) {
         const CurvePoint at = arc.at(d, radius);
-        const double value = w.spread.distance(w.centre - at.centre) + face_cost(w, at.normal) + (d < 0.0 ? kCornerCost : 0.0);
+        const double value = w.spread.distance(w.centre - at.centre) + face_cost(w, at.normal);
         if (value < best) best = value, found = d;
     };
     for (int k = 0; k <= kArcSteps; ++k) look(begin + k * step);
@@ -96,7 +96,7 @@ CurveMatch match(const WheelPath& path, const WheelBelief& wheel, double last, d
             const Vec2 n = found.point.normal, other = next.at(found.beyond > 0 ? 0.0 : next.length, path.radius()).normal;
             found.blocked = found.beyond * cross(n, other) > kBlocks;
         }
-        found.cost = believed.spread.distance(wheel.centre - found.point.centre) + face_cost(wheel, found.point.normal) + (cut && d < 0.0 ? kCornerCost : 0.0);
+        found.cost = believed.spread.distance(wheel.centre - found.point.centre) + face_cost(wheel, found.point.normal);
         if (found.cost < best.cost) best = found;
     }
     for (std::size_t k = path.corner_from(lower); k < path.corners().size() && path.corners()[k] <= upper; ++k) {
