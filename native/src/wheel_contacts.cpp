@@ -146,6 +146,13 @@ Interval early_interval(const WheelPath& path, WheelPlaces s, double friction, c
             out = both;
             break;
         }
+        const double drop = path.next_drop(s[pair]);
+        if (drop > s[pair]) continue;
+        Counted counted;
+        add_turned(counted, path, s[pair], drop, friction);
+        counted.add_all(wheel_contacts(path, s[pair == kFront ? kRear : kFront], friction));
+        const Interval both = out.intersect(com_interval(counted.span(), kGentleRays));
+        if (!both.empty() || surely) out = both;
     }
     return out;
 }

@@ -1,4 +1,4 @@
-"""Edges so low that they may be none, for heights are off by as much."""
+"""Low edges, which may be none for heights are off by as much, and edges of short boxes."""
 
 from __future__ import annotations
 
@@ -44,4 +44,19 @@ def test_a_riser_on_a_short_box_is_not_its_edge_once_more(box: tuple[float, ...]
     points = [(-1.3, 0.0), (0.0, 0.0), (0.0, low), (length, low), (length, high), (1.5, high)]
     plan = sw.plan({"points": points}, "a1_wheeled", 0.6)
     run = sw.rollout(plan, seed=1, disturbance={"face_place_error": [0.03, -0.03]})
+    assert run.outcome == "success", run.reason
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("robot", "length", "height"), [("a1_wheeled", 0.12, 0.14), ("go2w", 0.16, 0.219)]
+)
+def test_front_wheels_do_not_hang_on_an_edge_that_comes_late(
+    robot: str, length: float, height: float
+) -> None:
+    """A box 6 cm longer than drawn, up which the rear wheels climb meanwhile."""
+    top = [(0.0, height), (length, height)]
+    points = [(-1.3, 0.0), (0.0, 0.0), *top, (length, 0.0), (length + 1.3, 0.0)]
+    plan = sw.plan({"points": points}, robot, 0.6)
+    run = sw.rollout(plan, seed=1, disturbance={"face_place_error": [-0.03, 0.03]})
     assert run.outcome == "success", run.reason

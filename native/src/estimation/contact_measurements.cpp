@@ -20,6 +20,7 @@ constexpr double kEdgeStray = 0.012;   // m that the map's edge may be off
 constexpr double kLevel = 0.95;        // cosine of the slope of a face on which the wheels' scale is estimated
 constexpr double kMissed = 0.004;       // m put back: the face is not where the map has it
 constexpr double kSearchNoise = 0.01;   // m^2 of variance for a metre that a face is farther on
+constexpr double kTurnSearchNoise = 0.04;  // the same for an edge that a wheel does not turn about yet
 constexpr double kSame = 1e-6;          // m
 constexpr double kBounce = 0.1;          // s after a wheel has met a face in which its tyre gives way and comes back
 constexpr double kGivesWay = 4.0;       // of the variance of a place meanwhile: some millimetres
@@ -77,10 +78,14 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
 // and that way turns by ds / r. An edge that is higher than drawn, or comes earlier, looks from its place like another one.
 void Estimator::measure_turn(int i, Vec2 normal, Error along, double dt, Error& error) {
     const WheelState& w = wheels_[i];
+    const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
     const double turning = -dot(w.felt, normal) / path_.radius();
     for (double& v : along) v *= turning;
     const double variance = w.force_deviation * w.force_deviation * std::max(1.0, noise_.place_lasts / dt);
-    covariance_.update(along, w.traction - dot(w.felt, {normal.z, -normal.x}), variance, error);
+    const double off = w.traction - dot(w.felt, {normal.z, -normal.x}), before = error[own];
+    covariance_.update(along, off, variance, error);
+    // A wheel that an edge down should have turned about by now is still before it: that is farther on.
+    if (normal.x > 0.0 && off > w.force_deviation) covariance_.add_noise(own, kTurnSearchNoise * std::abs(error[own] - before));
 }
 
 // A wheel that the map has beyond a face which it does not feel: the face is farther on than drawn, or the robot less far,
