@@ -22,6 +22,12 @@ def study(*axes: dict[str, Any], **fields: Any) -> dict[str, Any]:
     return {"schema": "stairwright/study/1", "axes": list(axes), **fields}
 
 
+LONG = study(
+    {"name": "step.height", "from": 0.03, "to": 0.4, "count": 30},
+    {"name": "friction", "values": [0.4, 0.5, 0.6, 0.7]},
+)
+
+
 def identical(a: xr.Dataset, b: xr.Dataset) -> bool:
     """Whether two datasets agree in every bit: names, order, attributes of variables, values."""
     if list(a.data_vars) != list(b.data_vars) or a.sizes != b.sizes:

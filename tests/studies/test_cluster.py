@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import random
 import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 from typing import Any
@@ -45,7 +47,7 @@ def _map(*friction: float) -> dict[str, object]:
 
 MAP = _map(0.3, 0.7)
 QUICK = study({"name": "step.height", "values": [0.05]})
-DEADLY = _map(0.31, 0.71)  # no cell that another test may have asked
+DEADLY = _map(0.31)  # no cell that another test may have asked
 
 
 def _store(document: dict[str, object], path: Path) -> ResultStore:
@@ -113,8 +115,44 @@ def test_results_that_are_gone_are_asked_again(cluster: ClusterEngine, tmp_path:
 
     fill_grid(store, cluster, lose_all_once, lambda: False)
     assert gone
-    assert store.counts()["done"] == 12
+    assert store.counts()["done"] == 6
     assert cluster.scheduler_pid == pid
+
+
+def _children(pid: int) -> list[int]:
+    import psutil
+
+    return [child.pid for child in psutil.Process(pid).children(recursive=True)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("whom", ["worker", "scheduler"])
+def test_whoever_dies_the_study_ends_by_itself(
+    whom: str, truth: ResultStore, cluster: ClusterEngine, tmp_path: Path
+) -> None:
+    store = ResultStore.create(tmp_path / "k.zarr", truth.study, truth.engine)
+    ready = _store(QUICK, tmp_path / "r.zarr")
+    fill_grid(ready, cluster, None, lambda: False)  # so that the cluster runs
+    killed = threading.Event()
+
+    def kill(progress: Any) -> None:
+        pid = cluster.scheduler_pid
+        if not killed.is_set() and progress.done > 40 and pid is not None:
+            workers = [each for each in _children(pid) if _is_worker(each)]
+            if whom == "worker" and not workers:
+                return
+            os.kill(pid if whom == "scheduler" else random.choice(workers), signal.SIGKILL)
+            killed.set()
+
+    fill_grid(store, cluster, kill, lambda: False)
+    assert killed.is_set()
+    assert identical(grid_dataset(truth), grid_dataset(store))
+
+
+def _is_worker(pid: int) -> bool:
+    import psutil
+
+    return any("spawn_main" in part for part in psutil.Process(pid).cmdline())
 
 
 @pytest.mark.slow
@@ -127,8 +165,8 @@ def test_a_cell_that_kills_its_worker_is_found_and_recorded(
     ready = _store(QUICK, tmp_path / "r.zarr")
     fill_grid(ready, cluster, None, lambda: False)  # so that nothing is computed in this process
     fill_grid(store, cluster, None, lambda: False)
-    assert store.counts() == {"pending": 0, "done": 11, "refused": 0, "failed": 1}
-    record = store.records([7])[7]
+    assert store.counts() == {"pending": 0, "done": 5, "refused": 0, "failed": 1}
+    record = store.records([3])[3]
     assert record["reason"] == "lost"
     assert "died" in record["message"]
     assert store.forget_failures() == 1
@@ -136,7 +174,7 @@ def test_a_cell_that_kills_its_worker_is_found_and_recorded(
 
 
 def _deadly(document: bytes, engine: str, cells: list[int]) -> worker.Batch:
-    if 7 in cells and b"stairs.rise" in document:
+    if 3 in cells and b"stairs.rise" in document:
         os.kill(os.getpid(), signal.SIGKILL)
     return evaluate_batch(document, engine, cells)
 
