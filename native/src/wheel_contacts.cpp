@@ -130,8 +130,8 @@ Interval steady_interval(const WheelPath& path, WheelPlaces s, double friction) 
 
 namespace {
 
-// What is left of `in_time` where a pair is over a drop before it is planned: of the drops that leave anything, the
-// farthest round.
+// What is left of `in_time` where a pair is over a drop before it is planned (of the drops that leave anything, the
+// farthest round), or still on the tread before a drop that it is to be round.
 Interval early_interval(const WheelPath& path, WheelPlaces s, double friction, const Interval& in_time, bool surely) {
     Interval out = in_time;
     for (const int pair : {kFront, kRear}) {
