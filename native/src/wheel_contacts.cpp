@@ -132,26 +132,26 @@ namespace {
 
 // What is left of `in_time` where a pair is over a drop before it is planned (of the drops that leave anything, the
 // farthest round), or still on the tread before a drop that it is to be round.
-Interval early_interval(const WheelPath& path, WheelPlaces s, double friction, const Interval& in_time, bool surely) {
+Interval other_drop_interval(const WheelPath& path, WheelPlaces s, double friction, const Interval& in_time, bool surely) {
     Interval out = in_time;
     for (const int pair : {kFront, kRear}) {
-        for (const double noticed : {kNoticed, 0.7 * kNoticed, kLeastNoticed}) {
-            const double other = early_place(path, s[pair], noticed);
-            if (other == s[pair]) break;
+        const auto turned = [&](double other) {
             Counted counted;
             add_turned(counted, path, s[pair], other, friction);
             counted.add_all(wheel_contacts(path, s[pair == kFront ? kRear : kFront], friction));
-            const Interval both = out.intersect(com_interval(counted.span(), kGentleRays));
+            return out.intersect(com_interval(counted.span(), kGentleRays));
+        };
+        for (const double noticed : {kNoticed, 0.7 * kNoticed, kLeastNoticed}) {
+            const double other = early_place(path, s[pair], noticed);
+            if (other == s[pair]) break;
+            const Interval both = turned(other);
             if (both.empty() && !(surely && noticed == kLeastNoticed)) continue;
             out = both;
             break;
         }
         const double drop = path.next_drop(s[pair]);
         if (drop > s[pair]) continue;
-        Counted counted;
-        add_turned(counted, path, s[pair], drop, friction);
-        counted.add_all(wheel_contacts(path, s[pair == kFront ? kRear : kFront], friction));
-        const Interval both = out.intersect(com_interval(counted.span(), kGentleRays));
+        const Interval both = turned(drop);
         if (!both.empty() || surely) out = both;
     }
     return out;
@@ -172,7 +172,7 @@ Interval lagged_interval(const WheelPath& path, WheelPlaces s, double friction, 
             if (out.empty()) return out;
         }
     }
-    return early_interval(path, s, friction, out, surely);
+    return other_drop_interval(path, s, friction, out, surely);
 }
 
 NodeIntervals node_intervals(const WheelPath& path, WheelPlaces s, double friction, double reserve, double lag) {

@@ -169,6 +169,8 @@ std::size_t WheelPath::corner_from(double s) const {
     return static_cast<std::size_t>(std::lower_bound(corners_.begin(), corners_.end(), s) - corners_.begin());
 }
 
+bool WheelPath::begins_in_corner(const Piece& piece) const { return std::binary_search(corners_.begin(), corners_.end(), piece.s); }
+
 double WheelPath::project(Vec2 p, double lower, double upper) const {
     double best = kInfinity, found = lower;
     for (std::size_t k = piece(lower); k < pieces_.size() && pieces_[k].s <= upper; ++k) {

@@ -71,6 +71,8 @@ class WheelPath {
     double next_drop(double s) const;
     // Index of the first corner at or after `s`.
     std::size_t corner_from(double s) const;
+    // Whether one of the pieces begins in a concave corner.
+    bool begins_in_corner(const Piece& piece) const;
 
   private:
     std::size_t piece(double s) const;

@@ -82,7 +82,7 @@ CurveMatch match(const WheelPath& path, const WheelBelief& wheel, double last, d
         const bool first = k == 0, end = k + 1 == pieces.size();
         if ((piece.s + piece.length < lower && !end) || (piece.s > upper && !first) || (piece.arc && k < wheel.past)) continue;
         const WheelBelief& believed = k >= wheel.unsure && k < wheel.unsure + wheel.unsure_count ? unsure : wheel;
-        const bool cut = piece.arc && std::ranges::binary_search(path.corners(), piece.s);
+        const bool cut = piece.arc && path.begins_in_corner(piece);
         const double begin = first ? -1e9 : cut ? -below(piece, path.radius()) : 0.0;
         double d = piece.arc ? most_likely_on_arc(piece, believed, begin, path.radius()) : most_likely(piece, believed);
         const double free = d;

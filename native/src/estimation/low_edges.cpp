@@ -22,18 +22,17 @@ void Estimator::note_low_edges() {
     low_edges_.clear(), low_drops_.clear();
     const auto& pieces = path_.pieces();
     const auto steep = [&](std::size_t k) { return k < pieces.size() && !pieces[k].arc && is_face(k); };
-    const auto in_corner = [&](std::size_t k) { return std::ranges::binary_search(path_.corners(), pieces[k].s); };
     for (std::size_t k = 1; k + 1 < pieces.size(); ++k) {
         if (!pieces[k].arc) continue;
         const CurvePoint begin = pieces[k].at(0.0, path_.radius()), end = pieces[k].at(pieces[k].length, path_.radius());
         LowEdge edge{k, k, begin.normal.x < -kBend};
-        if (edge.up && !in_corner(k) && steep(k - 1)) edge.first = k - 1;
+        if (edge.up && !path_.begins_in_corner(pieces[k]) && steep(k - 1)) edge.first = k - 1;
         if (!edge.up && steep(k + 1)) edge.last = k + 1;
         const std::size_t below = edge.last + 1;
         if (below == pieces.size() || pieces[below].arc || is_face(below)) continue;
         const Piece& last = pieces[edge.last];
         const CurvePoint to = last.at(last.length, path_.radius());
-        const bool cornered = edge.up ? in_corner(edge.first) : cross(to.normal, normal(below)) > kBend;
+        const bool cornered = edge.up ? path_.begins_in_corner(pieces[edge.first]) : cross(to.normal, normal(below)) > kBend;
         const bool low = std::abs(pieces[edge.first].at(0.0, path_.radius()).centre.z - to.centre.z) < kHeights * noise_.tread_height;
         if (low && cornered) low_edges_.push_back(edge);
         if (!low && edge.last == k && begin.normal.z > kTread && end.normal.z < kTread && end.normal.x > 0.0) low_drops_.push_back(k);

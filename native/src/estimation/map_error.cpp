@@ -85,7 +85,7 @@ std::size_t Estimator::face_below(std::size_t piece) const {
     if (!edge.arc || is_low_drop(piece)) return piece;
     if (!is_face(piece) || normal(piece).x > 0.0) return kNoPiece;
     if (piece > 0 && !path_.pieces()[piece - 1].arc && is_face(piece - 1)) return piece - 1;
-    return std::ranges::binary_search(path_.corners(), edge.s) ? piece : kNoPiece;
+    return path_.begins_in_corner(edge) ? piece : kNoPiece;
 }
 
 // The last face between two pieces, `from` if there is none. That of a low edge down nothing measures.
