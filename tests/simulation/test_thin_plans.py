@@ -81,3 +81,19 @@ def test_a_robot_that_stands_on_one_pair_of_wheels_is_not_called_feasible_to_a_h
     plan = make_plan(wall, robot, friction, diagnose=False)
     if plan.feasible:
         assert sw.rollout(plan, controller={"sensing": "ideal"}).outcome == "success"
+
+
+# Up a slope of 73 degrees in front while the rear wheels climb 3.4 cm, with 8 mm for the CoM.
+STEEP = [
+    *[(-1.3, 0.0), (0.0, 0.0), (0.232, -0.082), (0.278, -0.097), (0.383, -0.107), (0.522, -0.109)],
+    *[(0.653, -0.095), (0.786, -0.058), (0.998, -0.06), (1.104, -0.033), (1.104, 0.001)],
+    *[(1.394, 0.001), (1.504, 0.376), (1.619, 0.401), (1.619, 0.46), (1.96, 0.545)],
+    *[(1.963, 0.588), (2.276, 0.614), (2.345, 0.888), (2.87, 0.971), (4.17, 0.971)],
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sensing", ["ideal", "robot"])
+def test_rear_wheels_do_not_stand_in_a_corner_while_the_plan_climbs(sensing):
+    plan = sw.plan({"points": STEEP}, "a1_wheeled_x", 0.6)
+    assert sw.rollout(plan, controller={"sensing": sensing}).outcome == "success"

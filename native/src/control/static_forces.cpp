@@ -18,6 +18,7 @@ struct Attempt {
 };
 constexpr Attempt kAttempts[] = {{0.6, 0.6}, {0.75, 0.6}, {0.9, 0.6}, {1.0, 0.6}, {1.0, 10.0}};
 constexpr double kReached = 0.0002;  // m before a corner; plans change what wheels lean on this near to it
+constexpr double kPassed = 0.003;    // m past it, where a wheel is to climb and no longer stands on what it comes from
 constexpr double kHeld = 0.01;    // of the weight; forces that miss less than this hold it
 constexpr double kWorthMore = 0.85;  // more friction is taken where the forces' squares fall below this share
 constexpr double kMoment = 20.0;  // 1/m^2, weight of the moment against the forces
@@ -69,15 +70,15 @@ void rest(const WheelPath& path, const Pose& pose, const std::array<Lean, 2>& le
     }
 }
 
-// The ways in which a wheel there may lean on the ground: before a corner on the face that it comes along, from it on
-// either face or both, and elsewhere they are all the same.
+// The ways in which a wheel there may lean on the ground: before a corner on the face that it comes along, in it on either
+// face or both, past it on the face that it goes along, and elsewhere they are all the same.
 std::span<const Lean> ways(const WheelPath& path, double s) {
     static constexpr std::array<Lean, 3> kAll = {Lean::both, Lean::after, Lean::before};
-    const std::span<const Lean> all(kAll);
+    const std::span<const Lean> all(kAll), before = all.last(1), after = all.subspan(1, 1);
     const auto& corners = path.corners();
     const double near = corner_planned(path);
     for (std::size_t k = path.corner_from(s - near); k < corners.size() && corners[k] <= s + near; ++k)
-        if (std::abs(s - corners[k]) < near) return s < corners[k] - kReached ? all.last(1) : all;
+        if (std::abs(s - corners[k]) < near) return s < corners[k] - kReached ? before : s > corners[k] + kPassed ? after : all;
     return all.first(1);
 }
 
