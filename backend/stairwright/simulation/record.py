@@ -18,7 +18,7 @@ from .result import Series
 _TIME = 0
 _QPOS, _QVEL, _TORQUE = slice(1, 20), slice(20, 38), slice(38, 50)
 _CONTACTS, _PROGRESS, _TARGET = slice(50, 66), 66, slice(67, 74)
-_PLACES = slice(74, 78)
+PLACES = slice(74, 78)
 _WIDTH = 78
 
 
@@ -82,7 +82,7 @@ class Recorder:
             torque=rows[:, _TORQUE].copy(),
             pitch=np.unwrap(pitch),
             pitch_desired=target[:, PITCH].copy(),
-            progress=self._progress(rows[:, _PLACES]),
+            progress=self._progress(rows[:, PLACES]),
             progress_desired=rows[:, _PROGRESS].copy(),
             contact_force=forces,
         )

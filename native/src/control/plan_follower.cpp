@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kHurry = 1.5;            // how much faster than planned it may follow a robot that is ahead
 constexpr double kHangingLead = 0.005;    // m
-constexpr double kMostApart = 0.02;       // m that front wheels may be ahead of the plan, against rear ones
 constexpr double kRateAcceleration = 1.0; // m/s^2 of the plan's rate, where the plan itself asks for no more
 
 using Row = std::array<double, kReferenceWidth>;
@@ -41,22 +40,20 @@ double PlanFollower::planned_acceleration(Spot at) const {
     return mix(slow, fast, at.share) * (fast - slow) / step_;
 }
 
-PlanFollower::Lag PlanFollower::wheel_lag(Spot at, const std::array<double, 4>& places) const {
-    if (std::isnan(places[0])) return {};
+double PlanFollower::wheel_lag(Spot at, const std::array<double, 4>& places) const {
+    if (std::isnan(places[0])) return 0.0;
     const Reference &a = rows_[at.row], &b = rows_[at.row + 1];
     const double df = mix(a.rate.wheels[0], b.rate.wheels[0], at.share), dr = mix(a.rate.wheels[1], b.rate.wheels[1], at.share);
     const double front = mix(a.value.wheels[0], b.value.wheels[0], at.share) - 0.5 * (places[0] + places[1]);
     const double rear = mix(a.value.wheels[1], b.value.wheels[1], at.share) - 0.5 * (places[2] + places[3]);
     // Along the plan's own direction, so that it also holds where a wheel rolls back.
     const double lag = (front * df + rear * dr) / std::max(df * df + dr * dr, 1e-6);
-    return {lag * (0.5 * (std::abs(df) + std::abs(dr))),  // of wheels, not of a trunk that swings
-            rear - front};
+    return lag * (0.5 * (std::abs(df) + std::abs(dr)));  // of wheels, not of a trunk that swings
 }
 
-const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool moving, double dt, bool hanging, bool before_drop) {
+const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool moving, double dt, bool hanging) {
     const Spot now = spot(position_);
-    const Lag lag = wheel_lag(now, places);
-    lag_ = lag.mean;
+    lag_ = wheel_lag(now, places);
     const double most = hanging ? std::min(kHangingLead, maximum_lead_) : maximum_lead_;
     double rate = 0.0;
     if (moving) {
@@ -65,8 +62,6 @@ const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool
             rate = allowed * std::min(1.0, std::max(-0.5, 2.0 * (most - lag_) / most));
         else
             rate = allowed * std::min(kHurry, 1.0 - lag_ / maximum_lead_ * (kHurry - 1.0));
-        // Front wheels are over the edge: it waits for them to come back.
-        if (before_drop && lag.apart > kMostApart) rate = std::min(rate, 0.0);
     }
     const double reach = std::max(kRateAcceleration, planned_acceleration(now)) * dt;
     rate = std::min(std::max(rate, rate_ - 4 * reach), rate_ + reach);

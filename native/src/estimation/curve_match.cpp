@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kCornerCost = 2.0;   // two faces at once are rarer than one
 constexpr double kMostForceCost = 16; // legs that swing feel forces that no face explains
+constexpr double kMostCourseCost = 9.0;
 constexpr int kArcSteps = 8;
 constexpr double kEnd = 1e-6;         // m
 constexpr double kBlocks = 0.7;       // sine of the turn from one face to the next that stops a wheel
@@ -38,6 +39,12 @@ double corner_cost(const WheelBelief& w, Vec2 a, Vec2 b) {
     return best;
 }
 
+// Cost of a face that the wheel's centre does not move along.
+double course_cost(const WheelBelief& w, Vec2 n) {
+    const double variance = w.course_spread.along(n);
+    return variance > 0.0 ? std::min(squared(dot(w.course, n)) / variance, kMostCourseCost) : 0.0;
+}
+
 // Distance along a straight piece of its most likely point, not limited to its ends.
 double most_likely(const Piece& line, const WheelBelief& w) {
     const Vec2 t = {line.a, line.b}, e = w.centre - line.origin;
@@ -54,7 +61,7 @@ double most_likely_on_arc(const Piece& arc, const WheelBelief& w, double begin, 
     double best = std::numeric_limits<double>::infinity(), found = 0.0, step = (arc.length - begin) / kArcSteps;
     const auto look = [&](double d) {
         const CurvePoint at = arc.at(d, radius);
-        const double value = w.spread.distance(w.centre - at.centre) + face_cost(w, at.normal);
+        const double value = w.spread.distance(w.centre - at.centre) + face_cost(w, at.normal) + course_cost(w, at.normal);
         if (value < best) best = value, found = d;
     };
     for (int k = 0; k <= kArcSteps; ++k) look(begin + k * step);
@@ -96,7 +103,7 @@ CurveMatch match(const WheelPath& path, const WheelBelief& wheel, double last, d
             const Vec2 n = found.point.normal, other = next.at(found.beyond > 0 ? 0.0 : next.length, path.radius()).normal;
             found.blocked = found.beyond * cross(n, other) > kBlocks;
         }
-        found.cost = believed.spread.distance(wheel.centre - found.point.centre) + face_cost(wheel, found.point.normal);
+        found.cost = believed.spread.distance(wheel.centre - found.point.centre) + face_cost(wheel, found.point.normal) + course_cost(wheel, found.point.normal);
         if (found.cost < best.cost) best = found;
     }
     for (std::size_t k = path.corner_from(lower); k < path.corners().size() && path.corners()[k] <= upper; ++k) {

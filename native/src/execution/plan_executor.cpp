@@ -26,11 +26,6 @@ bool PlanExecutor::hangs(const control::Ahead& ahead) const {
     return (ahead.hanging[kFront] && loaded(kFront)) || (ahead.hanging[kRear] && loaded(kRear));
 }
 
-bool PlanExecutor::before_drop() const {
-    const double front = follower_.target().value.wheels[kFront];
-    return controller_.path().next_drop(front) < front + kEarlyDrop;
-}
-
 const control::Reference& PlanExecutor::prepare(const control::Reference& drawn, const Perceived& seen, double dt) {
     const bool level = seen.ahead.on_tread[0] && seen.ahead.on_tread[1];
     adapted_ = drawn;
@@ -53,9 +48,10 @@ const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool 
         map_error_ = seen.map_error, waits_ = true;
     moving = moving && !waits_ && plan_change_.over();
     const bool searching = moving && seen.ahead.any();
+    if (seen.places && moving && !searching) early_face_.watch_edge(follower_.target(), controller_.path(), *seen.places, dt);
     std::array<double, 4> places = controller_.places();
     for (std::size_t i = 0; i < 4; ++i) places[i] -= early_face_.ahead()[i / 2] - (i / 2 == kRear ? legs_apart_.back() : 0.0);
-    const control::Reference& drawn = follower_.advance(places, moving && !searching, dt, hangs(seen.ahead), before_drop());
+    const control::Reference& drawn = follower_.advance(places, moving && !searching && !early_face_.waits(), dt, hangs(seen.ahead));
     if (!seen.places) return drawn;
     if (!prepared() && plan_change_.over()) return prepare(drawn, seen, dt);
     adapted_ = plan_change_.step(drawn, dt);

@@ -20,9 +20,8 @@ class PlanFollower {
     PlanFollower(double start, double step, std::vector<Reference> rows, std::vector<double> speeds, double maximum_lead);
 
     // One control step on; `places` of the wheels are NaN before the first measurement. Of wheels that hang over a
-    // corner the plan is ahead by much less. `before_drop`: front wheels may be over an edge already that the plan has
-    // ahead of them.
-    const Reference& advance(const std::array<double, 4>& places, bool moving, double dt, bool hanging = false, bool before_drop = false);
+    // corner the plan is ahead by much less.
+    const Reference& advance(const std::array<double, 4>& places, bool moving, double dt, bool hanging = false);
 
     const Reference& first() const { return rows_.front(); }
     double position() const { return position_; }  // along the path [m]
@@ -37,11 +36,7 @@ class PlanFollower {
         double share;
     };
     Spot spot(double position) const;
-    struct Lag {
-        double mean = 0.0;   // of the wheels behind the plan [m]
-        double apart = 0.0;  // of rear wheels behind front ones, beyond what is planned [m]
-    };
-    Lag wheel_lag(Spot at, const std::array<double, 4>& places) const;
+    double wheel_lag(Spot at, const std::array<double, 4>& places) const;
     double planned_acceleration(Spot at) const;
     void set_target(Spot at);
 

@@ -67,8 +67,6 @@ class PlanExecutor {
   private:
     // Whether wheels hang in the air that are to carry weight: not where the plan itself hardly loads them.
     bool hangs(const control::Ahead& ahead) const;
-    // Whether the plan has the front wheels where an edge that leads down may come before its place, or on it.
-    bool before_drop() const;
     void keep_legs_apart(const control::Reference& fitted, const std::array<Vec2, 2>& ground, double rear, double dt);
     // The plan's set point while the robot finds out what it has to know before it starts.
     const control::Reference& prepare(const control::Reference& drawn, const Perceived& seen, double dt);
