@@ -27,8 +27,6 @@ def position_after(front: float, rear: float) -> float:
     return float(follower.position)
 
 
-@pytest.mark.parametrize(
-    ("front", "rear"), [(0.04, 0.04), (0.015, 0.0), (0.04, 0.0), (0.0, 0.04)]
-)
+@pytest.mark.parametrize(("front", "rear"), [(0.04, 0.04), (0.015, 0.0), (0.04, 0.0), (0.0, 0.04)])
 def test_it_goes_on_with_wheels_that_are_ahead(front: float, rear: float) -> None:
     assert position_after(front, rear) > AT + 0.01

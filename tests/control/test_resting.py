@@ -113,5 +113,6 @@ def test_a_wheel_past_a_corner_climbs() -> None:
     corner = float(path.corners[0])
     front, rear = path.at_x(0.3), corner + 0.004
     found = resting(path, [(front, rear)], [(0.25, 0.3)])[0]
-    assert within_cone(found[1], (-1.0, 0.0)) and found[1, 0] < -0.1 * WEIGHT
+    assert within_cone(found[1], (-1.0, 0.0))
+    assert found[1, 0] < -0.1 * WEIGHT
     np.testing.assert_allclose(found.sum(axis=0), [0.0, WEIGHT], atol=0.02 * WEIGHT)

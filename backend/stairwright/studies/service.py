@@ -175,9 +175,9 @@ class Studies:
             except Exception as error:  # whatever it is, who follows it must learn of it
                 logger.exception("a study failed")
                 following.job.finish("failed", error=problem_of(error))
-            self._current = None
             await self._note(following)
             await asyncio.to_thread(self._store.studies.measure, following.record.id)
+            self._current = None  # `delete` waits for this: what is written later would come back
             self._forget_some()
 
     async def _carry_out(self, following: Following) -> None:
