@@ -1,4 +1,5 @@
-// A face that comes before the map has it: the wheels that have met it stay there until the plan is where they are.
+// A face that comes before the map has it: the wheels that have met it stay there until the plan is where they are. Those
+// that are over an edge down which came early are called back.
 //
 // What is found moves the robot on the map, and nothing of it on the ground. Without this the wheels would be ahead of
 // the plan all of a sudden, and be called back, while those of the other pair are in the middle of a riser.
