@@ -14,6 +14,7 @@ from collections import OrderedDict
 from dataclasses import replace
 
 import orjson
+from sqlalchemy.exc import SQLAlchemyError
 
 from stairwright.errors import Cancelled
 from stairwright.jobs.failures import Interrupted, QueueFull, WorkerDied, problem_of
@@ -165,20 +166,25 @@ class Studies:
             if following.job.finished:  # cancelled while it waited
                 continue
             self._current = following
-            try:
-                await self._carry_out(following)
-            except asyncio.CancelledError:
-                raise
-            except NotInstalled as error:
-                logger.warning("a study was not begun: %s", error)
-                following.job.finish("failed", error=problem_of(error))
-            except Exception as error:  # whatever it is, who follows it must learn of it
-                logger.exception("a study failed")
-                following.job.finish("failed", error=problem_of(error))
-            await self._note(following)
-            await asyncio.to_thread(self._store.studies.measure, following.record.id)
+            await self._see_to(following)
             self._current = None  # `delete` waits for this: what is written later would come back
             self._forget_some()
+
+    async def _see_to(self, following: Following) -> None:
+        """Carry it out and write down how it ended."""
+        try:
+            await self._carry_out(following)
+        except NotInstalled as error:
+            logger.warning("a study was not begun: %s", error)
+            following.job.finish("failed", error=problem_of(error))
+        except Exception as error:  # whatever it is, who follows it must learn of it
+            logger.exception("a study failed")
+            following.job.finish("failed", error=problem_of(error))
+        try:
+            await self._note(following)
+            await asyncio.to_thread(self._store.studies.measure, following.record.id)
+        except (SQLAlchemyError, OSError):  # as on a full disk; those that wait have their turn
+            logger.exception("how a study ended could not be written down")
 
     async def _carry_out(self, following: Following) -> None:
         """Have the runner do it, again where the runner dies."""
