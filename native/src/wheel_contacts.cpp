@@ -68,8 +68,8 @@ void add_strayed(Counted& out, const WheelPath& path, double s, double friction,
 // Where on its edge a wheel at `s` may be if a drop ahead comes kEarlyDrop before it is planned, and is noticed `noticed`
 // round the edge; `s` if there is none.
 double early_place(const WheelPath& path, double s, double noticed) {
-    const double drop = path.next_drop(s);
-    return drop < s + kEarlyDrop ? std::max(s, std::min(s + kEarlyDrop, drop + noticed)) : s;
+    const auto drop = path.next_drop(s);
+    return drop ? std::max(s, std::min(s + kEarlyDrop, *drop + noticed)) : s;
 }
 
 }  // namespace
@@ -149,9 +149,9 @@ Interval other_drop_interval(const WheelPath& path, WheelPlaces s, double fricti
             out = both;
             break;
         }
-        const double drop = path.next_drop(s[pair]);
-        if (drop > s[pair]) continue;
-        const Interval both = turned(drop);
+        const auto drop = path.next_drop(s[pair]);
+        if (!drop || *drop > s[pair]) continue;
+        const Interval both = turned(*drop);
         if (!both.empty() || surely) out = both;
     }
     return out;

@@ -159,10 +159,10 @@ std::size_t WheelPath::piece(double s) const {
     return static_cast<std::size_t>(std::max<std::ptrdiff_t>(k - 1, 0));
 }
 
-double WheelPath::next_drop(double s) const {
+std::optional<double> WheelPath::next_drop(double s) const {
     for (std::size_t k = piece(s); k < pieces_.size() && pieces_[k].s < s + kEarlyDrop; ++k)
         if (pieces_[k].arc && pieces_[k].at(pieces_[k].length, radius_).normal.x > kSteep) return pieces_[k].s;
-    return kInfinity;
+    return std::nullopt;
 }
 
 std::size_t WheelPath::corner_from(double s) const {

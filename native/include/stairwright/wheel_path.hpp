@@ -6,6 +6,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -66,9 +67,9 @@ class WheelPath {
     }
     // Arc length in [lower, upper] whose centre is nearest to `p`.
     double project(Vec2 p, double lower = 0.0, double upper = std::numeric_limits<double>::infinity()) const;
-    // Where the next edge that leads down a face begins, not behind the piece that `s` is on; infinity if there is none
-    // less than kEarlyDrop ahead.
-    double next_drop(double s) const;
+    // Where the next edge that leads down a face begins, not behind the piece that `s` is on, if there is one less than
+    // kEarlyDrop ahead.
+    std::optional<double> next_drop(double s) const;
     // Index of the first corner at or after `s`.
     std::size_t corner_from(double s) const;
     // Whether one of the pieces begins in a concave corner.

@@ -15,13 +15,14 @@ constexpr double kLead = 0.03;   // m ahead of the wheels, which makes them roll
 }  // namespace
 
 void EarlyFace::watch_edge(const Reference& planned, const WheelPath& path, const std::array<double, 4>& places, double dt) {
-    const double at = planned.value.wheels[kFront], place = std::min(places[0], places[1]), edge = path.next_drop(at);
+    const double at = planned.value.wheels[kFront], place = std::min(places[0], places[1]);
+    const auto edge = path.next_drop(at);
     double& ahead = ahead_[kFront];
-    const bool is_round = place >= std::max(edge, at) + kRound;
-    if (is_round && place > edge + kSteep * path.radius()) {
-        const std::size_t corner = path.corner_from(edge);
+    const bool is_round = edge && place >= std::max(*edge, at) + kRound;
+    if (is_round && place > *edge + kSteep * path.radius()) {
+        const std::size_t corner = path.corner_from(*edge);
         const double foot = corner < path.corners().size() ? path.corners()[corner] : path.length();
-        if (path.centre(edge).z - path.centre(foot).z < kLow * path.radius()) {
+        if (path.centre(*edge).z - path.centre(foot).z < kLow * path.radius()) {
             ahead = std::min(place, foot) + kLead - at, comes_back_ = false;
             return;
         }

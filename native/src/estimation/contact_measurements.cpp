@@ -36,7 +36,7 @@ double dot_of(const Error& a, const Error& b) {
 
 // Whether a wheel is on a tread that may end under it, in an edge that leads down and comes early.
 bool Estimator::before_drop(const CurveMatch& on) const {
-    return !on.corner && !path_.pieces()[on.piece].arc && on.point.normal.z > kTread && path_.next_drop(on.s) < on.s + kEarlyDrop;
+    return !on.corner && !path_.pieces()[on.piece].arc && on.point.normal.z > kTread && path_.next_drop(on.s).has_value();
 }
 
 void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error) {

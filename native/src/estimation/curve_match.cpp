@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kCornerCost = 2.0;   // two faces at once are rarer than one
 constexpr double kMostForceCost = 16; // legs that swing feel forces that no face explains
-constexpr double kMostCourseCost = 9.0;
+constexpr double kMostVelocityCost = 9.0;  // wheels that slip or bounce move along no face
 constexpr int kArcSteps = 8;
 constexpr double kEnd = 1e-6;         // m
 constexpr double kBlocks = 0.7;       // sine of the turn from one face to the next that stops a wheel
@@ -40,9 +40,14 @@ double corner_cost(const WheelBelief& w, Vec2 a, Vec2 b) {
 }
 
 // Cost of a face that the wheel's centre does not move along.
-double course_cost(const WheelBelief& w, Vec2 n) {
-    const double variance = w.course_spread.along(n);
-    return variance > 0.0 ? std::min(squared(dot(w.course, n)) / variance, kMostCourseCost) : 0.0;
+double velocity_cost(const WheelBelief& w, Vec2 n) {
+    const double variance = w.velocity_spread.along(n);
+    return variance > 0.0 ? std::min(squared(dot(w.velocity, n)) / variance, kMostVelocityCost) : 0.0;
+}
+
+// Cost of being at `at`, on one face.
+double cost_at(const WheelBelief& w, const CurvePoint& at) {
+    return w.spread.distance(w.centre - at.centre) + face_cost(w, at.normal) + velocity_cost(w, at.normal);
 }
 
 // Distance along a straight piece of its most likely point, not limited to its ends.
@@ -60,8 +65,7 @@ double below(const Piece& arc, double radius) { return radius * std::max(0.0, st
 double most_likely_on_arc(const Piece& arc, const WheelBelief& w, double begin, double radius) {
     double best = std::numeric_limits<double>::infinity(), found = 0.0, step = (arc.length - begin) / kArcSteps;
     const auto look = [&](double d) {
-        const CurvePoint at = arc.at(d, radius);
-        const double value = w.spread.distance(w.centre - at.centre) + face_cost(w, at.normal) + course_cost(w, at.normal);
+        const double value = cost_at(w, arc.at(d, radius));
         if (value < best) best = value, found = d;
     };
     for (int k = 0; k <= kArcSteps; ++k) look(begin + k * step);
@@ -103,7 +107,7 @@ CurveMatch match(const WheelPath& path, const WheelBelief& wheel, double last, d
             const Vec2 n = found.point.normal, other = next.at(found.beyond > 0 ? 0.0 : next.length, path.radius()).normal;
             found.blocked = found.beyond * cross(n, other) > kBlocks;
         }
-        found.cost = believed.spread.distance(wheel.centre - found.point.centre) + face_cost(wheel, found.point.normal) + course_cost(wheel, found.point.normal);
+        found.cost = cost_at(believed, found.point);
         if (found.cost < best.cost) best = found;
     }
     for (std::size_t k = path.corner_from(lower); k < path.corners().size() && path.corners()[k] <= upper; ++k) {

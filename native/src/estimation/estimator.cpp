@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kTouching = 0.15;      // of the share of the weight: a wheel that carries less says nothing
 constexpr double kForceTime = 0.015;    // s, smoothing of the forces
-constexpr double kCourseTime = 0.05;   // s, smoothing of the velocity of its centre
-constexpr double kCourse = 0.006;       // m/s of that, besides the trunk's velocity
+constexpr double kVelocityTime = 0.05;  // s, smoothing of the velocity of a wheel's centre
+constexpr double kVelocityNoise = 0.006;  // m/s of that, besides what the trunk's velocity is uncertain by
 constexpr double kCruiseTime = 0.1;    // s, smoothing of the speed that a wheel rolls at
 constexpr double kForceAtRest = 0.15;   // of a force's uncertainty in motion
 constexpr double kForceSpeed = 0.15;    // m/s of the wheel's centre from which on it is that in motion
@@ -175,7 +175,7 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const Vec3 spin = cross3(rate_, {w.place.x, side, w.place.z});
     const Vec3 own_speed = times(R, {spin[0] + w.rate.x, spin[1], spin[2] + w.rate.z});
     const Vec2 moves = {velocity_[0] + own_speed[0], velocity_[2] + own_speed[2]};
-    w.course += dt / (kCourseTime + dt) * (moves - w.course);
+    w.velocity += dt / (kVelocityTime + dt) * (moves - w.velocity);
     const double speed = norm(moves);
     const double motion = kForceAtRest + (1.0 - kForceAtRest) * std::min(1.0, speed / kForceSpeed);
     belief.force_deviation = motion * (noise_.force * weight_ + 0.15 * norm(w.felt));
@@ -186,7 +186,7 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     } else if (const auto drop = std::ranges::find_if(low_drops_, [&](std::size_t k) { return is_near(w, k, k); }); drop != low_drops_.end()) {
         belief.unsure = *drop + 1, belief.unsure_count = 1;
     }
-    if (path_.next_drop(w.s) < w.s + kEarlyDrop && norm(w.felt) > kTouching * weight_ / 4) follow_course(w, belief);
+    if (path_.next_drop(w.s) && norm(w.felt) > kTouching * weight_ / 4) look_at_velocity(w, belief);
     belief.unsure_height = noise_.tread_height * noise_.tread_height;
     w.since_clear += moves.x * dt;
     if (w.since_clear > -kClearOfEdge) belief.past = w.clear;
@@ -237,11 +237,11 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
 
 // Where an edge may come early the way that its wheel takes says whether it is round it already: its force does not, while
 // the wheel hardly leans on its motor, and its height is nothing that the map knows.
-void Estimator::follow_course(const WheelState& w, WheelBelief& belief) const {
-    belief.course = w.course;
-    const double least = kCourse * kCourse;
-    belief.course_spread = {covariance_(kVelocity, kVelocity) + least, covariance_(kVelocity, kVelocity + 2),
-                            covariance_(kVelocity + 2, kVelocity + 2) + least};
+void Estimator::look_at_velocity(const WheelState& w, WheelBelief& belief) const {
+    belief.velocity = w.velocity;
+    const double least = kVelocityNoise * kVelocityNoise;
+    belief.velocity_spread = {covariance_(kVelocity, kVelocity) + least, covariance_(kVelocity, kVelocity + 2),
+                              covariance_(kVelocity + 2, kVelocity + 2) + least};
 }
 
 // A filter that is surer of a wrong velocity, as after a slide, than wheels can tell it turns down all that they say, for

@@ -47,11 +47,11 @@ const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool 
     if (mends_map_ && moving && seen.map_error && !map_error_ && std::abs(seen.map_error->s - ignored_) > kSamePlace)
         map_error_ = seen.map_error, waits_ = true;
     moving = moving && !waits_ && plan_change_.over();
-    const bool searching = moving && seen.ahead.any();
-    if (seen.places && moving && !searching) early_face_.watch_edge(follower_.target(), controller_.path(), *seen.places, dt);
+    const bool on_plan = moving && !seen.ahead.any();
+    if (seen.places && on_plan) early_face_.watch_edge(follower_.target(), controller_.path(), *seen.places, dt);
     std::array<double, 4> places = controller_.places();
     for (std::size_t i = 0; i < 4; ++i) places[i] -= early_face_.ahead()[i / 2] - (i / 2 == kRear ? legs_apart_.back() : 0.0);
-    const control::Reference& drawn = follower_.advance(places, moving && !searching && !early_face_.waits(), dt, hangs(seen.ahead));
+    const control::Reference& drawn = follower_.advance(places, on_plan && !early_face_.waits(), dt, hangs(seen.ahead));
     if (!seen.places) return drawn;
     if (!prepared() && plan_change_.over()) return prepare(drawn, seen, dt);
     adapted_ = plan_change_.step(drawn, dt);

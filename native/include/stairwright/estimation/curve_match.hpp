@@ -46,10 +46,10 @@ struct WheelBelief {
     // variance [m^2].
     std::size_t unsure = kNoPiece, unsure_count = 0;
     double unsure_height = 0.0;
-    // Where an edge that leads down may come early, how the wheel's centre moves, along the face that it is on [m/s], and the
-    // covariance of that; zero elsewhere.
-    Vec2 course;
-    Spread course_spread;
+    // Where an edge that leads down may come early: the velocity of the wheel's centre, which is along the face that it is
+    // on [m/s], and its covariance. Elsewhere zero, and then no evidence.
+    Vec2 velocity = {};
+    Spread velocity_spread = {};
     std::size_t past = 0;  // edges before this piece it has left behind, and has not come back to
 };
 

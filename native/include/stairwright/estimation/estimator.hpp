@@ -128,7 +128,7 @@ class Estimator {
         LegPlaces leg;            // world, with the trunk point as origin
         Vec2 felt;                // the force, smoothed [N]
         double traction = 0.0;    // smoothed [N]
-        Vec2 course;              // velocity of its centre, smoothed [m/s]
+        Vec2 velocity;            // of its centre, smoothed [m/s]
         Vec2 felt_before;         // both until the reading before this one
         double traction_before = 0.0;
         double s;                 // place on the curve [m]
@@ -162,7 +162,7 @@ class Estimator {
     void see_legs(const Readings& readings, double dt);
     void feel_ground(const std::array<WheelForce, 4>& told, const Readings& readings, double share);
     void measure(int wheel, const Readings& readings, double dt);
-    void follow_course(const WheelState& wheel, WheelBelief& belief) const;
+    void look_at_velocity(const WheelState& wheel, WheelBelief& belief) const;
     void put_back(int wheel, const Error& along, double excess, Error& error);
     void compare_with_map(int wheel, const CurveMatch& on, const Spread& spread, double dt);
     void find_map_error();
