@@ -38,3 +38,12 @@ def test_it_is_noticed_by_the_way_that_the_wheel_takes(robot: str) -> None:
     truly = np.array([real.project(centre) for centre in centres]) - edge_down(real)
     believed = run.native.samples(0, 1)[:, PLACES][:, :2].min(axis=1) - edge_down(drawn)
     assert truly[np.argmax(believed > 0.0)] < ROUND
+
+
+@pytest.mark.slow
+def test_wheels_round_one_are_called_back() -> None:
+    """Two low steps down, the second one 6 cm nearer than drawn: those that are not all collide."""
+    points = [(-1.3, 0.0), (0.35, 0.0), (0.35, -0.17), (0.7, -0.17), (0.7, -0.34), (2.2, -0.34)]
+    plan = sw.plan({"points": points}, "a1_wheeled", 0.6)
+    runs = [Run(plan, 0.6, parse_settings({}), EARLY, seed, 50.0) for seed in (0, 3, 4)]
+    assert any(run.result(run.simulate(None), keep_plan=False).success for run in runs)
