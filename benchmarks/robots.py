@@ -26,10 +26,9 @@ it is; before robots looked for that, an A1 fell down them. So do they at their 
 which a B2-W falls in 5 trials. A ramp of 30 degrees takes a friction of 0.577, and some trials draw
 less. Ramps of 45 degrees are gone up with a pair of wheels on level ground.
 
-All rows are of 2026-11-27. Two of them are faults of ours: `anymal_wheels` is planned up 0.19/0.26
-and 0.241/0.241 m with both knees forward, the plans are certified, and rollouts by the robot's own
-sensors fail (with `sensing: ideal` they succeed). In the table before this one only its rear knees
-were forward there, and it climbed.
+All rows are of 2026-11-27. Three of `anymal_wheels`, up 0.196/0.254, 0.19/0.26 and 0.241/0.241 m,
+were asked again that day: with both knees forward, where the CoM has more room and joints next to
+none, it fell or collided on two of them.
 
 Rows are kept in a folder by the hash of the code and the question, so that a run that was ended
 goes on, and several may share the work.

@@ -8,6 +8,7 @@ import stairwright as sw
 from stairwright.errors import InputError
 from stairwright.planning.knees import configurations
 from stairwright.planning.plan import Knees
+from stairwright.terrain.stairs import stair
 
 REAL = ("go2w", "b2w", "m20", "d1", "anymal_wheels")
 
@@ -64,6 +65,14 @@ def test_a_plan_says_which_way_free_knees_bend(method):
     again = sw.plan("curb-015", "m20", method=method)
     assert again.id == plan.id
     assert sw.plan("curb-015", "go2w", method=method).knees is None
+
+
+@pytest.mark.slow
+def test_knees_keep_towards_each_other_where_another_stance_has_a_little_more_com_margin():
+    """With both forward joints and motors have next to nothing to spare: it fell."""
+    plan = sw.plan(stair(0.241, 0.241, 5, approach=2.0), "anymal_wheels", 0.6)
+    assert plan.knees == Knees(front="back", rear="forward")
+    assert sw.rollout(plan).outcome == "success"
 
 
 def test_configurations_are_all_ways_the_knees_bend():
