@@ -23,7 +23,7 @@ it.
 Where trials fail: down flights `a1_wheeled` (all knees back) and `d1` stop before they start, as
 they find that their mass centre is not where the plan has it and that there is no plan for where
 it is; before robots looked for that, an A1 fell down them. So do they at their highest walls, up
-which a B2-W falls in 5 trials. A ramp of 30 degrees takes a friction of 0.577, and some trials draw
+which a B2-W falls in 3 trials. A ramp of 30 degrees takes a friction of 0.577, and some trials draw
 less. Ramps of 45 degrees are gone up with a pair of wheels on level ground.
 
 All rows are of 2026-11-27. Three of `anymal_wheels`, up 0.196/0.254, 0.19/0.26 and 0.241/0.241 m,
