@@ -188,7 +188,7 @@ def test_opened_alone_it_has_a_working_panel(site, visit):
     expect(page.get_by_text("Pitch, nose-up °")).to_be_visible()
     assert page.locator(".uplot:visible").count() == 3
     page.get_by_role("button", name="Play").click()
-    for _ in range(200):
+    for _ in range(PATIENCE // 50):
         if session.player.playing:
             break
         page.wait_for_timeout(50)
@@ -197,7 +197,7 @@ def test_opened_alone_it_has_a_working_panel(site, visit):
     session.playback(playing=False)
     page.get_by_text("Layers").click()
     page.get_by_role("checkbox", name="Ghosts").click()
-    for _ in range(200):
+    for _ in range(PATIENCE // 50):
         if not session._stage.layers["ghosts"]:
             break
         page.wait_for_timeout(50)
