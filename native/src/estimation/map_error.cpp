@@ -26,7 +26,8 @@ void Estimator::compare_with_map(int i, const CurveMatch& on, const Spread& spre
     const Piece& piece = path_.pieces()[on.piece];
     // An edge that leads down tells where the face below it is, once the wheel is round it beyond doubt.
     const double sure = kBeyondDoubt * std::sqrt(spread.along({on.point.normal.z, -on.point.normal.x}));
-    const bool drop = !on.corner && piece.arc && path_.next_drop(on.s).value_or(std::numeric_limits<double>::infinity()) <= on.s && on.s > piece.s + sure;
+    const auto edge = path_.next_drop(on.s);
+    const bool drop = !on.corner && piece.arc && edge && *edge <= on.s && on.s > piece.s + sure;
     const bool felt = estimate_.touching[i] && !over_low_edge(w, on) && (on.corner || drop || !piece.arc);
     // A riser once felt, by this wheel or the one beside it, is known as long as it stays there (see measure_place), but not
     // while the rear ones climb: a robot that hangs between two risers must not wait for another plan.
