@@ -45,6 +45,9 @@ def of_plan(plan: Plan) -> str:
             )
     if plan.poses:
         rows.append(("least margins", _margins(plan)))
+    if plan.safer_facing is not None:
+        safer = plan.safer_facing
+        rows.append(("", f"CoM {safer.com_margin * 1e3:.0f} mm facing {safer.facing}"))
     if plan.certificate is not None:
         passed = "passed" if plan.certificate.passed else "NOT passed"
         rows.append(("certificate", f"{passed} ({plan.certificate.scope})"))

@@ -163,20 +163,38 @@ def test_a_refusal_offers_the_plan_with_the_other_end_in_front(product: Product)
     product.planned()
 
 
+def test_a_thin_plan_offers_the_safer_end_in_front(product: Product) -> None:
+    page = product.page
+    _choose_robot(page, "a1_wheeled")
+    product.paste(json.dumps({"points": [[-1.5, 0.25], [0, 0.25], [0, 0], [1.5, 0]]}))
+    product.has_corners(4).planned()
+    pill, inspector = page.locator(".pill"), page.get_by_role("region", name="Inspector")
+    assert re.search(r"CoM margin \d+ mm, backward \d+ mm", pill.inner_text())
+    assert violations(page, ".insp") == []
+    inspector.get_by_role("button", name="Plan backward").click()
+    page.get_by_role("radio", name="Backward", checked=True).wait_for()
+    product.planned()
+    assert "thin" not in pill.inner_text()
+    assert inspector.get_by_role("button", name="Plan backward").count() == 0
+    page.get_by_role("radio", name="Forward").click()
+    product.planned()
+
+
 def test_a_fast_plan_says_and_shows_which_end_leads(product: Product) -> None:
     """Nobody has asked for it: down stairs a1_wheeled is sooner with its rear in front."""
     page = product.page
     _choose_robot(page, "a1_wheeled")
     product.paste(json.dumps({"points": [[-1.5, 0.2], [0, 0.2], [0, 0], [1.5, 0]]}))
     product.has_corners(4).planned()
-    pill, robot = page.locator(".pill"), page.locator(".ed g.cur").first
+    leads = page.locator(".pill").get_by_text(re.compile("^backward, "))
+    robot = page.locator(".ed g.cur").first
     facing = page.get_by_role("radiogroup", name="Facing")
     facing.get_by_role("radio", name="Forward", checked=True).wait_for()
-    assert "backward" not in pill.inner_text()
+    assert leads.count() == 0
     with page.expect_request(re.compile(r"/api/v1/plans$")) as asked:
         page.get_by_role("radio", name="Fast").click()
     assert "facing" not in asked.value.post_data_json
-    pill.get_by_text("backward").wait_for()
+    leads.wait_for()
     facing.get_by_role("radio", name="Either", checked=True).wait_for()
     product.planned()
     chosen = robot.inner_html()
@@ -185,7 +203,7 @@ def test_a_fast_plan_says_and_shows_which_end_leads(product: Product) -> None:
     assert robot.inner_html() == chosen
     link = product.linked('"b":1')
     facing.get_by_role("radio", name="Forward").click()
-    pill.get_by_text("backward").wait_for(state="hidden")
+    leads.wait_for(state="hidden")
     product.planned()
     assert robot.inner_html() != chosen
     product.linked('"b":"forward"')

@@ -1,14 +1,16 @@
-"""Which end leads where the planner chooses: forward unless it is clearly sooner about."""
+"""Which end leads where the planner chooses: forward unless backward is clearly sooner or safer."""
 
 from __future__ import annotations
 
 import pytest
 
 import stairwright as sw
-from stairwright.planning.leading_end import better_led
-from stairwright.planning.plan import Plan, PlanTiming
+from stairwright.planning.leading_end import better_led, told_of_other_end
+from stairwright.planning.plan import FacingChoice, Plan, PlanTiming
+from stairwright.planning.smoothing.path_document import least_margins
 from stairwright.robot.turning import Facing
 from stairwright.simulation.replanning import plan_anew
+from stairwright.terrain.stairs import stair
 
 DROP = {"points": [[-1.2, 0.25], [0.0, 0.25], [0.0, 0.0], [1.2, 0.0]]}
 WALL = {"points": [[-1.2, 0.0], [0.0, 0.0], [0.0, 1.0], [1.2, 1.0]]}
@@ -34,10 +36,22 @@ def test_it_stays_forward_where_that_is_as_good() -> None:
     assert sw.plan("curb-015", "go2w", timing="fast").facing == "forward"
 
 
-def test_steady_plans_face_forward() -> None:
-    assert (
-        sw.plan(DROP).id == sw.plan(DROP, facing="either").id == sw.plan(DROP, facing="forward").id
-    )
+def test_steady_plans_face_forward_where_that_is_safe() -> None:
+    asked: tuple[FacingChoice | None, ...] = (None, "either", "forward")
+    assert len({sw.plan("curb-015", facing=facing).id for facing in asked}) == 1
+
+
+def test_a_thin_plan_tells_of_a_safer_one_with_the_other_end_in_front() -> None:
+    flight = stair(0.18, 0.28, 3, direction="down")
+    thin = sw.plan(flight)
+    safer = sw.plan(flight, facing="backward")
+    assert thin.safer_facing is not None
+    assert thin.safer_facing.facing == "backward"
+    assert thin.safer_facing.com_margin == least_margins(safer)["com"]
+    assert thin.safer_facing.com_margin > 1.5 * least_margins(thin)["com"]
+    assert safer.safer_facing is None
+    assert sw.plan(flight, facing="either").id == safer.id
+    assert sw.plan(flight, diagnose=False).safer_facing is None
 
 
 @pytest.mark.slow
@@ -132,6 +146,21 @@ def test_what_is_feasible_goes_before_what_is_not(backward: Plan, timing: PlanTi
     ends = Ends(backward, (10.0, 0.02), (20.0, 0.001))
     ends.plans["forward"] = sw.plan(WALL, diagnose=False)
     assert better_led(ends, timing).facing == "backward"
+
+
+@pytest.mark.parametrize("timing", ["steady", "fast"])
+@pytest.mark.parametrize(
+    ("forward", "backward_com", "leads"),
+    [(0.008, 0.013, "backward"), (0.008, 0.011, "forward"), (0.016, 0.05, "forward")],
+    ids=["clearly safer", "hardly safer", "not thin"],
+)
+def test_it_turns_about_where_forward_is_thin(
+    backward: Plan, timing: PlanTiming, forward: float, backward_com: float, leads: Facing
+) -> None:
+    ends = Ends(backward, (10.0, forward), (12.0, backward_com))
+    assert better_led(ends, timing).facing == leads
+    told = told_of_other_end(ends.plans["forward"], ends).safer_facing
+    assert (told.facing if told else "forward") == leads
 
 
 def test_no_second_plan_is_made_where_a_steady_one_faces_forward(backward: Plan) -> None:

@@ -44,6 +44,11 @@ THIN = 0.015  # m; CoM margin up to which more of it comes first, for legs of 0.
 STRAIGHTER = 3.4  # times the weight of smoothness
 
 
+def thin_com_margin(robot: Robot) -> float:
+    """CoM margin up to which a path of the robot is compared with others [m]."""
+    return THIN * max(1.0, scale(robot))
+
+
 def path_planner(
     terrain: Terrain, robot: Robot, friction: float, weights: PathWeights, *, fast: bool = False
 ) -> PathPlanner:
@@ -185,7 +190,7 @@ class PathPlanner(PathProblem):
     @property
     def thin(self) -> float:
         """CoM margin up to which a path is compared with others [m]."""
-        return THIN * max(1.0, scale(self.robot))
+        return thin_com_margin(self.robot)
 
     @cached_property
     def straighter(self) -> PathPlanner:

@@ -129,6 +129,13 @@ class Binding(Model):
     progress: float = Field(description="[m]")
 
 
+class SaferFacing(Model):
+    """Which end in front leaves the CoM clearly more margin, and the least of that plan."""
+
+    facing: Facing
+    com_margin: float = Field(description="[m]")
+
+
 # May be made when it is first read, written or compared.
 Later = Annotated[float | None, PlainSerializer(Deferred.read, return_type=float | None)]
 
@@ -160,6 +167,11 @@ class Plan(Model):
         "forward",
         description="backward: the robot's rear leads, and `robot_description` and all poses are "
         "of the robot turned about, whose front legs are the rear ones of `robot`",
+    )
+    safer_facing: SaferFacing | None = Field(
+        None,
+        description="where the CoM's margin is thin and the plan with the robot's other end in "
+        "front leaves clearly more: that end, and its margin",
     )
     binding: Binding | None = Field(None, description="which margin is least")
     energy: Later = Field(

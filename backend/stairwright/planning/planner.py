@@ -75,9 +75,10 @@ def plan(
             `place` [m], `friction`), see `Tolerance`. The certificate holds for all of it.
         certified: Check single poses and the motion between them; without, ``critical`` is sooner.
             A path is always certified.
-        diagnose: Find out what would open the way where there is none, which takes most of the time
-            of such an answer, and whether there is one with the other end of the robot in front;
-            without, the problem of a ``path`` tells only where it ends.
+        diagnose: Of a ``path``: find out what would open the way where there is none, which takes
+            most of the time of such an answer, and where there is none or its CoM margin is thin,
+            whether the other end of the robot in front does better; without, the problem tells only
+            where it ends.
         solver: What solves the poses of ``critical``: ``native``, or ``ipopt``, which solves the
             same problem written in CasADi. By default ``native``; with terms of yours ``ipopt``.
         extra_cost: Of ``critical``: gives, for a `SymbolicPose`, a CasADi scalar to add to eq 17.
@@ -131,7 +132,7 @@ class _Asked:
         diagnose = diagnose and self.method == "path"
         if facing != "either":
             found = self._led_by(facing, diagnose)
-            if found.feasible or not diagnose or symmetric(self.robot):
+            if not diagnose or symmetric(self.robot):
                 return found
             found = told_of_other_end(found, led_by)
         elif symmetric(self.robot):

@@ -950,6 +950,8 @@ export interface components {
              * @enum {string}
              */
             facing: "forward" | "backward";
+            /** @description where the CoM's margin is thin and the plan with the robot's other end in front leaves clearly more: that end, and its margin */
+            safer_facing?: components["schemas"]["SaferFacing"] | null;
             /** @description which margin is least */
             binding?: components["schemas"]["Binding"] | null;
             /** @description of a dense feasible plan: sum of |static torque x turn| over all joints and poses, without dynamics, friction and losses [J] */
@@ -1525,6 +1527,13 @@ export interface components {
             seed: number;
             /** @description how the real world differs from what plan and controller believe */
             disturbance?: components["schemas"]["Disturbance"] | null;
+        };
+        /** @description Which end in front leaves the CoM clearly more margin, and the least of that plan. */
+        SaferFacing: {
+            /** @enum {string} */
+            facing: "forward" | "backward";
+            /** @description [m] */
+            com_margin: number;
         };
         /** @description What the scene shows; what is left out stays, null shows none. */
         SceneRequest: {

@@ -2,6 +2,7 @@
 
 import type { FacingChoice, Method, PlanTiming } from "../api/types";
 import { Effect } from "../plan/effect";
+import { SaferEnd } from "../plan/other-end";
 import {
   changedCount,
   changedWeights,
@@ -98,6 +99,7 @@ function Planning() {
       <Choice label="Method" options={METHODS} of={method} />
       {method.value === "path" && <Choice label="Timing" options={TIMINGS} of={timing} />}
       <Segments label="Facing" options={FACINGS} value={facing.value} onChoose={setFacing} />
+      <SaferEnd />
       <div class="r2 cmp-row">
         <span class="lab">Compare</span>
         <div class="ab">

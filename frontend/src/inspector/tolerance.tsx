@@ -34,7 +34,7 @@ function Stood() {
   if (now.problem) {
     return (
       <p class="effect-wait">
-        {reason(now.problem.message)} <PlanOtherEnd stop={now.problem} />
+        {reason(now.problem.message)} <PlanOtherEnd of={now} />
       </p>
     );
   }

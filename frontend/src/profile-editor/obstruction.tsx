@@ -182,7 +182,7 @@ export function Obstruction() {
         </dl>
         {sentence && <p>{sentence}</p>}
         <div class="acts">
-          <PlanOtherEnd stop={stop} />
+          <PlanOtherEnd of={plan.value} />
           {canUndo.value && (
             <button type="button" onClick={undo}>
               Undo edit

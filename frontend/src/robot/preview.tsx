@@ -33,7 +33,7 @@ export function Preview() {
           <b class="ab">A</b>
           <h2>{robotName.value}</h2>
           <div class="grow" />
-          <PlanOtherEnd stop={a?.problem} />
+          <PlanOtherEnd of={a} />
           <Verdict
             of={a}
             refused={refusal.value !== null && !slow.value}

@@ -2,6 +2,7 @@
 
 import { fixed, took } from "../geometry/format";
 import { nearestCorner } from "../geometry/profile";
+import { saferEnd } from "../plan/other-end";
 import { connected } from "../state/connection";
 import { drawing, isEmpty } from "../state/drawing";
 import { answered, plan, preview, refusal } from "../state/planning";
@@ -73,6 +74,16 @@ export function PlanPill() {
         <Icon name="warning" />
         <b>Poses only</b>
         <span class="wide">motion not certified at x {fixed(motion.at[0], 2)} m</span>
+      </div>
+    );
+  }
+  const safer = saferEnd(shown);
+  if (safer) {
+    return (
+      <div class="pill warn" title={`${safer}: plan it so in the inspector, under Facing`}>
+        <Icon name="warning" />
+        <b>Feasible, thin</b>
+        <span class="wide">{safer}</span>
       </div>
     );
   }
