@@ -120,14 +120,16 @@ class Tried:
         return [robot, case, f"yes, {self.outcome}", self.trials or "-", least, leads, bend]
 
 
-def planned(terrain: sw.Terrain, robot: sw.Robot) -> sw.Plan:
-    """With the end in front that the planner finds better."""
-    return sw.plan(terrain, robot, 0.6, facing="either")
+def plan_led_by_better_end(
+    terrain: sw.Terrain, robot: sw.Robot, *, diagnose: bool = True
+) -> sw.Plan:
+    """The planner chooses which end leads."""
+    return sw.plan(terrain, robot, 0.6, facing="either", diagnose=diagnose)
 
 
 def tried(terrain: sw.Terrain, robot: sw.Robot, trials: int) -> Tried:
     """Plan, rollout, and randomised trials where it succeeds."""
-    plan = planned(terrain, robot)
+    plan = plan_led_by_better_end(terrain, robot)
     if not plan.feasible:
         return Tried(plan, None, "")
     outcome = sw.rollout(plan).outcome
@@ -166,10 +168,14 @@ def cases(robot: sw.Robot) -> Iterator[tuple[str, sw.Terrain, sw.Robot]]:
 
 def highest(make: Callable[[int], sw.Terrain], robot: sw.Robot, most: int) -> int:
     """The largest number for which every smaller multiple of a coarse step and it are planned."""
+
+    def possible(n: int) -> bool:
+        return plan_led_by_better_end(make(n), robot, diagnose=False).feasible
+
     low, coarse = 0, 10
-    while low + coarse <= most and planned(make(low + coarse), robot).feasible:
+    while low + coarse <= most and possible(low + coarse):
         low += coarse
-    while low < most and planned(make(low + 1), robot).feasible:
+    while low < most and possible(low + 1):
         low += 1
     return low
 
@@ -228,7 +234,8 @@ def main() -> None:
         "Made by `python benchmarks/robots.py --write docs/robots.md`.", "",
         (__doc__ or "").split("\n\n", 2)[2].rsplit("\n\n", 1)[0], "",
         *summary(rows, options.trials), "",
-        "| robot | case | planned, rollout | trials | least margin, or what stops it | leads | knees |",
+        "| robot | case | planned, rollout | trials | least margin, or what stops it | leads "
+        "| knees |",
         "|---|---|---|---|---|---|---|",
         *(f"| {' | '.join(row)} |" for row in rows), "",
     ])  # fmt: skip
