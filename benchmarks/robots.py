@@ -63,6 +63,10 @@ CODES = {
     "UK private 0.22/0.22": (0.22, 0.22),
     "0.18/0.28": (0.18, 0.28),
 }
+COLUMNS = (
+    "robot", "case", "planned, rollout", "trials", "least margin, or what stops it", "leads",
+    "knees",
+)  # fmt: skip
 STEPS = 5
 PAYLOAD = 0.2  # of the robot's mass
 TRIALS = 29
@@ -234,9 +238,8 @@ def main() -> None:
         "Made by `python benchmarks/robots.py --write docs/robots.md`.", "",
         (__doc__ or "").split("\n\n", 2)[2].rsplit("\n\n", 1)[0], "",
         *summary(rows, options.trials), "",
-        "| robot | case | planned, rollout | trials | least margin, or what stops it | leads "
-        "| knees |",
-        "|---|---|---|---|---|---|---|",
+        f"| {' | '.join(COLUMNS)} |",
+        f"|{'---|' * len(COLUMNS)}",
         *(f"| {' | '.join(row)} |" for row in rows), "",
     ])  # fmt: skip
     if options.write:
