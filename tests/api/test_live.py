@@ -68,6 +68,18 @@ def test_what_is_not_to_be_kept_is_the_same_plan_and_leaves_no_trace(
     assert plans[False] == plans[True] | {"certificate": None}
 
 
+def test_a_path_that_is_not_to_be_kept_is_not_diagnosed(line: ClientConnection) -> None:
+    wall = {"points": [[-1.0, 0], [0, 0], [0, 1.2], [1.2, 1.2]]}
+    limits = []
+    for keep in (False, True):
+        ask(line, 1, keep, terrain=wall, method="path")
+        plan = answer(line)["plan"]
+        assert plan["status"] == "infeasible"
+        limits.append(plan["problem"]["limit"])
+    assert limits[0] is None
+    assert limits[1] is not None
+
+
 def test_a_question_can_be_taken_back(line: ClientConnection) -> None:
     ask(line, 1, terrain={"points": [[0.4 * k, 0.1 * (k % 2)] for k in range(150)]}, method="path")
     line.send(json.dumps({"id": 1}))

@@ -180,6 +180,36 @@ def test_a_thin_plan_offers_the_safer_end_in_front(product: Product) -> None:
     product.planned()
 
 
+def test_that_there_is_no_path_shows_before_what_stops_the_robot(product: Product) -> None:
+    """What would open one takes most of an answer's time, here for as long as we like."""
+    page = product.page
+    held: list[Route] = []
+    page.route("**/api/v1/plans", lambda route: held.append(route))
+    walls = [[[-1.5, 0], [0, 0], [0, z], [1.5, z]] for z in (1.2, 1.3)]
+    product.paste(json.dumps({"points": walls[0]}))
+    while not held:
+        page.wait_for_timeout(50)
+    held.pop().continue_()
+    product.planned()  # so late that the quick way is asked first from now on
+    product.paste(json.dumps({"points": walls[1]}))
+    card = page.get_by_role("region", name="What stops the robot")
+    card.get_by_text("No path. Finding out what would open one").wait_for()
+    assert "Infeasible" in page.locator(".pill").inner_text()
+    assert violations(page, ".why") == []
+    page.keyboard.press("2")
+    beside = page.get_by_role("region", name="Two robots on this terrain")
+    beside.get_by_text("No path. Finding out what would open one").wait_for()
+    page.keyboard.press("1")
+    while not held:
+        page.wait_for_timeout(50)
+    page.unroute("**/api/v1/plans")
+    held.pop().continue_()
+    product.planned()
+    assert "Needs" in card.inner_text()
+    assert product.status == "infeasible"
+    product.fresh().planned()
+
+
 def test_a_fast_plan_says_and_shows_which_end_leads(product: Product) -> None:
     """Nobody has asked for it: down stairs a1_wheeled is sooner with its rear in front."""
     page = product.page

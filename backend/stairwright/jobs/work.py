@@ -59,18 +59,22 @@ def solve(question: Question, artefacts: str | None) -> Product:
 
 
 def preview(question: Question) -> bytes:
-    """The JSON of a plan that is neither certified nor kept; else as `solve`."""
-    return _plan(question, certified=False).model_dump_json().encode()
+    """The JSON of a plan that is not kept, and comes sooner; else as `solve`.
+
+    Key poses are not certified, and of an infeasible path it is not found out what would open it.
+    """
+    return _plan(question, complete=False).model_dump_json().encode()
 
 
-def _plan(question: Question, certified: bool = True) -> Plan:
+def _plan(question: Question, complete: bool = True) -> Plan:
     from stairwright.planning.planner import plan
 
     asked = {key: question[key] for key in ("terrain", "friction", "method", "weights")}
     machine = _robot(orjson.dumps(question["robot"]))
     asked["timing"] = question.get("timing", "steady")
     asked["facing"] = question.get("facing", "forward")
-    return plan(robot=machine, certified=certified, tolerance=question.get("tolerance"), **asked)
+    asked["tolerance"] = question.get("tolerance")
+    return plan(robot=machine, certified=complete, diagnose=complete, **asked)
 
 
 @lru_cache(maxsize=16)

@@ -1,9 +1,9 @@
 /** What stops the robot, or the planner: the sentence, how far it comes, and a line to the place. */
 
 import { computed } from "@preact/signals";
-import type { Problem } from "../api/types";
 import { fixed, reason } from "../geometry/format";
 import { PlanOtherEnd } from "../plan/other-end";
+import { why } from "../plan/why";
 import { canUndo, isEmpty, undo } from "../state/drawing";
 import { outdated, plan, preview, refusal } from "../state/planning";
 import { Icon } from "../ui/icon";
@@ -25,9 +25,10 @@ import { canvasBox, centreOn, projection, size, tight } from "./viewport";
 const refused = computed(() => (isEmpty.value ? null : refusal.value));
 
 /** Poses that were found since are newer than the problem, and so is what was refused. */
-const problem = computed(() =>
-  preview.value || refused.value ? null : (plan.value?.problem ?? null),
-);
+const stopped = computed(() => {
+  const shown = refused.value ? null : (preview.value ?? plan.value);
+  return shown?.problem ? shown : null;
+});
 
 /** Of the ring around the spot [px]. */
 const RADIUS = 13;
@@ -67,22 +68,22 @@ function textHeight(sentence: string, width: number): number {
   return 2 * PADDING + LINE * Math.ceil((sentence.length + UNBROKEN) / letters);
 }
 
-const heightOf = (stop: Problem, width: number) =>
-  textHeight(stop.message, width) + (tight.value ? 0 : NUMBERS) + BUTTONS;
+const heightOf = (sentence: string, width: number) =>
+  textHeight(sentence, width) + (tight.value ? 0 : NUMBERS) + BUTTONS;
 
 /** Below the legend, which the banner takes the place of. */
 const belowLegend = () => bannerEnd() ?? canvasBox.value.top + LEGEND;
 
 /** Corners, the legend's place, and all of the upper and lower rims. */
-function places(stop: Problem): Rect[] {
+function places(sentence: string): Rect[] {
   const { left, right, bottom } = canvasBox.value;
   const [top, legend] = [highest(), belowLegend()];
   const width = tight.value ? NARROW : WIDE;
-  const height = heightOf(stop, width);
+  const height = heightOf(sentence, width);
   const [near, far] = [left + 2 * RIM, right - width - 2 * RIM];
   const low = bottom - height - DIMENSIONS;
   const across = right - left - 2 * RIM;
-  const strip = heightOf(stop, across);
+  const strip = heightOf(sentence, across);
   return [
     { left: near, top: legend, width, height },
     { left: far, top: legend, width, height },
@@ -105,8 +106,9 @@ export const card = computed<Rect | null>(() => {
     const height = LINE + textHeight(refused.value, width);
     return { left: canvasBox.value.left + 2 * RIM, top: belowLegend(), width, height };
   }
-  const stop = problem.value;
-  if (!stop) return null;
+  const shown = stopped.value;
+  const stop = shown?.problem;
+  if (!shown || !stop) return null;
   const { px, py } = projection.value;
   const ring = around([px(stop.at[0]), py(stop.at[1])], 2 * RADIUS);
   const robot = robotBox.value;
@@ -115,7 +117,7 @@ export const card = computed<Rect | null>(() => {
     (clearOf(forReadout, [place]) ? 0 : 4) +
     (overlap(place, ring) ? 2 : 0) +
     (robot && overlap(place, robot) ? 1 : 0);
-  return places(stop).reduce((best, next) => (hidden(next) < hidden(best) ? next : best));
+  return places(why(shown)).reduce((best, next) => (hidden(next) < hidden(best) ? next : best));
 });
 
 const placed = ({ left, top, width }: Rect) => ({
@@ -142,9 +144,10 @@ export function Refusal() {
 }
 
 export function Obstruction() {
-  const stop = problem.value;
+  const shown = stopped.value;
+  const stop = shown?.problem;
   const at = card.value;
-  if (!stop || !at) return null;
+  if (!shown || !stop || !at) return null;
   const { px, py } = projection.value;
   const box = canvasBox.value;
   const [x, y] = [px(stop.at[0]), py(stop.at[1])];
@@ -169,8 +172,8 @@ export function Obstruction() {
         style={placed(at)}
       >
         <h4>
-          <Icon name="warning" />
-          {reason(stop.message)}
+          {preview.value ? <span class="spin" /> : <Icon name="warning" />}
+          {why(shown)}
         </h4>
         <dl>
           <dt>where</dt>
@@ -182,7 +185,7 @@ export function Obstruction() {
         </dl>
         {sentence && <p>{sentence}</p>}
         <div class="acts">
-          <PlanOtherEnd of={plan.value} />
+          <PlanOtherEnd of={shown} />
           {canUndo.value && (
             <button type="button" onClick={undo}>
               Undo edit

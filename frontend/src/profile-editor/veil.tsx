@@ -15,6 +15,7 @@ const HEIGHT = 28;
 
 function text(): string {
   if (!plan.value) return "Planning";
+  if (preview.value?.problem) return "Planning the latest edit";
   if (preview.value) return "Key poses shown; the full path follows";
   return "Planning the latest edit; the last plan is shown";
 }

@@ -7,6 +7,7 @@ import { fixed, maybe, reason, took } from "../geometry/format";
 import { planFrame, poseTimes } from "../geometry/frames";
 import { robotShape, skeleton } from "../geometry/robot";
 import { PlanOtherEnd } from "../plan/other-end";
+import { why } from "../plan/why";
 import { Figure } from "../profile-editor/figure";
 import { stated, worst } from "../profile-editor/margins";
 import { drawing, isEmpty } from "../state/drawing";
@@ -166,7 +167,7 @@ function Verdict({ of, refused, waiting, live }: VerdictProps) {
 function Facts({ of, refused }: { of: Plan | null; refused: string | null }) {
   if (refused) return <p class="facts-line why-not error">{reason(refused)}</p>;
   if (!of) return <p class="facts-line" />;
-  if (of.problem) return <p class="facts-line why-not">{reason(of.problem.message)}</p>;
+  if (of.problem) return <p class="facts-line why-not">{why(of)}</p>;
   const margin = (name: "com" | "clearance") => fixed(1000 * stated(worst(of.poses, name)), 0);
   return (
     <p class="facts-line">

@@ -1,6 +1,7 @@
 /**
  * Live planning: each change asks, the newest answer shows, one solve runs at a time. Where the
- * full path takes longer than a hand waits, the paper's few poses come first and the path follows.
+ * full path takes longer than a hand waits, the paper's few poses come first and the path follows;
+ * where they find no way, it is first asked whether there is a path, and then what would open it.
  */
 
 import { batch, computed, effect, type ReadonlySignal, type Signal, signal } from "@preact/signals";
@@ -23,7 +24,7 @@ const LONGEST = 400;
 interface Question {
   /** When the drawing asked [ms]. */
   asked: number;
-  which: "preview" | "a" | "b";
+  which: "preview" | "verdict" | "a" | "b";
   request: PlanRequest;
   /** Of the question that was meant: the request of A as text. */
   key: string;
@@ -58,18 +59,21 @@ async function solve(question: Question, abort: AbortSignal): Promise<Plan> {
   const started = performance.now();
   const { method } = question.request;
   // Quick answers are small and many; long ones are better compressed, as HTTP does it.
-  const answer = await (method === "critical"
-    ? livePlan(question.request, question.which !== "preview", abort)
+  const brief = question.which === "preview" || question.which === "verdict";
+  const answer = await (method === "critical" || brief
+    ? livePlan(question.request, !brief, abort)
     : postPlan(question.request, abort));
   const trip = performance.now() - started;
-  if (method !== "nominal") pace.measured(method === "path" ? "full" : "quick", trip, answer);
+  if (method !== "nominal" && question.which !== "verdict") {
+    pace.measured(method === "path" ? "full" : "quick", trip, answer);
+  }
   return answer;
 }
 
 /** A path gives way to newer poses, unless those have been no help: then it is all there is. */
 function yields(running: Question, next: Question, since: number): boolean {
   if (running.which === "b") return next.which !== "b";
-  if (running.which !== "a" || next.which !== "preview") return false;
+  if (running.which === "preview" || next.which !== "preview") return false;
   return pace.finds || since > LONGEST;
 }
 
@@ -80,6 +84,7 @@ function show(answer: Plan, question: Question, newest: boolean): void {
   }
   markDrawn(question.asked);
   if (question.which === "preview") showPreview(answer, question, newest);
+  else if (question.which === "verdict") showVerdict(answer, question, newest);
   else showPlan(answer, question, newest);
 }
 
@@ -97,6 +102,14 @@ function showPreview(answer: Plan, question: Question, newest: boolean): void {
   if (!newest) return;
   if (pace.finds) stopWaiting();
   askForPath(question, pace.finds);
+}
+
+/** That there is no path is shown at once; what stops the robot follows. */
+function showVerdict(answer: Plan, question: Question, newest: boolean): void {
+  if (answer.problem) preview.value = answer;
+  if (!newest) return;
+  if (answer.problem) stopWaiting();
+  queue.ask({ ...question, which: "a" });
 }
 
 function showPlan(answer: Plan, question: Question, newest: boolean): void {
@@ -139,7 +152,8 @@ function askForPath(before: Question, patient: boolean): void {
   const meant = request.peek();
   if (!meant || requestKey.peek() !== before.key) return;
   startWaiting();
-  queue.ask({ which: "a", request: meant, key: before.key, asked: before.asked });
+  const which = pace.finds ? "a" : "verdict";
+  queue.ask({ which, request: meant, key: before.key, asked: before.asked });
 }
 
 const followers: Follower[] = [];

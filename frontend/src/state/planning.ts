@@ -13,7 +13,8 @@ export const plan = signal<Plan | null>(null);
 export const planB = signal<Plan | null>(null);
 /**
  * The paper's poses for what is drawn now, while `plan` still answers an older question: they
- * follow the hand, and all that only a full path can tell keeps still until it comes.
+ * follow the hand, and all that only a full path can tell keeps still until it comes. Or, with a
+ * problem and without poses, that there is no path for it; what would open one is looked for.
  */
 export const preview = signal<Plan | null>(null);
 /** While poses are previewed: the older plan is of the same corners, and can stay as it is. */

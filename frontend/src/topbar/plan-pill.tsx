@@ -44,7 +44,7 @@ export function PlanPill() {
       </div>
     );
   }
-  if (preview.value) {
+  if (preview.value && !preview.value.problem) {
     return (
       <div class="pill" title="The paper's poses for what is drawn; the full path follows at rest">
         <Icon name="check" />
@@ -53,15 +53,16 @@ export function PlanPill() {
       </div>
     );
   }
-  if (shown?.problem) {
-    const { at, message } = shown.problem;
+  const refused = preview.value ?? shown;
+  if (refused?.problem) {
+    const { at, message } = refused.problem;
     const corner = nearestCorner(drawing.value.points, at);
     return (
       <div class="pill bad" title={message}>
         <Icon name="warning" />
         <b>Infeasible</b>
         <span class="wide">
-          {shown.facing === "backward" && "backward, "}at x {fixed(at[0], 2)} m
+          {refused.facing === "backward" && "backward, "}at x {fixed(at[0], 2)} m
           {corner ? `, ${corner}` : ""}
         </span>
       </div>

@@ -4,7 +4,8 @@ A message is ``{"id": 7, "body": {…}}`` with the body of POST /plans; the answ
 ``{"id": 7, "status": 200, "plan": {…}}``, or ``problem`` instead of ``plan`` with the status that
 REST would have. A newer question takes the place of one that is not answered yet, which gets no
 answer then; one without a body only does that. With ``"keep": false`` the answer comes sooner: key
-poses are not certified, and the plan is not stored, so its id leads nowhere.
+poses are not certified, what would open an infeasible path is not looked for, and the plan is not
+stored, so its id leads nowhere.
 """
 
 from __future__ import annotations
