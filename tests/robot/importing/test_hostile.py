@@ -62,6 +62,14 @@ def test_it_is_refused(text: str, says: str) -> None:
     assert says in str(caught.value)
 
 
+def test_blank_lines_before_the_declaration_are_nothing() -> None:
+    """As for MuJoCo and ROS; lines of the file keep their numbers."""
+    declared = '\n\n<?xml version="1.0"?>\n'
+    read(Upload("a.urdf", (declared + URDF.partition("?>")[2]).encode()), {})
+    with pytest.raises(InputError, match="line 4"):
+        read(Upload("a.urdf", (declared + "<robot/><robot/>").encode()), {})
+
+
 def test_other_encodings_cannot_hide_anything() -> None:
     for encoding in ("utf-16", "utf-32"):
         with pytest.raises(InputError, match="not UTF-8"):

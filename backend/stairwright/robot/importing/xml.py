@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ET
 from xml.parsers import expat
 
@@ -12,6 +13,9 @@ from .upload import MOST_XML
 _MOST_ELEMENTS = 20_000
 _DEEPEST = 60
 _LONGEST = 2**20  # characters of one attribute
+# Blank lines before the declaration are no XML, but MuJoCo and ROS read them, and some files begin
+# so. It only tells the encoding, which is known by then.
+_LATE_DECLARATION = re.compile(rb"\A\s+<\?xml\s[^>]*\?>")
 
 
 def parse(content: bytes, name: str, most: int = MOST_XML) -> ET.Element:
@@ -26,6 +30,7 @@ def parse(content: bytes, name: str, most: int = MOST_XML) -> ET.Element:
         content.decode("utf-8")
     except UnicodeDecodeError:
         raise InputError(f"{name} is not UTF-8 text", ("file",)) from None
+    content = _LATE_DECLARATION.sub(lambda found: b"\n" * found[0].count(b"\n"), content)
     _screen(content, name)
     return ET.fromstring(content)  # noqa: S314 - screened: it has no entities
 
