@@ -46,11 +46,14 @@ def test_the_service_is_asked_for_either_end(server: Server) -> None:
         usual, either, backward = (
             service.plan(DROP, timing="fast", facing=end) for end in (None, "either", "backward")
         )
-        forward = service.plan(DROP, facing="either")
+        forward, safer = (service.plan(ground, facing="either") for ground in (CURB, DROP))
+        thin = service.plan(DROP)
         again = service.get_plan(either.id)
     assert {plan.id for plan in (usual, either, backward)} == {own.id}
     assert {plan.facing for plan in (usual, either, backward, again)} == {"backward"}
-    assert forward.facing == "forward"
+    assert (forward.facing, safer.facing, thin.facing) == ("forward", "backward", "forward")
+    assert thin.safer_facing is not None
+    assert thin.safer_facing.facing == "backward"
 
 
 def test_a_way_that_is_none_is_told_by_its_field(api: httpx.Client) -> None:
