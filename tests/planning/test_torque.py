@@ -49,6 +49,19 @@ def test_a_path_under_a_looser_limit_is_not_lost_under_a_tighter_one_that_it_kee
 
 
 @pytest.mark.slow
+def test_another_lattice_is_tried_where_paths_within_torques_overload_motors():
+    """Refused for a torque until then, like a sixth of such refusals."""
+    data = sw.load_robot("b2w").model_dump()
+    for name, share in (("thigh", 0.68), ("calf", 0.68), ("wheel", 0.43)):
+        data["actuators"][name] |= {"continuous": None}
+        data["actuators"][name]["torque"] *= share
+    down = StairParameters(kind="stair", rise=0.15, run=0.35, count=2, direction="down")
+    plan = sw.plan(generate(down), data)
+    assert plan.feasible
+    assert sw.rollout(plan).outcome == "success"
+
+
+@pytest.mark.slow
 def test_the_torque_that_is_named_is_enough_and_little_less_is_not():
     """Of legs, whose motors differ; `test_path.py` asks about wheels, too."""
     data = sw.load_robot("b2w").model_dump()
