@@ -31,7 +31,7 @@ def of_plan(plan: Plan) -> str:
         )
     rows = [
         ("terrain", f"{plan.terrain.name}, friction {plan.friction:g}"),
-        ("robot", plan.robot),
+        ("robot", plan.robot + (", facing backward" if plan.facing == "backward" else "")),
         (f"{plan.method} plan", f"{verdict}; solved in {plan.solve_time * 1e3:.0f} ms"),
     ]
     if plan.problem is not None:
@@ -47,7 +47,7 @@ def of_plan(plan: Plan) -> str:
         rows.append(("least margins", _margins(plan)))
     if plan.safer_facing is not None:
         safer = plan.safer_facing
-        rows.append(("", f"CoM {safer.com_margin * 1e3:.0f} mm facing {safer.facing}"))
+        rows.append(("safer", f"facing {safer.facing}: CoM {safer.com_margin * 1e3:.0f} mm"))
     if plan.certificate is not None:
         passed = "passed" if plan.certificate.passed else "NOT passed"
         rows.append(("certificate", f"{passed} ({plan.certificate.scope})"))

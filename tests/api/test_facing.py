@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -62,11 +63,16 @@ def test_a_way_that_is_none_is_told_by_its_field(api: httpx.Client) -> None:
     assert answer.json()["errors"][0]["field"] == "facing"
 
 
-def test_the_command_line_asks_for_it(tmp_path: Path) -> None:
+def test_the_command_line_asks_for_it_and_tells(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     terrain, out = tmp_path / "curb.json", tmp_path / "plan.json"
     terrain.write_text(json.dumps(CURB))
     assert main(["plan", str(terrain), "--facing", "backward", "-o", str(out)]) == 0
     assert json.loads(out.read_text())["id"] == sw.plan(CURB, facing="backward").id
+    assert "a1_wheeled, facing backward" in capsys.readouterr().out
     terrain.write_text(json.dumps(DROP))
+    assert main(["plan", str(terrain)]) == 0
+    assert re.search(r"safer +facing backward: CoM \d+ mm", capsys.readouterr().out)
     assert main(["plan", str(terrain), "--timing", "fast", "-o", str(out)]) == 0
     assert json.loads(out.read_text())["facing"] == "backward"
