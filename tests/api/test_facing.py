@@ -70,6 +70,7 @@ def test_the_command_line_asks_for_it_and_tells(
     terrain.write_text(json.dumps(CURB))
     assert main(["plan", str(terrain), "--facing", "backward", "-o", str(out)]) == 0
     assert json.loads(out.read_text())["id"] == sw.plan(CURB, facing="backward").id
+    assert main(["plan", str(terrain), "--facing", "backward"]) == 0
     assert "a1_wheeled, facing backward" in capsys.readouterr().out
     terrain.write_text(json.dumps(DROP))
     assert main(["plan", str(terrain)]) == 0
