@@ -29,7 +29,7 @@ def better_led(led_by: Callable[[Facing], Plan], timing: PlanTiming) -> Plan:
         timing: Of the plans.
     """
     forward = led_by("forward")
-    if timing == "steady" and forward.feasible and not _thin(forward):
+    if timing == "steady" and sound(forward):
         return forward
     backward = led_by("backward")
     if not (forward.feasible and backward.feasible):
@@ -43,11 +43,9 @@ def told_of_other_end(found: Plan, led_by: Callable[[Facing], Plan]) -> Plan:
     """The plan, which says so where only the other end in front has one, or a clearly safer one.
 
     Args:
-        found: With the end in front that was asked for: a refusal, or a plan.
+        found: With the end in front that was asked for: a refusal, or a plan that is not `sound`.
         led_by: Plans with that end in front.
     """
-    if found.feasible and not _thin(found):
-        return found
     other = led_by("forward" if found.facing == "backward" else "backward")
     if not other.feasible:
         return found
@@ -57,6 +55,11 @@ def told_of_other_end(found: Plan, led_by: Callable[[Facing], Plan]) -> Plan:
         return found
     safer = SaferFacing(facing=other.facing, com_margin=_com_margin(other))
     return found.model_copy(update={"safer_facing": safer})
+
+
+def sound(plan: Plan) -> bool:
+    """Whether there is a plan, with so much CoM margin that the other end need not be tried."""
+    return plan.feasible and not _thin(plan)
 
 
 def _safer(one: Plan, other: Plan) -> bool:

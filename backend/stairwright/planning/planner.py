@@ -16,7 +16,7 @@ from stairwright.errors import InputError
 from stairwright.library import load_robot, load_terrain
 from stairwright.planning.energy import with_energy
 from stairwright.planning.knees import configurations, knees_of
-from stairwright.planning.leading_end import better_led, told_of_other_end
+from stairwright.planning.leading_end import better_led, sound, told_of_other_end
 from stairwright.planning.plan import (
     FacingChoice,
     Method,
@@ -132,7 +132,7 @@ class _Asked:
         diagnose = diagnose and self.method == "path"
         if facing != "either":
             found = self._led_by(facing, diagnose)
-            if not diagnose or symmetric(self.robot):
+            if not diagnose or sound(found) or symmetric(self.robot):
                 return found
             found = told_of_other_end(found, led_by)
         elif symmetric(self.robot):

@@ -106,7 +106,7 @@ function showPreview(answer: Plan, question: Question, newest: boolean): void {
 
 /** That there is no path is shown at once; what stops the robot follows. */
 function showVerdict(answer: Plan, question: Question, newest: boolean): void {
-  if (answer.problem) preview.value = answer;
+  preview.value = answer.problem ? answer : null;
   if (!newest) return;
   if (answer.problem) stopWaiting();
   queue.ask({ ...question, which: "a" });
