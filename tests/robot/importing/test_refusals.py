@@ -211,3 +211,12 @@ def test_abduction_whose_zero_is_not_upright() -> None:
     made = imported(mjcf(replace(Design(), quirks=quirks, keyframe=False)))
     assert made.locked["FL_hip_joint"] == pytest.approx(-0.4)
     assert made.robot.hips.half_track == pytest.approx(imported(MJCF).robot.hips.half_track)
+
+
+@pytest.mark.parametrize("text", [URDF, MJCF], ids=["urdf", "mjcf"])
+def test_legs_that_steer_instead_of_tilting(text: str) -> None:
+    steering = re.sub(r"(axis(?: xyz)?=)\"1(?:\.0)? 0(?:\.0)? 0(?:\.0)?\"", r'\1"0 0 1"', text)
+    assert steering.count('"0 0 1"') == 4
+    made, tilting = imported(steering).robot, imported(text).robot
+    assert made.model_copy(update={"source": tilting.source}) == tilting
+    assert "does not tilt the leg" in refused(steering, abduction=0.1)

@@ -46,7 +46,7 @@ class Frame:
 
 
 def find_frame(source: Source, tree: Tree, notes: Notes) -> Frame:
-    """Forward is along the abduction axes, or across the wheels' where there are none.
+    """Forward is along the abduction axes, or across the wheels' where legs do not tilt sideways.
 
     A robot looks along a positive axis of its trunk.
 
@@ -56,13 +56,17 @@ def find_frame(source: Source, tree: Tree, notes: Notes) -> Frame:
     data = source.data
     body = min(tree.trunk)
     trunk = data.xmat[body].reshape(3, 3).T  # rows: the trunk's axes in the world
-    given = [leg.abduction for leg in tree.legs]
-    tilting = all(joint is not None for joint in given)
-    joints = given if tilting else [leg.wheel for leg in tree.legs]
-    taken = _along(source, trunk, [j for j in joints if j is not None], source.body(body))
     # The hips spread over a rectangle: up is across it, and against gravity where that is clear.
     hips = (data.xanchor[[leg.thigh for leg in tree.legs]] - data.xpos[body]) @ trunk.T
     spread = np.ptp(hips, axis=0)
+    first = [leg.abduction for leg in tree.legs if leg.abduction is not None]
+    tilting = len(first) == len(tree.legs)
+    taken = -1
+    if tilting:
+        taken = _along(source, trunk, first, source.body(body))
+        tilting = taken != int(spread.argmin())  # else they steer
+    if not tilting:
+        taken = _along(source, trunk, [leg.wheel for leg in tree.legs], source.body(body))
     spread[taken] = np.inf
     up = int(spread.argmin())
     against = float((trunk @ np.array([0.0, 0.0, 1.0]))[up])
