@@ -42,6 +42,7 @@ from stairwright.terrain.wheel_path import wheel_path
 
 THIN = 0.015  # m; CoM margin up to which more of it comes first, for legs of 0.4 m or less
 STRAIGHTER = 3.4  # times the weight of smoothness
+STEADIER = 10.0  # times that of the CoM margin
 
 
 def thin_com_margin(robot: Robot) -> float:
@@ -199,6 +200,16 @@ class PathPlanner(PathProblem):
         """
         smoothness = STRAIGHTER * self.weights.smoothness
         return replace(self, weights=self.weights.model_copy(update={"smoothness": smoothness}))
+
+    def again_steadier(self, found: Solved) -> Solved | Blocked:
+        """What the attempt that found a path finds where the CoM margin weighs much more."""
+        how, torques = next(key for key, end in self.tried.items() if end is found)
+        weights = self.weights.model_copy(update={"com_margin": STEADIER * self.weights.com_margin})
+        other = replace(self, torques=torques, weights=weights)
+        finding = other.find(how.fine, how.bounds, roll_back=how.roll_back, brinks=how.brinks)
+        if finding.s is None or len(finding.s) < 2:
+            return Blocked(finding.reached, False)
+        return other.finish(finding, how.brinks)
 
     @cached_property
     def unweighted(self) -> PathPlanner | None:

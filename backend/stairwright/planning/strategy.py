@@ -14,7 +14,8 @@ Where motors are too weak for the path found, or all but so, all of it is done a
 looked at in the search. Which lattice then has a path that smoothing does not overload is luck: a
 sixth of those refused for a torque had one on some other lattice, so three are tried. Where that
 leads to none, it is done without, but with such paths repaired at all cost; where the user's
-weights find none, again with the default weights.
+weights find none, again with the default weights. A path that leaves the CoM next to no margin is
+compared with what the attempt that found it finds where that margin weighs ten times as much.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ from .lattice.search import Place
 from .path_planner import PathPlanner
 from .threads import race
 
+NEXT_TO_NONE = 2 / 3  # of a thin CoM margin; a path with less is compared with a steadier one
 HEAVY = 0.85  # of a motor's torque; a path that takes more is compared with one that spares motors
 COARSE = 1.7  # lattice refinement of all but the first and the finest attempt
 
@@ -65,7 +67,7 @@ def solve(
     if planner.torques and isinstance(found, Blocked):
         found = _on_other_lattices(planner, pool, any_path) or found
     if isinstance(found, Solved):
-        return found if any_path else _lighter(planner, found, pool)
+        return found if any_path else _steadier(planner, _lighter(planner, found, pool))
     if found.weak and not planner.torques:
         held = solve(planner.within_torques, pool, any_path, likely)
         if isinstance(held, Solved):
@@ -95,6 +97,16 @@ def _lighter(planner: PathPlanner, found: Solved, pool: Executor) -> Solved:
     held = _search(planner.within_torques, pool)
     if isinstance(held, Solved) and held.torque_share < found.torque_share:
         return held
+    return found
+
+
+def _steadier(planner: PathPlanner, found: Solved) -> Solved:
+    """The path `found`, or one with more CoM margin where it has next to none."""
+    if found.margin >= NEXT_TO_NONE * planner.thin:
+        return found
+    other = planner.again_steadier(found)
+    if isinstance(other, Solved) and other.torque_share <= max(found.torque_share, HEAVY):
+        return max(found, other, key=lambda path: path.margin)
     return found
 
 

@@ -12,6 +12,7 @@ from stairwright.planning.lattice.ends import anywhere, arrival, near, pose_in, 
 from stairwright.planning.path_problem import LAG, PathProblem
 from stairwright.planning.standing import StandingPose, scale, standing_height
 from stairwright.planning.threads import still_wanted
+from stairwright.planning.weights import PathWeights
 from stairwright.planning.wheel_samples import sample_wheel_places
 
 Place = tuple[float, float]  # arc lengths of front and rear wheel [m]
@@ -93,6 +94,7 @@ class Search:
         open_end: bool = False,
         partial: bool = False,
         torque: float | None = None,
+        weights: PathWeights | None = None,
     ) -> LatticePath:
         """The path from start to goal at `friction`, wide at the `reserve` friction if possible.
 
@@ -107,6 +109,8 @@ class Search:
             open_end: Any pose with the front wheels at the last sample will do.
             partial: Where there is no path to the goal, trace the one that gets farthest.
             torque: Largest share of the motors' torques that a pose may take; any by default.
+            weights: What the smoothest path trades off, those of the question by default; clearance
+                and torque are weighed in tables and stay as they are.
         """
         lat = self.lattice
         cells = self._cells(friction, reserve if cheap or partial else 0.0, com)
@@ -150,7 +154,9 @@ class Search:
         _core.fill_lag_spans(
             self.path.native, self.s, cells.front, cells.rear, wanted, cells.spans, friction, LAG
         )
-        costs = _core.CheapestPaths(widest, cells.spans, wanted, level, self._weights(), moves)
+        costs = _core.CheapestPaths(
+            widest, cells.spans, wanted, level, self._weights(weights or self.weights), moves
+        )
         rows = self._smoothest(costs, source, seed, goal, pose, moves)
         if rows is None:
             return LatticePath(None, None, 0, self._farthest(cells, widest))
@@ -232,8 +238,7 @@ class Search:
         last = costs.cheapest_pose(goal, near(self.lattice, pose))
         return costs.backtrack(source, goal, last, 4 * len(self.s) + 400)
 
-    def _weights(self) -> _core.LatticeWeights:
-        w = self.weights
+    def _weights(self, w: PathWeights) -> _core.LatticeWeights:
         height, wanted = standing_height(self.robot), 0.09 * scale(self.robot)
         return _core.LatticeWeights(w.com_margin, w.pitch, height, wanted, 0.25 * w.smoothness)
 

@@ -52,7 +52,7 @@ def find_path(
         search = search_between(q, begin, until, bounds, fine, searches, brinks)
         found = search.find(
             q.friction, q.reserve, bounds.com, cheap or not last, roll_back, open_end=not last,
-            partial=partial, torque=q.torque_share(bounds),
+            partial=partial, torque=q.torque_share(bounds), weights=q.weights,
         )  # fmt: skip
         quality, back = min(quality, found.quality), back or found.back
         if found.quality == 0 and (not partial or found.s is None):

@@ -1,0 +1,24 @@
+"""A path with next to no CoM margin is compared with one for which that margin weighs more."""
+
+from __future__ import annotations
+
+import pytest
+
+import stairwright as sw
+from stairwright.planning import strategy
+from stairwright.planning.smoothing.path_document import least_margins
+from stairwright.terrain.stairs import stair
+
+STEP_DOWN = [(-1.3, 0.0), (0.0, 0.0), (0.0, -0.155), (1.3, -0.155)]
+STEEP = stair(0.29, 0.49, 4, approach=2.0, platform=2.0).points
+
+
+@pytest.mark.parametrize(("robot", "points"), [("a1_wheeled", STEP_DOWN), ("anymal_wheels", STEEP)])
+def test_it_has_more_margin_and_is_certified(
+    robot: str, points: list[tuple[float, float]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    steady = sw.plan({"points": points}, robot, 0.6)
+    assert sw.certify(steady).passed
+    monkeypatch.setattr(strategy, "NEXT_TO_NONE", 0.0)
+    usual = sw.plan({"points": points}, robot, 0.6)
+    assert least_margins(steady)["com"] > 1.5 * least_margins(usual)["com"]
