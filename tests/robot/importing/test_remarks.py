@@ -132,6 +132,17 @@ def test_impossible_inertias() -> None:
     assert said(imported(none).warnings, "base", "not positive")
 
 
+@pytest.mark.parametrize(
+    "shape", ['<cylinder radius="0" length="0"/>', '<box size="0.1 0 0.1"/>', '<sphere radius="0.0"/>']
+)
+def test_shapes_of_no_size_are_left_out_and_it_is_said(shape: str) -> None:
+    whole = urdf(Design())
+    added = f"<collision><geometry>{shape}</geometry></collision></link>"
+    made = imported(whole.replace("</collision></link>", f"</collision>{added}", 1))
+    assert said(made.warnings, "without a volume", "base")
+    assert made.robot.trunk == imported(whole).robot.trunk
+
+
 def test_maps_are_said() -> None:
     quirks = {leg: LegQuirks((1, -1, -1, -1), (0, 0.3, 0, 0)) for leg in LEGS}
     made = imported(mjcf(replace(Design(), quirks=quirks, keyframe=False)))

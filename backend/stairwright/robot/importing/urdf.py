@@ -66,8 +66,11 @@ def clean(root: ET.Element, notes: Notes) -> Urdf:
     block.set("fusestatic", "false")
     block.set("discardvisual", "true")
     massless: list[str] = []
+    flat: list[str] = []
     for link in root.findall("link"):
-        _link(made, link, massless, notes)
+        _link(made, link, massless, flat, notes)
+    if flat:
+        notes.warn(f"collision shapes without a volume are left out: {listed(flat)}")
     limits, mimics = {}, {}
     for joint in root.findall("joint"):
         name = joint.get("name") or ""
@@ -85,7 +88,9 @@ def clean(root: ET.Element, notes: Notes) -> Urdf:
     return Urdf(ET.tostring(made, encoding="unicode"), limits, massless, mimics)
 
 
-def _link(made: ET.Element, link: ET.Element, massless: list[str], notes: Notes) -> None:
+def _link(
+    made: ET.Element, link: ET.Element, massless: list[str], flat: list[str], notes: Notes
+) -> None:
     name = link.get("name") or ""
     new = ET.SubElement(made, "link", name=name)
     inertial = link.find("inertial")
@@ -96,6 +101,9 @@ def _link(made: ET.Element, link: ET.Element, massless: list[str], notes: Notes)
         shape = None if geometry is None else next((s for s in geometry if s.tag in _SHAPES), None)
         if shape is None:
             continue
+        if _is_flat(shape):
+            flat.append(name)
+            continue
         kept = ET.SubElement(new, "collision")
         origin = collision.find("origin")
         if origin is not None:
@@ -103,6 +111,17 @@ def _link(made: ET.Element, link: ET.Element, massless: list[str], notes: Notes)
         ET.SubElement(ET.SubElement(kept, "geometry"), shape.tag, dict(shape.attrib))
         if inertial is None and name not in massless:
             massless.append(name)
+
+
+def _is_flat(shape: ET.Element) -> bool:
+    """Whether a size is 0: with such shapes some files say that a link collides with nothing."""
+    if shape.tag == "mesh":
+        return False
+    sizes = " ".join(shape.get(name, "") for name in ("size", "radius", "length")).split()
+    try:
+        return any(float(size) == 0.0 for size in sizes)
+    except ValueError:
+        return False  # MuJoCo says what is wrong with it
 
 
 def _inertial(inertial: ET.Element, name: str, notes: Notes) -> ET.Element:
