@@ -14,8 +14,8 @@ Where motors are too weak for the path found, or all but so, all of it is done a
 looked at in the search. Which lattice then has a path that smoothing does not overload is luck: a
 sixth of those refused for a torque had one on some other lattice, so three are tried. Where that
 leads to none, it is done without, but with such paths repaired at all cost; where the user's
-weights find none, again with the default weights. A path that leaves the CoM next to no margin is
-compared with what the attempt that found it finds where that margin weighs ten times as much.
+weights find none, again with the default weights. A path with little CoM margin is compared with
+what the attempt that found it finds where that margin weighs ten times as much, too.
 """
 
 from __future__ import annotations
@@ -31,7 +31,6 @@ from .lattice.search import Place
 from .path_planner import PathPlanner
 from .threads import race
 
-NEXT_TO_NONE = 2 / 3  # of a thin CoM margin; a path with less is compared with a steadier one
 HEAVY = 0.85  # of a motor's torque; a path that takes more is compared with one that spares motors
 COARSE = 1.7  # lattice refinement of all but the first and the finest attempt
 
@@ -101,8 +100,8 @@ def _lighter(planner: PathPlanner, found: Solved, pool: Executor) -> Solved:
 
 
 def _steadier(planner: PathPlanner, found: Solved) -> Solved:
-    """The path `found`, or one with more CoM margin where it has next to none."""
-    if found.margin >= NEXT_TO_NONE * planner.thin:
+    """The path `found`, or one with more CoM margin where it has little."""
+    if found.margin > planner.thin:
         return found
     other = planner.again_steadier(found)
     if isinstance(other, Solved) and other.torque_share <= max(found.torque_share, HEAVY):

@@ -133,7 +133,8 @@ def test_impossible_inertias() -> None:
 
 
 @pytest.mark.parametrize(
-    "shape", ['<cylinder radius="0" length="0"/>', '<box size="0.1 0 0.1"/>', '<sphere radius="0.0"/>']
+    "shape",
+    ['<cylinder radius="0" length="0"/>', '<box size="0.1 0 0.1"/>', '<sphere radius="0.0"/>'],
 )
 def test_shapes_of_no_size_are_left_out_and_it_is_said(shape: str) -> None:
     whole = urdf(Design())
