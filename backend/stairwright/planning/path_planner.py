@@ -159,7 +159,7 @@ class PathPlanner(PathProblem):
         What came of other attempts is as it was, and of those that are beyond repair.
         """
         other = replace(self, thorough=True)
-        for how, end in self.tried.copy().items():  # abandoned attempts may still end
+        for how, end in self.tried.copy().items():  # as in `again_steadier`
             if isinstance(end, Solved) or end.weak is None or self._beyond_repair(end):
                 other.tried[how] = end
         return other
@@ -203,7 +203,8 @@ class PathPlanner(PathProblem):
 
     def again_steadier(self, found: Solved) -> Solved | Blocked:
         """What the attempt that found a path finds where the CoM margin weighs much more."""
-        how, torques = next(key for key, end in self.tried.items() if end is found)
+        made = self.tried.copy()  # abandoned attempts may still end
+        how, torques = next(key for key, end in made.items() if end is found)
         weights = self.weights.model_copy(update={"com_margin": STEADIER * self.weights.com_margin})
         other = replace(self, torques=torques, weights=weights)
         finding = other.find(how.fine, how.bounds, roll_back=how.roll_back, brinks=how.brinks)
