@@ -87,6 +87,9 @@ class ClusterEngine:
         if self._client is not None:
             with contextlib.suppress(Exception):
                 self._client.close(timeout=2)
+            # Where its scheduler went while it connected anew it is not, and would say so once more
+            # in its destructor.
+            self._client.status = "closed"
         self._client = None
         if self._local is not None:
             self._local.close()
