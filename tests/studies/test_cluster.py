@@ -155,6 +155,21 @@ def _is_worker(pid: int) -> bool:
     return any("spawn_main" in part for part in psutil.Process(pid).cmdline())
 
 
+def test_a_client_that_cannot_be_closed_is_not_closed_again() -> None:
+    """Dask's does it in its destructor, where what goes wrong is printed."""
+
+    class Client:
+        status = "running"
+
+        def close(self, timeout: float) -> None:
+            raise ValueError("IOStream is not idle; cannot convert to SSL")
+
+    engine, client = ClusterEngine(None, 1), Client()
+    engine._client = client
+    engine.close()
+    assert client.status == "closed"
+
+
 @pytest.mark.slow
 def test_a_cell_that_kills_its_worker_is_found_and_recorded(
     cluster: ClusterEngine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
