@@ -72,6 +72,7 @@ class PathPlanner(PathProblem):
     fast: bool = False  # whether the path is to be driven fast
     thorough: bool = False  # whether to repair what overloads motors, searched without regard to it
     searches: Searches = field(default_factory=dict)
+    # Read in copies: attempts that are abandoned may still end.
     tried: Outcomes = field(default_factory=dict, init=False)
 
     def find(
@@ -106,23 +107,23 @@ class PathPlanner(PathProblem):
         is to be driven fast, each is smoothed in two ways, and the soonest is taken.
         """
         still_wanted()
-        finding = self.find(how.fine, how.bounds, not how.probe, how.roll_back, brinks=how.brinks)
+        finding = self.search_of(how)
         if how.probe:
             return Blocked(None, finding.quality > 0)
-        if finding.s is None or len(finding.s) < 2:  # begun where it is to end there is no way
-            return Blocked(finding.reached, False)
-        if self.unweighted is None:
+        if self.unweighted is None or not finding.leads_on:
             return self.finish(finding, how.brinks)
-        usual = self.unweighted.find(
-            how.fine, how.bounds, roll_back=how.roll_back, brinks=how.brinks
-        )
-        found = [finding] if usual.s is None or len(usual.s) < 2 else [finding, usual]
+        usual = self.unweighted.search_of(how)
+        found = [finding, usual] if usual.leads_on else [finding]
         answers = [self.finish(path, how.brinks) for path in found]
         if self.fast:
             answers += [self.straighter.finish(path, how.brinks) for path in found]
             return min(answers, key=self._slowness)
         answers += [self.unweighted.finish(path, how.brinks) for path in found[1:]]
         return min(answers, key=self.cost)
+
+    def search_of(self, how: Attempt) -> LatticePath:
+        """What the search of an attempt finds."""
+        return self.find(how.fine, how.bounds, not how.probe, how.roll_back, brinks=how.brinks)
 
     def cost(self, answer: Solved | Blocked) -> float:
         """What the weights make of a path; infinite where there is none."""
@@ -159,7 +160,7 @@ class PathPlanner(PathProblem):
         What came of other attempts is as it was, and of those that are beyond repair.
         """
         other = replace(self, thorough=True)
-        for how, end in self.tried.copy().items():  # as in `again_steadier`
+        for how, end in self.tried.copy().items():
             if isinstance(end, Solved) or end.weak is None or self._beyond_repair(end):
                 other.tried[how] = end
         return other
@@ -203,14 +204,10 @@ class PathPlanner(PathProblem):
 
     def again_steadier(self, found: Solved) -> Solved | Blocked:
         """What the attempt that found a path finds where the CoM margin weighs much more."""
-        made = self.tried.copy()  # abandoned attempts may still end
-        how, torques = next(key for key, end in made.items() if end is found)
+        how, torques = next(key for key, end in self.tried.copy().items() if end is found)
         weights = self.weights.model_copy(update={"com_margin": STEADIER * self.weights.com_margin})
         other = replace(self, torques=torques, weights=weights)
-        finding = other.find(how.fine, how.bounds, roll_back=how.roll_back, brinks=how.brinks)
-        if finding.s is None or len(finding.s) < 2:
-            return Blocked(finding.reached, False)
-        return other.finish(finding, how.brinks)
+        return other.finish(other.search_of(how), how.brinks)
 
     @cached_property
     def unweighted(self) -> PathPlanner | None:
@@ -235,7 +232,11 @@ class PathPlanner(PathProblem):
         return self.poses(found), finding.reached
 
     def finish(self, finding: LatticePath, brinks: bool = False) -> Solved | Blocked:
-        """Smooth, repair and certify; where that fails, the arc lengths at the worst place."""
+        """Smooth, repair and certify; where that fails, the arc lengths at the worst place, and
+        where the search leads nowhere, those at its end.
+        """
+        if not finding.leads_on:
+            return Blocked(finding.reached, False)
         assert finding.s is not None
         assert finding.body is not None
         still_wanted()

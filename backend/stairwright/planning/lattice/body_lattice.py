@@ -93,6 +93,11 @@ class LatticePath:
     reached: tuple[float, float] | None
     back: bool = False
 
+    @property
+    def leads_on(self) -> bool:
+        """Whether there is a path; one that begins where it is to end is none."""
+        return self.s is not None and len(self.s) > 1
+
 
 def make_lattice(robot: Robot, fine: float = 1.0) -> Lattice:
     """A lattice for legs of this size; `fine` < 1 refines it."""

@@ -60,13 +60,11 @@ def find_frame(source: Source, tree: Tree, notes: Notes) -> Frame:
     hips = (data.xanchor[[leg.thigh for leg in tree.legs]] - data.xpos[body]) @ trunk.T
     spread = np.ptp(hips, axis=0)
     first = [leg.abduction for leg in tree.legs if leg.abduction is not None]
+    wheels = [leg.wheel for leg in tree.legs]
     tilting = len(first) == len(tree.legs)
-    taken = -1
-    if tilting:
-        taken = _along(source, trunk, first, source.body(body))
-        tilting = taken != int(spread.argmin())  # else they steer
-    if not tilting:
-        taken = _along(source, trunk, [leg.wheel for leg in tree.legs], source.body(body))
+    taken = _along(source, trunk, first if tilting else wheels, source.body(body))
+    if tilting and taken == int(spread.argmin()):  # they steer
+        tilting, taken = False, _along(source, trunk, wheels, source.body(body))
     spread[taken] = np.inf
     up = int(spread.argmin())
     against = float((trunk @ np.array([0.0, 0.0, 1.0]))[up])

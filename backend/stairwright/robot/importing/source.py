@@ -168,15 +168,15 @@ def compile_source(upload: Upload, notes: Notes) -> Source:
 def _check_numbers(model: Any) -> None:
     """Files may hold nan, which MuJoCo compiles."""
     arrays = {
-        "pos": (model.body_pos, _LARGEST, " m"), "ipos": (model.body_ipos, _LARGEST, " m"),
-        "mass": (model.body_mass, _HEAVIEST, " kg"),
-        "inertia": (model.body_inertia, _HEAVIEST, " kg m^2"),
+        "pos": (model.body_pos, _LARGEST, "m"), "ipos": (model.body_ipos, _LARGEST, "m"),
+        "mass": (model.body_mass, _HEAVIEST, "kg"),
+        "inertia": (model.body_inertia, _HEAVIEST, "kg m^2"),
     }  # fmt: skip
     for name, (values, most, unit) in arrays.items():
         bad = ~(np.abs(values) <= most)
         if bad.any():
             body = model.body(int(np.argwhere(bad)[0][0])).name
-            text = f"body {body!r}: {name} must be finite and below {most:g}{unit}"
+            text = f"body {body!r}: {name} must be finite and below {most:g} {unit}"
             raise InputError(text, ("file",))
     for name in _FINITE:
         if not np.isfinite(getattr(model, name)).all():
