@@ -137,6 +137,13 @@ def _add_robot(command: argparse.ArgumentParser) -> None:
     reading.add_argument(
         "--wheel-radius", type=float, metavar="M", help="where the file does not show it"
     )
+    reading.add_argument(
+        "--hold",
+        action="append",
+        default=[],
+        metavar="JOINT=RAD",
+        help="a joint that is rigid there (an arm's, an ankle's); may be given again",
+    )
     reading.add_argument("--json", action="store_true", help="print robot, assumed and warnings")
     convert = actions.add_parser("convert", help="write a robot in the newest schema")
     convert.add_argument("file", metavar="FILE", help="a robot (yaml, json, its name)")

@@ -53,10 +53,13 @@ class Client(Connection):
         """Remove a saved robot."""
         self._send("DELETE", f"/robots/{quoted(name)}")
 
-    def import_robot(self, path: str | Path, **fields: Any) -> Imported:
+    def import_robot(
+        self, path: str | Path, *, hold: Mapping[str, float] | None = None, **fields: Any
+    ) -> Imported:
         """The robot in a URDF or MJCF file, or in a zip of one with its meshes."""
         file = Path(path)
         files = {"file": (file.name, file.read_bytes())}
+        fields["hold"] = [f"{joint}={position}" for joint, position in (hold or {}).items()]
         return parse(Imported, self._json("POST", "/robots/import", files=files, data=fields))
 
     def export_robot(self, name: str, file_format: str) -> bytes:

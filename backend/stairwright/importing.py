@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
+from typing import Any
 
 from .arguments import as_number
 from .errors import InputError
 from .library import load_robot, robots
 from .robot.importing.bounded import import_bounded
+from .robot.importing.holding import checked_hold
 from .robot.importing.local import gather
 from .robot.importing.report import Imported
 
@@ -17,6 +20,7 @@ def import_robot(
     abduction: float = 0.0,
     *,
     wheel_radius: float | None = None,
+    hold: Mapping[str, float] | None = None,
 ) -> Imported:
     """The robot in a URDF or MJCF file, or in a zip that holds one with its meshes.
 
@@ -27,6 +31,7 @@ def import_robot(
         path: The file; its ending is .urdf, .xml, .mjcf or .zip.
         abduction: Angle at which the legs are locked, outward from upright [rad].
         wheel_radius: Where the file shows none, or another one [m].
+        hold: Joints that count as rigid, by the file's names, and where [rad or m, the file's].
 
     Returns:
         ``.robot``, and what was ``.assumed`` and should be known (``.warnings``).
@@ -35,10 +40,11 @@ def import_robot(
         InputError: If it is no robot of four legs with a thigh, a calf and a wheel each; names the
             link or joint that does not fit.
     """
-    options = {"abduction": as_number(abduction, "abduction")}
+    options: dict[str, Any] = {"abduction": as_number(abduction, "abduction")}
     if wheel_radius is not None:
         options["wheel_radius"] = as_number(wheel_radius, "wheel_radius")
         if not 0.0 < options["wheel_radius"] <= 10.0:
             raise InputError("must be above 0 and at most 10 m", ("wheel_radius",))
+    options["hold"] = checked_hold(hold or {})
     name, content, files = gather(path)
     return import_bounded(name, content, files, options, [load_robot(each) for each in robots()])

@@ -25,8 +25,10 @@ def robot_command(given: argparse.Namespace) -> str | None:
 
 def _import(given: argparse.Namespace) -> None:
     from .importing import import_robot
+    from .robot.importing.holding import written_hold
 
-    made = import_robot(given.file, given.abduction, wheel_radius=given.wheel_radius)
+    hold = written_hold(given.hold)
+    made = import_robot(given.file, given.abduction, wheel_radius=given.wheel_radius, hold=hold)
     if given.output:
         made.robot.save(given.output)
     if given.json:

@@ -126,6 +126,8 @@ def test_a_zip_is_read_with_its_meshes(api: httpx.Client) -> None:
         ("a.urdf", urdf(Design()), {"abduction": "nan"}),
         ("a.urdf", urdf(Design()), {"abduction": "1.0"}),
         ("a.urdf", urdf(Design()), {"wheel_radius": "-1"}),
+        ("a.urdf", urdf(Design()), {"hold": "FL_hip_joint"}),
+        ("a.urdf", urdf(Design()), {"hold": "nobody=0"}),
     ],
 )
 def test_what_is_no_robot_is_refused(
@@ -142,6 +144,8 @@ def test_the_client_reads_and_saves_robots(server: Server, tmp_path) -> None:
     file = tmp_path / "a.urdf"
     file.write_text(urdf(Design()))
     with sw.Client(server.url) as client:
+        hips = {f"{leg}_hip_joint": 0.0 for leg in ("FL", "FR", "RL", "RR")}
+        assert client.import_robot(file, hold=hips).robot.held_joints == hips
         made = client.import_robot(file)
         robot = made.robot.model_copy(update={"name": "by the client"})
         assert client.save_robot(robot) == robot

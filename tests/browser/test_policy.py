@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 from urllib.parse import urlsplit
 
 import pytest
@@ -69,7 +69,13 @@ def test_the_page_keeps_its_policy_and_its_theme(strict: Page, server: Server) -
     product.drag(2, 0, -3).planned()
     product.fresh("curb-015").run()
     assert (watched.elsewhere, watched.denied, product.errors) == ([], [], [])
-    strict.evaluate("localStorage.setItem('stairwright.theme', 'light')")
+    themes: tuple[Literal["dark", "light"], ...] = ("dark", "light", "dark")
+    for theme in themes:  # the system's, as long as nobody has chosen
+        strict.emulate_media(color_scheme=theme)
+        strict.locator(f"html[data-theme={theme}]").wait_for(state="attached")
+    strict.get_by_role("button", name="Light theme").click()
+    strict.emulate_media(color_scheme="light")
+    strict.emulate_media(color_scheme="dark")
     strict.reload(wait_until="commit")
     strict.locator("html[data-theme=light]").wait_for(state="attached")
     # A script that got into the page would not run.

@@ -11,6 +11,7 @@ import pytest
 
 import stairwright as sw
 from stairwright.export.formats import save
+from tests.robot.importing.written import ANKLES, with_ankles
 
 from .axe import violations
 from .conftest import DESK, PHONE, Product
@@ -150,6 +151,27 @@ def test_a_file_that_does_not_fit_is_refused_with_its_reason(product: Product) -
     assert "lamp.urdf does not fit" in alert.inner_text()
     assert "file:" not in alert.inner_text()
     page.get_by_role("region", name="File").get_by_role("button", name="Dismiss").click()
+
+
+def test_joints_of_a_file_are_held(product: Product) -> None:
+    page = product.page
+    content = with_ankles("0 1 0").encode()
+    page.get_by_label("Robot file").set_input_files(
+        {"name": "ankles.urdf", "mimeType": "application/xml", "buffer": content}
+    )
+    report = page.get_by_role("region", name="File")
+    report.get_by_role("alert").get_by_text("one joint too many").wait_for()
+    hold = report.get_by_label("Hold joints rigid")
+    hold.fill("nobody=1")
+    hold.press("Enter")
+    report.get_by_role("alert").get_by_text("there is no joint 'nobody'").wait_for()
+    report.get_by_label("Hold joints rigid").fill(", ".join(f"{name}=0.3" for name in ANKLES))
+    report.get_by_role("button", name="Read again").click()
+    report.get_by_text("ankles.urdf read").wait_for()
+    report.get_by_role("button", name=re.compile("^Open")).click()
+    product.planned()
+    page.locator(".texts", has_text="Rigid [rad]: FL_ankle_joint 0.30").wait_for()
+    page.get_by_role("button", name=re.compile("^Close maker")).click()
 
 
 def test_two_robots_stand_side_by_side_and_change_places(product: Product) -> None:

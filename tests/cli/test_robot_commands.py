@@ -10,7 +10,7 @@ import pytest
 import stairwright as sw
 from stairwright.robot.conversion import to_latest
 from tests.cli.test_cli import run
-from tests.robot.importing.files import Design
+from tests.robot.importing.files import LEGS, Design
 from tests.robot.importing.written import mjcf, urdf
 
 
@@ -47,12 +47,22 @@ def test_without_an_output_the_robot_is_printed_as_options_have_it(
     assert robot.wheel.radius == 0.09
 
 
+@pytest.mark.slow
+def test_joints_are_held_as_options_have_it(maker: Path, tmp_path: Path) -> None:
+    out = tmp_path / "held.yaml"
+    options = [text for leg in LEGS for text in ("--hold", f"{leg}_hip_joint=0.02")]
+    run("robot", "import", maker, *options, "-o", out)
+    assert sw.load_robot(out).held_joints == {f"{leg}_hip_joint": 0.02 for leg in LEGS}
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
         ("import", "nowhere.urdf"),
         ("import", "MAKER", "--abduction", "1"),
         ("import", "MAKER", "--wheel-radius", "0"),
+        ("import", "MAKER", "--hold", "FL_hip_joint"),
+        ("import", "MAKER", "--hold", "nobody=0"),
         ("import", "MAKER", "-o", "robot.step"),
         ("convert", "MAKER"),
         ("convert", "nobody"),

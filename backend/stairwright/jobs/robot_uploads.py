@@ -21,7 +21,7 @@ def import_robot(
     Args:
         data: The file: URDF, MJCF, or a zip that holds one with its meshes.
         file_name: Its name.
-        options: ``abduction`` [rad], ``wheel_radius`` [m].
+        options: ``abduction`` [rad], ``wheel_radius`` [m], ``hold`` [rad or m by joint].
         known: Documents of the presets, to compare with.
 
     Raises:

@@ -50,7 +50,7 @@ FOLDED = 3.1  # rad; a calf lies on its thigh at pi
 # Fields that documents of the first schema do not have.
 _NEW_IN_2: tuple[tuple[str, ...], ...] = (
     ("source",), ("assumed",), ("assumed_fields",), ("payload",), ("rear",), ("abduction",),
-    ("joint_frames",),
+    ("joint_frames",), ("held_joints",),
     ("trunk", "com"), ("trunk", "outline"), ("thigh", "shape"), ("calf", "shape"),
     ("wheel", "friction"), ("wheel", "rolling_resistance"),
     ("actuators", "thigh"), ("actuators", "calf"),
@@ -130,6 +130,12 @@ class Robot(Model):
         {},
         description="how the robot's own software counts the angles of its joints, by our names; "
         "used in ROS messages and URDF",
+    )
+    held_joints: dict[str, float] = optional(
+        {},
+        max_length=200,
+        description="joints of the file it was imported from that count as rigid, by the file's "
+        "names, and where they are held [rad or m]",
     )
 
     @model_validator(mode="before")

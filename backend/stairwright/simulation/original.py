@@ -1,8 +1,8 @@
 """A robot's own MuJoCo file in our world: its bodies, masses, shapes and joints as they are.
 
 What is ours: the terrain, physics settings and contact sensors, torque motors on the 12 joints, a
-position servo on each abduction joint, and a free joint where the file has none. A wheel whose mesh
-is missing touches as a ball of the plan's radius.
+position servo on each joint that is held (abduction), and a free joint where the file has none. A
+wheel whose mesh is missing touches as a ball of the plan's radius.
 
 How joints are mapped: `robot.importing` finds thigh, calf and wheel of each leg by the tree's shape
 and says sign and offset of each: ours = sign * theirs + offset, and torques take the same sign.
@@ -10,6 +10,7 @@ and says sign and offset of each: ours = sign * theirs + offset, and torques tak
 
 from __future__ import annotations
 
+import itertools
 import os
 from dataclasses import dataclass
 from typing import Any
@@ -80,7 +81,11 @@ def read_original(model: str | os.PathLike[str], robot: Robot) -> tuple[Upload, 
         upload = unpack(content, name)
         if files:
             upload = Upload(upload.name, upload.content, files)
-    options = {"abduction": robot.abduction, "wheel_radius": robot.wheel.radius}
+    options = {
+        "abduction": robot.abduction,
+        "wheel_radius": robot.wheel.radius,
+        "hold": robot.held_joints,
+    }
     try:
         reading, _ = read_closely(upload, options)
     except InputError as error:
@@ -116,6 +121,7 @@ def build_original(
     for geom in spec.geoms:
         geom.name = ""
     labels = _labels(reading, bodies)
+    _join_halves(spec, reading, bodies, labels)
     _remove_others(spec, bodies, source.model, base)
     _set_free(bodies[source.model.body_rootid[base]])
     set_physics(spec)
@@ -192,6 +198,20 @@ def _labels(reading: Reading, bodies: list[Any]) -> dict[str, str]:
             above = int(model.body_parentid[above])
         found[bodies[body].name] = part.get(above, "trunk")
     return found
+
+
+def _join_halves(spec: Any, reading: Reading, bodies: list[Any], labels: dict[str, str]) -> None:
+    """A link that a held joint parts touches its neighbours no more than a whole one does."""
+    model = reading.source.model
+    parted = {labels[bodies[int(model.jnt_bodyid[j])].name] for j in reading.held}
+    for leg in LEGS:
+        chain = [f"{leg}_{part}" for part in ("thigh", "calf", "wheel")]
+        for pair in itertools.pairwise(chain):
+            if parted.isdisjoint(pair):
+                continue
+            first, second = ([name for name, label in labels.items() if label == of] for of in pair)
+            for one, other in itertools.product(first, second):
+                spec.add_exclude(bodyname1=one, bodyname2=other)
 
 
 def _label(model: Any, geom: int, labels: dict[str, str]) -> str:

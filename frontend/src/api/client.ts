@@ -102,15 +102,17 @@ export const putRobot = (robot: SentRobot) =>
 
 export const deleteRobot = (name: string) => call("DELETE", `robots/${encodeURIComponent(name)}`);
 
-function sent(file: File, fields: Record<string, string>): FormData {
+function sent(file: File, fields: Record<string, string | string[]>): FormData {
   const form = new FormData();
   form.append("file", file, file.name);
-  for (const [name, value] of Object.entries(fields)) form.append(name, value);
+  for (const [name, value] of Object.entries(fields))
+    for (const one of [value].flat()) form.append(name, one);
   return form;
 }
 
-export const importRobot = (file: File, abort?: AbortSignal) =>
-  callJson<ImportedRobot>("POST", "robots/import", sent(file, {}), abort);
+/** `hold` lists joints that count as rigid, as `name=position`. */
+export const importRobot = (file: File, hold: string[], abort?: AbortSignal) =>
+  callJson<ImportedRobot>("POST", "robots/import", sent(file, { hold }), abort);
 
 /** A robot as a file for other tools, whether it is saved or not. */
 export async function robotFile(robot: SentRobot, format: string): Promise<Blob> {

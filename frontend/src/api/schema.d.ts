@@ -181,6 +181,8 @@ export interface components {
             abduction: number;
             /** @description where the file does not show it [m] */
             wheel_radius?: number | null;
+            /** @description JOINT=RAD: a joint that is rigid there, by the file's name; may be given again */
+            hold?: string[] | null;
         };
         Body_import_terrain: {
             /**
@@ -1343,6 +1345,13 @@ export interface components {
             joint_frames: {
                 [key: string]: components["schemas"]["JointFrame"];
             };
+            /**
+             * @description joints of the file it was imported from that count as rigid, by the file's names, and where they are held [rad or m]
+             * @default {}
+             */
+            held_joints: {
+                [key: string]: number;
+            };
         };
         /** @description A robot, whether it is one of the read-only presets, and which version of it this is. */
         RobotDocument: {
@@ -1405,6 +1414,13 @@ export interface components {
              */
             joint_frames: {
                 [key: string]: components["schemas"]["JointFrame"];
+            };
+            /**
+             * @description joints of the file it was imported from that count as rigid, by the file's names, and where they are held [rad or m]
+             * @default {}
+             */
+            held_joints: {
+                [key: string]: number;
             };
             /** @description a preset; it cannot be changed or deleted */
             readonly: boolean;

@@ -140,6 +140,7 @@ function Note({ of, marked }: { of: Quantity[]; marked: Marked }) {
 function Texts() {
   const file = robotDocument.value!;
   const assumed = file.assumed ?? [];
+  const held = Object.entries(file.held_joints ?? {});
   return (
     <div class="texts">
       {file.source && (
@@ -161,6 +162,9 @@ function Texts() {
       {file.abduction ? (
         <p>Abduction joints locked at {fixed(degrees(file.abduction), 1)}°.</p>
       ) : null}
+      {held.length > 0 && (
+        <p>Rigid [rad]: {held.map(([joint, at]) => `${joint} ${fixed(at, 2)}`).join(", ")}.</p>
+      )}
     </div>
   );
 }

@@ -2,7 +2,7 @@
 
 import { useState } from "preact/hooks";
 import { Icon } from "../ui/icon";
-import { openRead, reading, stopReading } from "./shelf";
+import { openRead, type Reading, readFile, reading, stopReading } from "./shelf";
 
 /** So many remarks are shown at once; the rest on demand. */
 const FIRST = 3;
@@ -10,7 +10,8 @@ const FIRST = 3;
 export function ReadReport() {
   const now = reading.value;
   if (!now) return null;
-  const { file, imported, refused } = now;
+  const { imported, refused } = now;
+  const file = now.file.name;
   return (
     <section class="read-report" aria-label="File" aria-live="polite">
       <button type="button" class="t ico" aria-label="Dismiss" onClick={stopReading}>
@@ -42,12 +43,50 @@ export function ReadReport() {
           </p>
           <Remarks key={`w${file}`} title="to know" texts={imported.warnings} />
           <Remarks key={`a${file}`} title="assumed" texts={imported.assumed} />
-          <button type="button" class="btn pri" onClick={openRead}>
-            Open {imported.robot.name}
-          </button>
         </>
       )}
+      {hasOthers(now) && <Hold key={file} now={now} />}
+      {imported && (
+        <button type="button" class="btn pri" onClick={openRead}>
+          Open {imported.robot.name}
+        </button>
+      )}
     </section>
+  );
+}
+
+/** Whether the file has joints that a robot of ours has not. */
+function hasOthers({ hold, imported, refused }: Reading): boolean {
+  if (imported) return Object.keys(imported.locked).length > 0;
+  return Boolean(hold) || /\bhold\b/.test(refused ?? "");
+}
+
+/** Which joints count as rigid, and where: an arm that is folded, an ankle that is one too many. */
+function Hold({ now }: { now: Reading }) {
+  const [typed, setTyped] = useState(now.hold);
+  return (
+    <form
+      class="hold"
+      onSubmit={(event) => {
+        event.preventDefault();
+        void readFile(now.file, typed);
+      }}
+    >
+      <label>
+        <span>Hold joints rigid [rad]</span>
+        <input
+          value={typed}
+          placeholder="arm_joint=0.5, wrist=0"
+          title="The file's joints and angles, with commas between them"
+          spellcheck={false}
+          autocomplete="off"
+          onInput={(event) => setTyped(event.currentTarget.value)}
+        />
+      </label>
+      <button type="submit" class="t" disabled={typed === now.hold}>
+        Read again
+      </button>
+    </form>
   );
 }
 

@@ -14,7 +14,9 @@ export const shelfError = signal<string | null>(null);
 
 /** A file that was read, refused, or is being read. */
 export interface Reading {
-  file: string;
+  file: File;
+  /** Joints that count as rigid, as they were typed. */
+  hold: string;
   imported: ImportedRobot | null;
   refused: string | null;
 }
@@ -85,19 +87,20 @@ export function dismiss(name: string): void {
 }
 
 /** Read a file of another tool's; nothing changes until it is opened. */
-export async function readFile(file: File): Promise<void> {
+export async function readFile(file: File, hold = ""): Promise<void> {
   newest?.abort();
   const abort = new AbortController();
   newest = abort;
-  reading.value = { file: file.name, imported: null, refused: null };
+  reading.value = { file, hold, imported: null, refused: null };
+  const joints = hold.split(",").map((text) => text.trim());
   try {
-    const imported = await importRobot(file, abort.signal);
-    if (newest === abort) reading.value = { file: file.name, imported, refused: null };
+    const imported = await importRobot(file, joints.filter(Boolean), abort.signal);
+    if (newest === abort) reading.value = { file, hold, imported, refused: null };
   } catch (error) {
     report(error);
     if (newest === abort) {
       const refused = reasonOf(error).replace(/^file: /, "");
-      reading.value = { file: file.name, imported: null, refused };
+      reading.value = { file, hold, imported: null, refused };
     }
   }
 }

@@ -50,6 +50,12 @@ export function toggleTheme(): void {
   store("theme", theme.peek());
 }
 
+// Whoever never chose has the system's, also where that changes in the evening.
+const systemIsLight = matchMedia("(prefers-color-scheme: light)");
+systemIsLight.addEventListener("change", ({ matches }) => {
+  if (stored("theme") === null) theme.value = matches ? "light" : "dark";
+});
+
 export function toggleSceneLayer(layer: SceneLayer): void {
   const next = new Set(sceneLayers.peek());
   if (!next.delete(layer)) next.add(layer);

@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import math
+import re
 from xml.sax.saxutils import quoteattr
 
+import numpy as np
+
 from tests.robot.importing.files import LEGS, Design, parts
+
+ANKLES = tuple(f"{leg}_ankle_joint" for leg in LEGS)
+BELOW = 0.1  # m from ankle to wheel
 
 # A frame that an exporter wrote as a body.
 _NOTHING = (
@@ -205,3 +211,37 @@ def _fixed(parent: str, child: str, place: tuple[float, float, float]) -> str:
         f'<joint name="{child}_fixed" type="fixed"><origin xyz="{n(*place)}"/>'
         f'<parent link="{parent}"/><child link="{child}"/><axis xyz="0 0 0"/></joint>'
     )
+
+
+def link(name: str, mass: float, x: float = 0.0) -> str:
+    """A URDF link, its mass centre `x` before its frame."""
+    return (
+        f'<link name="{name}"><inertial><origin xyz="{x} 0 0"/><mass value="{mass}"/><inertia '
+        'ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    )
+
+
+def hinge(name: str, parent: str, child: str, place: str, axis: str) -> str:
+    """A URDF joint."""
+    return (
+        f'<joint name="{name}" type="revolute"><origin xyz="{place}"/><parent link="{parent}"/>'
+        f'<child link="{child}"/><axis xyz="{axis}"/>'
+        '<limit lower="-2" upper="2" effort="90" velocity="9"/></joint>'
+    )
+
+
+def with_ankles(axis: str) -> str:
+    """URDF whose legs have one joint more, `BELOW` above their wheels."""
+    text = urdf(Design())
+    for leg in LEGS:
+        found = re.search(rf'<joint name="{leg}_wheel_joint".*?</joint>', text, re.DOTALL)
+        assert found
+        place = re.search(r'xyz="([^"]+)"', found[0])
+        assert place
+        wheel = np.array([float(number) for number in place[1].split()])
+        step = wheel * BELOW / np.linalg.norm(wheel)
+        own = found[0].replace(place[1], n(*step), 1)
+        own = own.replace(f'link="{leg}_calf"', f'link="{leg}_ankle"', 1)
+        ankle = hinge(f"{leg}_ankle_joint", f"{leg}_calf", f"{leg}_ankle", n(*wheel - step), axis)
+        text = text.replace(found[0], link(f"{leg}_ankle", 0.1) + ankle + own)
+    return text

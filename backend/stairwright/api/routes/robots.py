@@ -15,6 +15,7 @@ from stairwright.export.table import ROBOT_FORMATS
 from stairwright.jobs import robot_uploads
 from stairwright.library import load_robot, robots
 from stairwright.robot.description import Robot
+from stairwright.robot.importing.holding import MOST_HELD, written_hold
 from stairwright.robot.importing.report import Imported
 
 from . import stored
@@ -53,9 +54,18 @@ async def import_robot(
     wheel_radius: Annotated[
         float | None, Form(gt=0.0, le=10.0, description="where the file does not show it [m]")
     ] = None,
+    hold: Annotated[
+        list[str] | None,
+        Form(
+            max_length=MOST_HELD,
+            description="JOINT=RAD: a joint that is rigid there, by the file's name; may be given "
+            "again",
+        ),
+    ] = None,
 ) -> Imported:
     """The robot in a file, what was assumed and what to know about it. It is not saved."""
     options: dict[str, Any] = {"abduction": abduction, "wheel_radius": wheel_radius}
+    options["hold"] = written_hold(hold or [])
     known = [load_robot(each).model_dump(mode="json") for each in robots()]
     document = await read_upload(services, robot_uploads.import_robot, file, options, known)
     return Imported.model_validate(document)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from stairwright.robot.description import Robot
 
 from .alike import Alike, find_alike
 from .frame import Frame, find_frame, upright
+from .holding import hold_joints
 from .leg import SideLeg, side_leg
 from .links import Measured, measure_leg
 from .motor_documents import actuators
@@ -70,22 +72,30 @@ def assemble(
     *,
     abduction: float = 0.0,
     wheel_radius: float | None = None,
+    hold: Mapping[str, float] = MappingProxyType({}),
     known: Sequence[Robot] = (),
     origin: str = "",
 ) -> Reading:
-    """The robot in `source`.
+    """The robot in `source`, whose joints in `hold` are rigid there [rad or m].
 
     Raises:
         InputError: If it is not one of four legs with a thigh, a calf and a wheel each.
     """
-    tree = find_legs(source)
+    rigid = hold_joints(source, hold, notes)
+    tree = find_legs(source, rigid)
     frame = find_frame(source, tree, notes)
     held = {
-        joint: float(source.model.qpos0[source.model.jnt_qposadr[joint]]) for joint in tree.free
-    }
+        joint: float(source.model.qpos0[source.model.jnt_qposadr[joint]])
+        for joint in (*tree.free, *tree.steering)
+    } | rigid
     for joint in tree.free:
-        notes.warn(f"{source.joint(joint)!r} belongs to no leg: held at {held[joint]:g}")
-    held |= upright(source, tree, frame, abduction, notes)
+        if joint not in rigid:
+            notes.warn(f"{source.joint(joint)!r} belongs to no leg: held at {held[joint]:g}")
+    if tree.steering:
+        between = ", ".join(f"{source.joint(j)} {held[j]:.4g}" for j in tree.steering)
+        notes.assume(f"joints between calf and wheel are held [rad]: {between}")
+    abducted = upright(source, tree, frame, abduction, notes)
+    held |= abducted
     source.set(held)
     sides = [side_leg(source, frame, chain, notes) for chain in tree.legs]
     measured = _placed([measure_leg(source, frame, tree, side, notes) for side in sides])
@@ -101,11 +111,12 @@ def assemble(
         "name": _name(source.name),
         "nominal_height": nominal_height(source, legs, pairs, radius, notes),
         "abduction": abduction,
+        "held_joints": dict(hold),
         "source": origin,
         "joint_names": _names(legs),
         "joint_frames": _frames(legs),
     }
-    locked = [f"{source.joint(j)} {at:.4g}" for j, at in held.items() if j not in tree.free]
+    locked = [f"{source.joint(j)} {at:.4g}" for j, at in abducted.items()]
     if locked:
         notes.assume(f"abduction joints are locked [rad]: {', '.join(locked)}")
     _note_maps(legs, notes)

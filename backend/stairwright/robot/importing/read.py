@@ -22,7 +22,8 @@ def read(upload: Upload, options: Mapping[str, Any], known: Sequence[Robot] = ()
 
     Args:
         upload: The file and its meshes.
-        options: ``abduction`` [rad] and ``wheel_radius`` [m], both optional.
+        options: ``abduction`` [rad], ``wheel_radius`` [m] and ``hold`` (joints that are rigid, by
+            the file's names [rad or m]), all optional.
         known: Robots whose numbers fill gaps where the legs are the same.
 
     Raises:
@@ -52,6 +53,7 @@ def read_closely(
         notes,
         abduction=float(options.get("abduction") or 0.0),
         wheel_radius=options.get("wheel_radius"),
+        hold=options.get("hold") or {},
         known=known,
         origin=origin,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import mujoco
@@ -17,6 +18,7 @@ from .source import Source
 _HINGE, _SLIDE = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)
 _LEAST_TURN = 2 * math.pi - 1e-3  # rad; a joint that turns less than once is no wheel's
 _PARALLEL = 0.02  # rad between the axes of thigh, calf and wheel
+_MOST_UNLIKE = 0.5  # rad between axes that are meant to be parallel
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,7 @@ class Tree:
         trunk: Bodies of the trunk and all that does not move against it.
         parts: Bodies that move with each joint of the legs.
         free: Joints that are in no leg and not above the trunk: they will be held.
+        steering: Joints between a calf and its wheel that turn it out of the side view: held, too.
         roots: Joints above the trunk.
     """
 
@@ -51,18 +54,19 @@ class Tree:
     trunk: list[int]
     parts: dict[int, list[int]]
     free: list[int]
+    steering: list[int]
     roots: list[int]
 
 
-def find_legs(source: Source) -> Tree:
-    """Four chains of (abduction,) thigh, calf, wheel on one trunk.
+def find_legs(source: Source, rigid: Collection[int] = ()) -> Tree:
+    """Four chains of (abduction,) thigh, calf, wheel on one trunk; `rigid` joints count as none.
 
     Raises:
         InputError: If they are not there; names the joint or body that does not fit.
     """
     loops = find_loops(source)
     try:
-        tree = _open_tree(source)
+        tree = _open_tree(source, rigid)
     except InputError:
         if loops:
             raise loops[0].error() from None  # which explains what is odd about the tree
@@ -74,18 +78,22 @@ def find_legs(source: Source) -> Tree:
     return tree
 
 
-def _open_tree(source: Source) -> Tree:
+def _open_tree(source: Source, rigid: Collection[int]) -> Tree:
     model = source.model
     own = _own_joints(source)
     above = _above(source, own)
-    paths = _paths(source, above)
+    whole = [[j for j in path if j not in rigid] for path in _paths(source, above)]
+    whole = [path for path in whole if path]
+    paths = [_without_steering(source, path) for path in whole]
     wheels = [path for path in paths if _ends_in_wheel(source, path)]
     if len(wheels) != 4:
         raise InputError(_not_four(source, paths, wheels), ("file",))
     common = [j for j in wheels[0] if all(j in path for path in wheels)]
     legs = tuple(_chain(source, path[len(common) :]) for path in wheels)
     in_legs = {joint for leg in legs for joint in leg.joints}
-    free = [j for j in range(model.njnt) if j not in in_legs and j not in common]
+    steering = sorted({j for path in whole for j in path}.difference(*paths))
+    others = in_legs.union(common, steering)
+    free = [j for j in range(model.njnt) if j not in others]
     groups: dict[int | None, list[int]] = {}
     top = int(model.jnt_bodyid[legs[0].joints[0]])
     for leg in legs:
@@ -101,7 +109,8 @@ def _open_tree(source: Source) -> Tree:
         groups.setdefault(joint, []).append(body)
     root = model.body_rootid[top]
     free = [j for j in free if model.body_rootid[model.jnt_bodyid[j]] == root]
-    return Tree(legs, groups.get(None, []), {j: groups.get(j, []) for j in in_legs}, free, common)
+    parts = {j: groups.get(j, []) for j in in_legs}
+    return Tree(legs, groups.get(None, []), parts, free, steering, common)
 
 
 def _own_joints(source: Source) -> list[int | None]:
@@ -146,11 +155,28 @@ def _paths(source: Source, above: list[int | None]) -> list[list[int]]:
     return paths
 
 
+def _without_steering(source: Source, path: list[int]) -> list[int]:
+    """The path less the joints between its wheel and the calf, where a calf and a thigh are."""
+    wheel = path[-1]
+    calf = len(path) - 2
+    while calf > 0 and not _alike(source, path[calf], wheel):
+        calf -= 1
+    if calf > 0 and _alike(source, path[calf - 1], wheel):
+        return [*path[: calf + 1], wheel]
+    return path
+
+
 def _ends_in_wheel(source: Source, path: list[int]) -> bool:
     model = source.model
     if len(path) < 3 or any(model.jnt_type[j] != _HINGE for j in path[-3:]):
         return False
-    return _turns(source, path[-1]) and _lean(source, path[-1], path[-2]) <= 0.5
+    return _turns(source, path[-1]) and _alike(source, path[-1], path[-2])
+
+
+def _alike(source: Source, first: int, second: int) -> bool:
+    """Whether two hinges turn about much the same axis."""
+    hinges = all(source.model.jnt_type[joint] == _HINGE for joint in (first, second))
+    return hinges and _lean(source, first, second) <= _MOST_UNLIKE
 
 
 def _turns(source: Source, joint: int) -> bool:
@@ -176,10 +202,11 @@ def _chain(source: Source, path: list[int]) -> Chain:
         raise InputError(f"the leg that ends in {end!r} has {len(path)} joints; a leg needs "
                          "thigh, calf and wheel", ("file",))  # fmt: skip
     if len(path) > 4:
+        names = ", ".join(source.joint(joint) for joint in path[:8])
         raise InputError(
             f"{source.joint(path[0])!r}: one joint too many in the leg that ends in {end!r}, "
-            f"which has {listed([source.joint(j) for j in path])}; there may be an abduction, a "
-            "thigh, a calf and a wheel",
+            f"which has {names}; there may be an abduction, a thigh, a calf and a wheel: hold the "
+            "others",
             ("file",),
         )
     thigh, calf, wheel = path[-3:]
