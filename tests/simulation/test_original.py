@@ -13,10 +13,10 @@ from stairwright.errors import InputError
 from stairwright.robot import kinematics
 from stairwright.robot.importing.read import read
 from stairwright.robot.importing.upload import Upload
-from stairwright.simulation.original import build_original, read_original
+from stairwright.simulation.original import Original, build_original, read_original
 from stairwright.simulation.original_physics import Mirror
 from tests.robot.importing.files import LEGS, Design, LegQuirks
-from tests.robot.importing.written import mjcf, urdf
+from tests.robot.importing.written import hinge, link, mjcf, urdf
 
 CURB = {"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
 # Signs, zero angles and link frames of another maker; the base's frame is not the hips' middle.
@@ -93,6 +93,43 @@ def test_masses_and_shapes_are_the_files() -> None:
     assert seen.original.model.body_mass.sum() == pytest.approx(machine.mass)
     assert {"trunk", "FL_thigh", "RR_wheel", "terrain_0"} <= set(seen.original.labels)
     assert seen.original.model.nu == 12 + 4
+
+
+def built(text: str) -> Original:
+    machine = read(Upload("a.urdf", text.encode()), {}).robot
+    upload, reading = read_original(text, machine)
+    return build_original(upload, reading, machine, sw.load_terrain(CURB), 0.6)
+
+
+def test_balls_in_the_place_of_wheels_touch_the_terrain_and_each_other() -> None:
+    own = built(urdf(replace(Design(), wheel_mesh=True)))
+    bits = {
+        label: (int(own.model.geom_contype[geom]), int(own.model.geom_conaffinity[geom]))
+        for geom, label in enumerate(own.labels)
+        if own.model.geom_contype[geom]
+    }
+
+    def touch(first: str, second: str) -> bool:
+        (a, b), (c, d) = bits[first], bits[second]
+        return bool(a & d or c & b)
+
+    assert touch("FL_wheel", "terrain_0")
+    assert touch("FL_wheel", "RL_wheel")
+    assert touch("FL_thigh", "terrain_0")
+    assert not touch("FL_wheel", "trunk")
+
+
+def test_an_arm_that_lies_on_the_trunk_does_not_collide_with_it() -> None:
+    shape = '<collision><geometry><box size="0.3 0.1 0.1"/></geometry></collision></link>'
+    arm = link("arm", 1.0).replace("</link>", shape) + link("hand", 0.2).replace("</link>", shape)
+    arm += hinge("arm_joint", "base", "arm", "0 0 0.05", "0 1 0")
+    arm += hinge("hand_joint", "arm", "hand", "0.1 0 0", "0 1 0")
+    own = built(urdf(Design(), extra=arm))
+    seen = Mirror(own)
+    seen.qpos[:4] = 0.3, 0.0, 5.0, 1.0
+    seen.place()
+    touching = seen.data.contact.geom[: seen.data.ncon]
+    assert [(own.labels[a], own.labels[b]) for a, b in touching] == []
 
 
 def test_what_does_not_fit_is_refused() -> None:

@@ -34,6 +34,7 @@ from stairwright.terrain.profile import Terrain
 
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 _ALIKE = 1e-3  # m between the plan's robot and the file's
+_BALLS = 2  # MuJoCo's bit of what they collide with
 _GIVES = 0.05  # rad at which an abduction servo gives its full torque
 _SERVO_TORQUE = 0.5  # of weight times leg length, where the file has no limit
 
@@ -121,7 +122,7 @@ def build_original(
     for geom in spec.geoms:
         geom.name = ""
     labels = _labels(reading, bodies)
-    _join_halves(spec, reading, bodies, labels)
+    _join(spec, reading, bodies, labels)
     _remove_others(spec, bodies, source.model, base)
     _set_free(bodies[source.model.body_rootid[base]])
     set_physics(spec)
@@ -129,6 +130,8 @@ def build_original(
     for mesh in spec.meshes:
         if mesh.name.startswith("terrain_"):
             mesh.scale = [1.0, 1.0, 1.0]
+    for geom in spec.worldbody.geoms:
+        geom.conaffinity |= _BALLS
     wheels = [int(source.model.jnt_bodyid[reading.legs[leg].chain.wheel]) for leg in LEGS]
     planes = _planes(reading, wheels)
     for leg, wheel, plane in zip(LEGS, wheels, planes, strict=True):
@@ -200,18 +203,22 @@ def _labels(reading: Reading, bodies: list[Any]) -> dict[str, str]:
     return found
 
 
-def _join_halves(spec: Any, reading: Reading, bodies: list[Any], labels: dict[str, str]) -> None:
-    """A link that a held joint parts touches its neighbours no more than a whole one does."""
+def _join(spec: Any, reading: Reading, bodies: list[Any], labels: dict[str, str]) -> None:
+    """What held joints part is one: it touches neither itself nor, as a leg's link, the next."""
     model = reading.source.model
-    parted = {labels[bodies[int(model.jnt_bodyid[j])].name] for j in reading.held}
+    parts: dict[str, list[str]] = {}
+    for body in bodies[1:]:
+        if list(body.geoms):
+            parts.setdefault(labels[body.name], []).append(body.name)
+    parted = {labels[bodies[int(model.jnt_bodyid[joint])].name] for joint in reading.held}
+    pairs = [pair for part in parted for pair in itertools.combinations(parts.get(part, []), 2)]
     for leg in LEGS:
         chain = [f"{leg}_{part}" for part in ("thigh", "calf", "wheel")]
-        for pair in itertools.pairwise(chain):
-            if parted.isdisjoint(pair):
-                continue
-            first, second = ([name for name, label in labels.items() if label == of] for of in pair)
-            for one, other in itertools.product(first, second):
-                spec.add_exclude(bodyname1=one, bodyname2=other)
+        for first, second in itertools.pairwise(chain):
+            if not parted.isdisjoint((first, second)):
+                pairs += itertools.product(parts.get(first, []), parts.get(second, []))
+    for one, other in pairs:
+        spec.add_exclude(bodyname1=one, bodyname2=other)
 
 
 def _label(model: Any, geom: int, labels: dict[str, str]) -> str:
@@ -254,11 +261,12 @@ def _planes(reading: Reading, wheels: list[int]) -> Floats:
 
 
 def _add_ball(wheel: Any, place: Floats, radius: float) -> None:
+    """A ball is as wide as it is high, which no wheel is: it touches terrain and balls alone."""
     for geom in list(wheel.geoms):
         geom.contype = geom.conaffinity = 0
     wheel.add_geom(
-        type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius, 0, 0], pos=place, contype=1, conaffinity=1,
-        mass=0.0, density=0.0, condim=3,
+        type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius, 0, 0], pos=place, contype=_BALLS,
+        conaffinity=_BALLS, mass=0.0, density=0.0, condim=3,
     )  # fmt: skip
 
 

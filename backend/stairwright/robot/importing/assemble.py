@@ -88,11 +88,12 @@ def assemble(
         joint: float(source.model.qpos0[source.model.jnt_qposadr[joint]])
         for joint in (*tree.free, *tree.steering)
     } | rigid
-    for joint in tree.free:
-        if joint not in rigid:
-            notes.warn(f"{source.joint(joint)!r} belongs to no leg: held at {held[joint]:g}")
+    others = [joint for joint in tree.free if joint not in rigid]
+    if others:
+        notes.warn(f"joints of no leg stand where the file's zero is, unless `hold` says where: "
+                   f"{_positions(source, others, held)}")  # fmt: skip
     if tree.steering:
-        between = ", ".join(f"{source.joint(j)} {held[j]:.4g}" for j in tree.steering)
+        between = _positions(source, tree.steering, held)
         notes.assume(f"joints between calf and wheel are held [rad]: {between}")
     abducted = upright(source, tree, frame, abduction, notes)
     held |= abducted
@@ -116,9 +117,9 @@ def assemble(
         "joint_names": _names(legs),
         "joint_frames": _frames(legs),
     }
-    locked = [f"{source.joint(j)} {at:.4g}" for j, at in abducted.items()]
-    if locked:
-        notes.assume(f"abduction joints are locked [rad]: {', '.join(locked)}")
+    if abducted:
+        at = _positions(source, list(abducted), abducted)
+        notes.assume(f"abduction joints are locked [rad]: {at}")
     _note_maps(legs, notes)
     _note_ranges(source, legs, notes)
     document["assumed"] = notes.assumed
@@ -131,6 +132,11 @@ def assemble(
         raise InputError(f"does not make a robot: {error}", ("file",)) from None
     planes = {name: leg.wheel.lateral for name, leg in measured.items()}
     return Reading(robot, source, frame, centre, legs, planes, held)
+
+
+def _positions(source: Source, joints: list[int], held: Mapping[int, float]) -> str:
+    """Names, and where they stand."""
+    return ", ".join(f"{source.joint(joint)} {held[joint]:.4g}" for joint in joints)
 
 
 def _placed(legs: list[Measured]) -> dict[str, Measured]:
