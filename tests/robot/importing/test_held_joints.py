@@ -64,6 +64,19 @@ def test_an_arm_is_held_where_it_is_wanted() -> None:
     assert not any("arm_joint" in each for each in up.warnings)
 
 
+def test_an_arm_is_no_leg_that_steers() -> None:
+    places = ("base", "shoulder", "elbow", "wrist", "hand")
+    arm = "".join(link(name, 0.3) for name in places[1:])
+    for parent, child, axis in zip(
+        places, places[1:], ("0 1 0", "0 1 0", "0 0 1", "0 1 0"), strict=False
+    ):
+        arm += hinge(f"{child}_joint", parent, child, "0.1 0 0.1", axis)
+    made = imported(urdf(Design(), extra=arm))
+    assert not any("wrist_joint" in each for each in made.assumed)
+    (warning,) = [each for each in made.warnings if "of no leg" in each]
+    assert "shoulder_joint 0, elbow_joint 0, wrist_joint 0, hand_joint 0" in warning
+
+
 @pytest.mark.slow
 def test_the_original_is_simulated_as_it_was_read() -> None:
     text = with_ankles("0 1 0")

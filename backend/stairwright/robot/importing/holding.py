@@ -31,7 +31,7 @@ def written_hold(texts: Sequence[str]) -> dict[str, float]:
         except ValueError:
             equals = ""
         if not equals or not name:
-            raise InputError(f"{text!r} must be JOINT=RAD, as in arm_joint=0.5", ("hold",))
+            raise InputError(f"{text[:80]!r} must be JOINT=RAD, as in arm_joint=0.5", ("hold",))
         if name in hold:
             raise InputError(f"{name!r} is named twice", ("hold",))
         hold[name] = position
@@ -70,7 +70,8 @@ def hold_joints(source: Source, hold: Mapping[str, float], notes: Notes) -> dict
     for name, position in hold.items():
         joint = names.get(name)
         if joint is None:
-            raise InputError(f"there is no joint {name!r}; there are {listed(names)}", ("hold",))
+            text = f"there is no joint {name[:80]!r}; there are {listed(names)}"
+            raise InputError(text, ("hold",))
         if not source.has_one_position(joint):
             raise InputError(f"{name!r} has no single position", ("hold",))
         low, high = model.jnt_range[joint]

@@ -82,18 +82,18 @@ def _open_tree(source: Source, rigid: Collection[int]) -> Tree:
     model = source.model
     own = _own_joints(source)
     above = _above(source, own)
-    whole = [[j for j in path if j not in rigid] for path in _paths(source, above)]
-    whole = [path for path in whole if path]
-    paths = [_without_steering(source, path) for path in whole]
+    moving = [[j for j in path if j not in rigid] for path in _paths(source, above)]
+    moving = [path for path in moving if path]
+    paths = [_without_steering(source, path) for path in moving]
     wheels = [path for path in paths if _ends_in_wheel(source, path)]
     if len(wheels) != 4:
         raise InputError(_not_four(source, paths, wheels), ("file",))
     common = [j for j in wheels[0] if all(j in path for path in wheels)]
     legs = tuple(_chain(source, path[len(common) :]) for path in wheels)
     in_legs = {joint for leg in legs for joint in leg.joints}
-    steering = sorted({j for path in whole for j in path}.difference(*paths))
-    others = in_legs.union(common, steering)
-    free = [j for j in range(model.njnt) if j not in others]
+    on_wheels = {j for path in moving if path[-1] in in_legs for j in path}
+    steering = sorted(on_wheels.difference(in_legs, common))
+    free = [j for j in range(model.njnt) if j not in in_legs | on_wheels]
     groups: dict[int | None, list[int]] = {}
     top = int(model.jnt_bodyid[legs[0].joints[0]])
     for leg in legs:
