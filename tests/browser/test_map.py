@@ -133,7 +133,7 @@ def test_arrows_read_cells_and_space_keeps_one(room: Product) -> None:
     expect(said).to_have_text(re.compile("^rise 1.05 m, tread 0.26 m: not possible"))
     page.keyboard.press("Escape")
     assert page.locator(".map-card").count() == 0
-    page.get_by_role("button", name="Let go of the cell").click()
+    page.get_by_role("button", name="Deselect the cell").click()
 
 
 def test_codes_tell_the_share_that_is_climbed(room: Product) -> None:

@@ -34,7 +34,7 @@ export interface Summary {
   margins?: Margins | null;
   /** [s] */
   duration?: number | null;
-  /** Of the rollout; work per weight and way, without unit. */
+  /** Of the rollout; work per unit of weight and distance, without unit. */
   cost_of_transport?: number | null;
   /** Work of the plan's static torques, without losses [J]. */
   planned_energy?: number | null;

@@ -99,7 +99,7 @@ function Kept({ place, facts }: { place: Place; facts: CellFacts }) {
         <button
           type="button"
           class="t ico"
-          aria-label="Let go of the cell"
+          aria-label="Deselect the cell"
           onClick={() => {
             pinned.value = null;
           }}

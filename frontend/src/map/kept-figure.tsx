@@ -85,7 +85,7 @@ export function KeptFigure({ shown }: { shown: Shown | null }) {
       viewBox={`0 0 ${WIDTH} ${HEIGHT}`}
       role="img"
       aria-label={
-        shown.plan.problem ? "The robot where its way ends" : "The robot where its margin is least"
+        shown.plan.problem ? "The robot where its path ends" : "The robot where its margin is least"
       }
     >
       <polygon class="soil" points={`${px(first[0])},${floor} ${ground} ${px(last[0])},${floor}`} />

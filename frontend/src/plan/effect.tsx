@@ -84,7 +84,7 @@ const QUANTITIES: readonly Quantity[] = [
   },
   {
     title: "Cost of transport",
-    hint: "That energy per weight and way",
+    hint: "That energy per unit of weight and distance",
     unit: "",
     weight: "energy",
     of: (shown) => maybe(shown.cost_of_transport, 2),

@@ -81,7 +81,7 @@ export const PLANNED: readonly {
   {
     title: "Cost of transport",
     short: "CoT",
-    hint: "Cost of transport: that work per weight and way of the plan, without unit",
+    hint: "Cost of transport: that work per unit of weight and planned distance, without unit",
     of: (plan) => maybe(plan?.cost_of_transport, 2),
   },
 ];
@@ -111,7 +111,7 @@ export function figures(
     { title: "Mean speed", hint: "Along the course", of: (m) => `${fixed(m.speed_mean, 2)} m/s` },
     {
       title: "On the stairs",
-      hint: "Mean speed along the wheels’ way, from the first contact with the first face to all wheels on the landing",
+      hint: "Mean speed along the path of the wheels, from the first contact with the first face to all wheels on the landing",
       of: (m) => maybe(m.speed_stairs, 2, " m/s"),
     },
     {
@@ -144,7 +144,7 @@ export function figures(
     },
     {
       title: "Cost of transport",
-      hint: "That work per weight and distance, without unit",
+      hint: "That work per unit of weight and distance, without unit",
       ...(apart ? {} : { planned: PLANNED[1]!.of }),
       of: (m) => maybe(m.cost_of_transport, 2),
     },

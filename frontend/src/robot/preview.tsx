@@ -186,7 +186,7 @@ function Facts({ of, refused }: { of: Plan | null; refused: string | null }) {
       <span title="Work of the motors’ static torques along the plan, without losses">
         energy <b>{maybe(of.energy, 0)}</b> J
       </span>
-      <span title="That work per weight and way, without unit">
+      <span title="That work per unit of weight and distance, without unit">
         cost of transport <b>{maybe(of.cost_of_transport, 2)}</b>
       </span>
       {of.knees && (

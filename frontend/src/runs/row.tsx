@@ -60,7 +60,7 @@ function Transport({ summary: s }: { summary: Summary }) {
   return (
     <span
       class="run-num cot"
-      title={`${whose}, and cost of transport: energy per weight and way, without unit`}
+      title={`${whose}, and cost of transport: energy per unit of weight and distance, without unit`}
     >
       {maybe(energy, 0, " J")}
       <small>{maybe(cost, 2)}</small>
