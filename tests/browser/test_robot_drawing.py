@@ -8,6 +8,9 @@ from typing import Any
 
 import pytest
 
+from tests.robot.importing.files import Design
+from tests.robot.importing.written import hinge, link, urdf
+
 from .conftest import DESK, PHONE, Product
 from .robot_room import LAPTOP, choose, field, pull, robot_room, state
 
@@ -113,6 +116,32 @@ def test_dimension_lines_do_not_cross_and_on_a_phone_fingers_can_pull_them(
     page.get_by_role("button", name="Reset robot").click()
     assert crossed == []
     _fills_the_width(drawn)
+
+
+def test_an_arm_and_the_lines_above_it_are_in_the_picture(product: Product) -> None:
+    page = product.page
+    mast = '<collision><geometry><box size="0.1 0.1 1.4"/></geometry></collision></link>'
+    arm = link("arm", 0.5).replace("</link>", mast)
+    arm += hinge("arm_joint", "base", "arm", "0 0 0.7", "0 1 0")
+    page.set_viewport_size(LAPTOP)
+    page.get_by_label("Robot file").set_input_files(
+        {
+            "name": "armed.urdf",
+            "mimeType": "application/xml",
+            "buffer": urdf(Design(), extra=arm).encode(),
+        }
+    )
+    page.get_by_role("button", name="Open maker").click()
+    product.planned()
+    assert page.evaluate("""() => {
+      const box = element => element.getBoundingClientRect();
+      const view = box(document.querySelector(".side-view"));
+      const drawn = [...document.querySelectorAll(".side-view :is(.rb.cur .tr, .plate)")];
+      return drawn.length > 5 &&
+        drawn.map(box).every(e => e.top >= view.top && e.bottom <= view.bottom);
+    }""")
+    page.set_viewport_size(DESK)
+    page.get_by_role("button", name="Close maker").click()
 
 
 def _fills_the_width(drawn: dict[str, Any]) -> None:

@@ -116,8 +116,9 @@ export function dimensions(
     const [ux, uy] = unit(a, b);
     const side = kneeSide(drawn);
     const aside: Vec2 = [uy * side * LINK, -ux * side * LINK];
-    // Between the legs the thigh's label hangs below the trunk.
-    const share = name === "thigh" && side === (drawn === front ? -1 : 1) ? 0.95 : 0.5;
+    // Between the legs the thigh's label hangs below the trunk, behind them below its height.
+    const hangs = side === (drawn === front ? -1 : 1) || (own.length > 0 && side === -1);
+    const share = name === "thigh" && hangs ? 0.95 : 0.5;
     return line(`${end}.${name}.length`, name, a, b, aside, { share, beside: true });
   };
   const own = (["thigh", "calf"] as const).filter((name) => file.rear?.[name]);

@@ -36,7 +36,8 @@ const extent = computed(() => {
   const half = Math.max(...corners.map((p) => Math.abs(p[0])), file.hips.front[0]!);
   const joints = skeleton(shape, stance(file)).legs.flat();
   const stands = Math.max(half, ...joints.map((p) => Math.abs(p[0]) + file.wheel.radius));
-  return { half, stands, reach, height: file.nominal_height };
+  const height = file.nominal_height;
+  return { half, stands, reach, height, top: height + Math.max(...corners.map((p) => p[1])) };
 });
 
 /** Narrower, and the robot as it stands takes the width; its reach may leave the picture [px]. */
@@ -51,6 +52,8 @@ const GROUND = 46;
 /** Room for dimension lines beside and above the robot [px]. */
 const SIDE = 90;
 const ABOVE = 60;
+/** The same above a trunk that is higher than legs reach: an arm's. */
+const ABOVE_TRUNK = 74;
 
 export const projection = computed<Projection>(() => {
   const { width, height } = size.value;
@@ -61,6 +64,7 @@ export const projection = computed<Projection>(() => {
   const fitted = Math.min(
     (width - 2 * (narrow ? NARROW_SIDE : SIDE)) / wide,
     (height - GROUND - ABOVE) / tall,
+    (height - GROUND - ABOVE_TRUNK) / (of?.top ?? 1),
   );
   const scale = Math.max(20, fitted);
   const px = (x: number) => width / 2 + x * scale;
