@@ -1,8 +1,10 @@
 // Before the first paint, so that a reload never flashes the other theme.
+let saved = null;
 try {
-  const saved = localStorage.getItem("stairwright.theme");
-  const light = matchMedia("(prefers-color-scheme: light)").matches;
-  document.documentElement.dataset.theme = saved || (light ? "light" : "dark");
+  saved = localStorage.getItem("stairwright.theme");
 } catch {
-  document.documentElement.dataset.theme = "dark";
+  // Private windows may refuse: the system's theme then.
 }
+const light = matchMedia("(prefers-color-scheme: light)").matches;
+const chosen = saved === "light" || saved === "dark";
+document.documentElement.dataset.theme = chosen ? saved : light ? "light" : "dark";

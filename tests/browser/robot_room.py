@@ -36,6 +36,12 @@ def choose(product: Product, name: str) -> None:
     product.planned()
 
 
+def choose_file(product: Product, name: str, content: str) -> None:
+    product.page.get_by_label("Robot file").set_input_files(
+        {"name": name, "mimeType": "application/xml", "buffer": content.encode()}
+    )
+
+
 def field(product: Product, quantity: str) -> Locator:
     return product.page.locator(f'[data-quantity="{quantity}"] input')
 

@@ -15,7 +15,7 @@ from tests.robot.importing.written import ANKLES, with_ankles
 
 from .axe import violations
 from .conftest import DESK, PHONE, Product
-from .robot_room import LAPTOP, choose, enter, robot_room, state
+from .robot_room import LAPTOP, choose, choose_file, enter, robot_room, state
 
 if TYPE_CHECKING:
     from playwright.sync_api import ViewportSize
@@ -139,13 +139,7 @@ def test_a_file_is_read_reported_and_opened(product: Product, tmp_path: Path) ->
 
 def test_a_file_that_does_not_fit_is_refused_with_its_reason(product: Product) -> None:
     page = product.page
-    page.get_by_label("Robot file").set_input_files(
-        {
-            "name": "lamp.urdf",
-            "mimeType": "application/xml",
-            "buffer": b'<robot name="lamp"><link name="base"/></robot>',
-        }
-    )
+    choose_file(product, "lamp.urdf", '<robot name="lamp"><link name="base"/></robot>')
     alert = page.get_by_role("region", name="File").get_by_role("alert")
     alert.wait_for()
     assert "lamp.urdf does not fit" in alert.inner_text()
@@ -155,10 +149,7 @@ def test_a_file_that_does_not_fit_is_refused_with_its_reason(product: Product) -
 
 def test_joints_of_a_file_are_held(product: Product) -> None:
     page = product.page
-    content = with_ankles("0 1 0").encode()
-    page.get_by_label("Robot file").set_input_files(
-        {"name": "ankles.urdf", "mimeType": "application/xml", "buffer": content}
-    )
+    choose_file(product, "ankles.urdf", with_ankles("0 1 0"))
     report = page.get_by_role("region", name="File")
     report.get_by_role("alert").get_by_text("one joint too many").wait_for()
     hold = report.get_by_label("Hold joints rigid")

@@ -12,7 +12,7 @@ from tests.robot.importing.files import Design
 from tests.robot.importing.written import hinge, link, urdf
 
 from .conftest import DESK, PHONE, Product
-from .robot_room import LAPTOP, choose, field, pull, robot_room, state
+from .robot_room import LAPTOP, choose, choose_file, field, pull, robot_room, state
 
 pytestmark = [pytest.mark.browser]
 
@@ -124,13 +124,7 @@ def test_an_arm_and_the_lines_above_it_are_in_the_picture(product: Product) -> N
     arm = link("arm", 0.5).replace("</link>", mast)
     arm += hinge("arm_joint", "base", "arm", "0 0 0.7", "0 1 0")
     page.set_viewport_size(LAPTOP)
-    page.get_by_label("Robot file").set_input_files(
-        {
-            "name": "armed.urdf",
-            "mimeType": "application/xml",
-            "buffer": urdf(Design(), extra=arm).encode(),
-        }
-    )
+    choose_file(product, "armed.urdf", urdf(Design(), extra=arm))
     page.get_by_role("button", name="Open maker").click()
     product.planned()
     assert page.evaluate("""() => {

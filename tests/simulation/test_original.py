@@ -28,18 +28,24 @@ ODD = replace(
 )
 
 
+def as_read(text: str) -> tuple[str, sw.Robot]:
+    return text, read(Upload("a.xml", text.encode()), {}).robot
+
+
 @cache
 def robot(design_is_odd: bool, form: str) -> tuple[str, sw.Robot]:
     write = mjcf if form == "mjcf" else urdf
-    text = write(ODD if design_is_odd else Design())
-    return text, read(Upload("a.xml", text.encode()), {}).robot
+    return as_read(write(ODD if design_is_odd else Design()))
+
+
+def built(text: str, machine: sw.Robot) -> Original:
+    upload, reading = read_original(text, machine)
+    return build_original(upload, reading, machine, sw.load_terrain(CURB), 0.6)
 
 
 def mirror(odd: bool, form: str) -> tuple[Mirror, sw.Robot]:
     text, machine = robot(odd, form)
-    upload, reading = read_original(text, machine)
-    terrain = sw.load_terrain(CURB)
-    return Mirror(build_original(upload, reading, machine, terrain, 0.6)), machine
+    return Mirror(built(text, machine)), machine
 
 
 @pytest.mark.parametrize("form", ["mjcf", "urdf"])
@@ -95,14 +101,8 @@ def test_masses_and_shapes_are_the_files() -> None:
     assert seen.original.model.nu == 12 + 4
 
 
-def built(text: str) -> Original:
-    machine = read(Upload("a.urdf", text.encode()), {}).robot
-    upload, reading = read_original(text, machine)
-    return build_original(upload, reading, machine, sw.load_terrain(CURB), 0.6)
-
-
 def test_balls_in_the_place_of_wheels_touch_the_terrain_and_each_other() -> None:
-    own = built(urdf(replace(Design(), wheel_mesh=True)))
+    own = built(*as_read(urdf(replace(Design(), wheel_mesh=True))))
     bits = {
         label: (int(own.model.geom_contype[geom]), int(own.model.geom_conaffinity[geom]))
         for geom, label in enumerate(own.labels)
@@ -124,7 +124,7 @@ def test_an_arm_that_lies_on_the_trunk_does_not_collide_with_it() -> None:
     arm = link("arm", 1.0).replace("</link>", shape) + link("hand", 0.2).replace("</link>", shape)
     arm += hinge("arm_joint", "base", "arm", "0 0 0.05", "0 1 0")
     arm += hinge("hand_joint", "arm", "hand", "0.1 0 0", "0 1 0")
-    own = built(urdf(Design(), extra=arm))
+    own = built(*as_read(urdf(Design(), extra=arm)))
     seen = Mirror(own)
     seen.qpos[:4] = 0.3, 0.0, 5.0, 1.0
     seen.place()

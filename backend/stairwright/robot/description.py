@@ -46,6 +46,7 @@ from .parts import (
 LEGS = ("FL", "FR", "RL", "RR")
 JOINTS = tuple(f"{leg}_{part}" for leg in LEGS for part in ("thigh", "calf", "wheel"))
 _ROS_NAME = re.compile(r"[A-Za-z][\w/.-]{0,99}", re.ASCII)
+MOST_HELD = 200  # joints of a file that count as rigid
 FOLDED = 3.1  # rad; a calf lies on its thigh at pi
 # Fields that documents of the first schema do not have.
 _NEW_IN_2: tuple[tuple[str, ...], ...] = (
@@ -133,7 +134,7 @@ class Robot(Model):
     )
     held_joints: dict[str, float] = optional(
         {},
-        max_length=200,
+        max_length=MOST_HELD,
         description="joints of the file it was imported from that count as rigid, by the file's "
         "names, and where they are held [rad or m]",
     )

@@ -1,6 +1,6 @@
 /** How the page looks: theme, layers, layout. Nothing here changes an answer. */
 
-import { effect, signal } from "@preact/signals";
+import { computed, effect, signal } from "@preact/signals";
 import { kept, readFlag, store, stored } from "./kept";
 
 export { inspectorOpen } from "./layout";
@@ -27,9 +27,15 @@ export type SceneLayer = (typeof SCENE_ONLY)[number];
 export const sceneLayers = signal<ReadonlySet<SceneLayer>>(new Set(SCENE_ONLY));
 export const legendOpen = kept("legend", false, readFlag);
 
-export const theme = signal<Theme>(
-  document.documentElement.dataset.theme === "light" ? "light" : "dark",
+const systemIsLight = matches("(prefers-color-scheme: light)");
+/** Whoever never chose has the system's, also where that changes in the evening. */
+const chosenTheme = kept<Theme | "system">("theme", "system", (text) =>
+  text === "light" || text === "dark" ? text : null,
 );
+export const theme = computed<Theme>(() => {
+  if (chosenTheme.value !== "system") return chosenTheme.value;
+  return systemIsLight.value ? "light" : "dark";
+});
 export const tool = signal<Tool>("select");
 export const layers = signal<ReadonlySet<Layer>>(new Set(Object.keys(LAYERS) as Layer[]));
 /** The table of the profile's points is open. */
@@ -46,15 +52,8 @@ export function dismissHint(): void {
 }
 
 export function toggleTheme(): void {
-  theme.value = theme.peek() === "dark" ? "light" : "dark";
-  store("theme", theme.peek());
+  chosenTheme.value = theme.peek() === "dark" ? "light" : "dark";
 }
-
-// Whoever never chose has the system's, also where that changes in the evening.
-const systemIsLight = matchMedia("(prefers-color-scheme: light)");
-systemIsLight.addEventListener("change", ({ matches }) => {
-  if (stored("theme") === null) theme.value = matches ? "light" : "dark";
-});
 
 export function toggleSceneLayer(layer: SceneLayer): void {
   const next = new Set(sceneLayers.peek());

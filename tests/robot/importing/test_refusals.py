@@ -12,7 +12,7 @@ from stairwright.robot.importing.read import read
 from stairwright.robot.importing.report import Imported
 from stairwright.robot.importing.upload import Upload
 from tests.robot.importing.files import Design, LegQuirks
-from tests.robot.importing.written import mjcf, urdf
+from tests.robot.importing.written import hinge, link, mjcf, urdf
 
 MJCF, URDF = mjcf(Design()), urdf(Design())
 
@@ -120,12 +120,7 @@ def test_links_that_hang_on_nothing() -> None:
 
 def test_one_joint_too_many() -> None:
     text = one(URDF, "FL_hip_joint", '<parent link="base"/>', '<parent link="turret"/>')
-    turret = (
-        '<link name="turret"><inertial><mass value="1"/><inertia ixx=".01" iyy=".01" izz=".01" '
-        'ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="steer" type="revolute">'
-        '<parent link="base"/><child link="turret"/><axis xyz="0 0 1"/>'
-        '<limit lower="-1" upper="1" effort="9" velocity="9"/></joint>'
-    )
+    turret = link("turret", 1.0) + hinge("steer", "base", "turret", "0 0 0", "0 0 1")
     text = text.replace("</robot>", f"{turret}</robot>")
     message = refused(text)
     assert "'steer'" in message
@@ -194,12 +189,7 @@ def test_a_small_tilt_is_accepted_and_its_error_is_said() -> None:
 
 
 def test_other_joints_are_held_and_named() -> None:
-    arm = (
-        '<link name="arm"><inertial><mass value="0.5"/><inertia ixx=".001" iyy=".001" izz=".001" '
-        'ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="arm_joint" type="revolute">'
-        '<origin xyz="0.1 0 0.1"/><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>'
-        '<limit lower="-1" upper="1" effort="9" velocity="9"/></joint>'
-    )
+    arm = link("arm", 0.5) + hinge("arm_joint", "base", "arm", "0.1 0 0.1", "0 1 0")
     made = imported(urdf(Design(), extra=arm))
     assert made.robot.mass == pytest.approx(imported(URDF).robot.mass + 0.5)
     assert made.locked["arm_joint"] == 0.0

@@ -14,8 +14,8 @@ from stairwright.api.uploads import read_upload
 from stairwright.export.table import ROBOT_FORMATS
 from stairwright.jobs import robot_uploads
 from stairwright.library import load_robot, robots
-from stairwright.robot.description import Robot
-from stairwright.robot.importing.holding import MOST_HELD, written_hold
+from stairwright.robot.description import MOST_HELD, Robot
+from stairwright.robot.importing.holding import written_hold
 from stairwright.robot.importing.report import Imported
 
 from . import stored
@@ -64,8 +64,11 @@ async def import_robot(
     ] = None,
 ) -> Imported:
     """The robot in a file, what was assumed and what to know about it. It is not saved."""
-    options: dict[str, Any] = {"abduction": abduction, "wheel_radius": wheel_radius}
-    options["hold"] = written_hold(hold or [])
+    options: dict[str, Any] = {
+        "abduction": abduction,
+        "wheel_radius": wheel_radius,
+        "hold": written_hold(hold or []),
+    }
     known = [load_robot(each).model_dump(mode="json") for each in robots()]
     document = await read_upload(services, robot_uploads.import_robot, file, options, known)
     return Imported.model_validate(document)

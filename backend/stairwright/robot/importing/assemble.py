@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -72,7 +71,7 @@ def assemble(
     *,
     abduction: float = 0.0,
     wheel_radius: float | None = None,
-    hold: Mapping[str, float] = MappingProxyType({}),
+    hold: Mapping[str, float],
     known: Sequence[Robot] = (),
     origin: str = "",
 ) -> Reading:

@@ -14,6 +14,7 @@ import numpy as np
 from stairwright.arrays import Floats
 from stairwright.errors import InputError
 
+from .holding import note_range
 from .report import Notes
 from .source import Source
 from .tree import Chain, Tree
@@ -151,11 +152,6 @@ def _check_ranges(source: Source, held: dict[int, float], notes: Notes) -> None:
     model = source.model
     for joint, turn in held.items():
         # `turn` is from the reference; the file counts from its own zero.
-        low, high = model.jnt_range[joint]
         at = turn + float(model.qpos0[model.jnt_qposadr[joint]])
         held[joint] = at if abs(at) > 1e-9 else 0.0
-        if model.jnt_limited[joint] and not low - 1e-6 <= at <= high + 1e-6:
-            notes.warn(
-                f"{source.joint(joint)!r} is held at {at:.4g} rad, out of its range "
-                f"{low:.4g}..{high:.4g}"
-            )
+        note_range(source, joint, at, notes)

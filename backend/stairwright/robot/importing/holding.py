@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 
 from stairwright.arguments import as_number
 from stairwright.errors import InputError
+from stairwright.robot.description import MOST_HELD
 
 from .report import Notes, listed
 
 if TYPE_CHECKING:  # the web process checks what is asked for, and does without MuJoCo
     from .source import Source
-
-MOST_HELD = 200  # joints
 
 
 def written_hold(texts: Sequence[str]) -> dict[str, float]:
@@ -64,21 +63,26 @@ def hold_joints(source: Source, hold: Mapping[str, float], notes: Notes) -> dict
     Raises:
         InputError: If the file has no such joint, or it has no single position.
     """
-    model = source.model
-    names = {source.joint(joint): joint for joint in range(model.njnt)}
+    names = {source.joint(joint): joint for joint in range(source.model.njnt)}
     held = {}
     for name, position in hold.items():
         joint = names.get(name)
         if joint is None:
             text = f"there is no joint {name[:80]!r}; there are {listed(names)}"
             raise InputError(text, ("hold",))
-        if not source.has_one_position(joint):
+        if source.unit(joint) is None:
             raise InputError(f"{name!r} has no single position", ("hold",))
-        low, high = model.jnt_range[joint]
-        if model.jnt_limited[joint] and not low - 1e-6 <= position <= high + 1e-6:
-            notes.warn(
-                f"{name!r} is held at {position:.4g}, out of its range {low:.4g}..{high:.4g}"
-            )
+        note_range(source, joint, position, notes)
         held[joint] = position
     source.set(held)
     return held
+
+
+def note_range(source: Source, joint: int, position: float, notes: Notes) -> None:
+    """Say so where a joint is held out of its range."""
+    low, high = source.model.jnt_range[joint]
+    if source.model.jnt_limited[joint] and not low - 1e-6 <= position <= high + 1e-6:
+        notes.warn(
+            f"{source.joint(joint)!r} is held at {position:.4g} {source.unit(joint)}, out of its "
+            f"range {low:.4g}..{high:.4g}"
+        )

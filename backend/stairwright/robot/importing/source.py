@@ -25,7 +25,7 @@ _FINITE = (
     "geom_size", "dof_damping", "dof_armature", "qpos0", "mesh_vert",
 )  # fmt: skip
 _MESH, _PLANE = int(mujoco.mjtGeom.mjGEOM_MESH), int(mujoco.mjtGeom.mjGEOM_PLANE)
-_ONE_POSITION = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
+_UNITS = {int(mujoco.mjtJoint.mjJNT_HINGE): "rad", int(mujoco.mjtJoint.mjJNT_SLIDE): "m"}
 _SHAPES = tuple(
     int(getattr(mujoco.mjtGeom, f"mjGEOM_{name}"))
     for name in ("SPHERE", "CAPSULE", "ELLIPSOID", "CYLINDER", "BOX", "MESH")
@@ -62,9 +62,9 @@ class Source:
         """A joint's name, or what stands for one."""
         return self.model.joint(index).name or f"joint of {self.body(self.model.jnt_bodyid[index])}"
 
-    def has_one_position(self, index: int) -> bool:
-        """Whether a joint is a hinge or a slide."""
-        return int(self.model.jnt_type[index]) in _ONE_POSITION
+    def unit(self, index: int) -> str | None:
+        """Of a joint's position; None for one that no single number tells."""
+        return _UNITS.get(int(self.model.jnt_type[index]))
 
     def set(self, positions: dict[int, float]) -> None:
         """Put every joint to its reference and those of `positions` elsewhere [rad or m]."""

@@ -93,7 +93,7 @@ def _open_tree(source: Source, rigid: Collection[int]) -> Tree:
     in_legs = {joint for leg in legs for joint in leg.joints}
     on_wheels = {j for path in moving if path[-1] in in_legs for j in path}
     steering = sorted(on_wheels.difference(in_legs, common))
-    free = [j for j in range(model.njnt) if j not in in_legs | on_wheels]
+    free = [j for j in range(model.njnt) if j not in on_wheels]
     groups: dict[int | None, list[int]] = {}
     top = int(model.jnt_bodyid[legs[0].joints[0]])
     for leg in legs:
