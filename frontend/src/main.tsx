@@ -15,7 +15,7 @@ import { startPlanning } from "./state/planner";
 import { plan, settled } from "./state/planning";
 import { duration, seek, startClock } from "./state/playback";
 import { restoreRollout, resumeRollout } from "./state/rollouts";
-import { robotName, robots, settings, terrains } from "./state/setup";
+import { robotEdits, robotName, robots, settings, terrains } from "./state/setup";
 import { type Restored, restoreFromAddress, startSharing } from "./state/share";
 import { resumeTrials } from "./state/trials";
 import { fetchWhileIdle } from "./ui/part";
@@ -33,7 +33,9 @@ async function readCatalogue(): Promise<void> {
   terrains.value = allTerrains;
   robots.value = allRobots;
   settings.value = allSettings;
-  if (!allRobots.some((r) => r.name === robotName.peek()))
+  const name = robotName.peek();
+  // One that was read from a file or came in a link is in no catalogue.
+  if (!robotEdits.peek()[name] && !allRobots.some((r) => r.name === name))
     robotName.value = allRobots[0]?.name ?? "";
 }
 

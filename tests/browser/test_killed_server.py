@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.conftest import TAB, free_port, serve
+from tests.robot.importing.files import Design
+from tests.robot.importing.written import urdf
 
 from .conftest import PATIENCE, Product
+from .robot_room import choose_file
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -38,6 +41,11 @@ def test_a_killed_server_loses_nothing(browser: Browser, tmp_path: Path) -> None
     with browser.new_context(**TAB) as context:
         with serve(data, port=port) as server:
             product = Product(context.new_page()).open(server.url)
+            product.page.keyboard.press("2")
+            choose_file(product, "unsaved.urdf", urdf(Design()))
+            product.page.get_by_role("button", name="Open maker").click()
+            product.planned()
+            product.page.keyboard.press("1")
             scene = product.page.locator("iframe").get_attribute("src")
             os.killpg(server.process.pid, signal.SIGKILL)
             server.process.wait()
@@ -55,4 +63,5 @@ def test_a_killed_server_loses_nothing(browser: Browser, tmp_path: Path) -> None
             product.planned()
             product.page.locator(f"iframe:not([src='{scene}'])").wait_for()
             assert product.corner(6) != before
+            product.linked('"r":"maker","rd":')
             assert product.choose_terrain("flat").status == "feasible"
