@@ -9,7 +9,13 @@ import type { Projection } from "../profile-editor/viewport";
 import { told } from "./handle";
 import { quantityOf } from "./quantities";
 
-export interface Dimension {
+export interface Label {
+  /** Centre and size of the label [px]. */
+  label: Vec2;
+  size: Vec2;
+}
+
+export interface Dimension extends Label {
   /** Of the quantity. */
   id: string;
   text: string;
@@ -18,9 +24,6 @@ export interface Dimension {
   to: Vec2;
   /** The line lies this far beside it [px]. */
   aside: Vec2;
-  /** Centre and size of the label [px]. */
-  label: Vec2;
-  size: Vec2;
   /** Which way a pull makes it longer, and by how much per metre. */
   pull: Vec2;
   gain: number;
@@ -71,6 +74,7 @@ export function dimensions(
   bones: Skeleton,
   to: Projection,
   width: number,
+  caption: Label,
 ): Dimension[] {
   const px = (p: Vec2): Vec2 => [to.px(p[0]), to.py(p[1])];
   const legs = bones.legs.map((joints) => joints.map(px)) as [Vec2[], Vec2[]];
@@ -184,7 +188,21 @@ export function dimensions(
   );
   const share = clearShare(narrow ? 0.16 : 0.4, standing, bones, radius, to);
   standing.label[1] = ground + (hips - ground) * share;
-  return [...links, ...lengths, rolling, standing, ...(narrow ? [] : [trunkHeight])];
+  const all = [rolling, ...lengths, ...links, standing, ...(narrow ? [] : [trunkHeight])];
+  partLabels([caption, ...all]); // those at the rims first: they have no way out
+  return all;
+}
+
+/** Moves labels up or down that lie over one before them. */
+function partLabels(all: readonly Label[]): void {
+  all.forEach(({ label, size }, k) => {
+    for (const other of all.slice(0, k)) {
+      const [across, down] = [0, 1].map((i) => label[i]! - other.label[i]!) as Vec2;
+      const [wide, tall] = [0, 1].map((i) => (size[i]! + other.size[i]!) / 2) as Vec2;
+      if (Math.abs(across) < wide && Math.abs(down) < tall)
+        label[1] = other.label[1] + (down < 0 ? -tall : tall);
+    }
+  });
 }
 
 /** The share of an upright line nearest to `wanted` at which its label lies on no link or wheel. */

@@ -5,7 +5,7 @@ import { collisionPoints, Details, Figure } from "../profile-editor/figure";
 import { robotAsBuilt, robotDocument } from "../state/setup";
 import { useMeasured } from "../ui/measured";
 import { Ranges } from "./captions";
-import { type Dimension, dimensions } from "./dimensions";
+import { type Dimension, dimensions, type Label } from "./dimensions";
 import { hold, letGo, pull } from "./drag";
 import { selected } from "./edit";
 import { Handle, placeIn, TARGET, told } from "./handle";
@@ -58,7 +58,7 @@ function Drawing() {
       {layers.has("joints") && <Joints />}
       {layers.has("dimensions") && (
         <>
-          {[...dimensions(file, pose, to, size.value.width)]
+          {[...dimensions(file, pose, to, size.value.width, captionOf(massCentre()))]
             .sort((a, b) => Number(a.id === selected.value) - Number(b.id === selected.value))
             .map((each) => (
               <Line key={each.id} of={each} />
@@ -133,12 +133,23 @@ function Line({ of }: { of: Dimension }) {
 const ACROSS: Vec2 = [1, 0];
 const UP: Vec2 = [0, -1];
 
-/** Of the trunk, to be pulled both ways. */
-function MassCentre() {
+/** Of the trunk, on screen [px]. */
+function massCentre(): Vec2 {
   const com = robotDocument.value!.trunk.com ?? [0, 0, 0];
   const at = frame.value!;
   const to = projection.value;
-  const [x, y] = [to.px(at.x + com[0]!), to.py(at.z + com[2]!)];
+  return [to.px(at.x + com[0]!), to.py(at.z + com[2]!)];
+}
+
+/** Baseline of its caption below it [px]. */
+const BASELINE = 22;
+
+/** Where the caption is; its letters stand on the baseline. */
+const captionOf = ([x, y]: Vec2): Label => ({ label: [x, y + BASELINE - 4], size: [66, 14] });
+
+/** To be pulled both ways. */
+function MassCentre() {
+  const [x, y] = massCentre();
   const pulls = [
     { id: "com.x", direction: ACROSS, gain: 1 },
     { id: "com.z", direction: UP, gain: 1 },
@@ -150,8 +161,8 @@ function MassCentre() {
         <circle r={4.5} />
         <path d="M-4.5 0A4.5 4.5 0 0 1 0 -4.5V0ZM4.5 0A4.5 4.5 0 0 1 0 4.5V0Z" />
       </g>
-      <text x={x} y={y + 22} text-anchor="middle">
-        CoM {told(quantityOf("com.x"), com[0]!)}
+      <text x={x} y={y + BASELINE} text-anchor="middle">
+        CoM {told(quantityOf("com.x"), robotDocument.value!.trunk.com?.[0] ?? 0)}
       </text>
     </Handle>
   );
