@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import stairwright as sw
-from stairwright.planning.plan import Pose
+from stairwright.planning.plan import Plan, Pose
 from stairwright.planning.standing import StandingPose
-from stairwright.simulation.replanning import plan_onward
+from stairwright.simulation import plan_change
+from stairwright.simulation.replanning import Decision, plan_onward
 from stairwright.terrain.wheel_path import wheel_path
 
 SLIPPERY_REAR = {"friction_rear": -0.3}
@@ -31,6 +32,23 @@ def test_no_plan_for_the_grip_that_is_there_means_not_to_start() -> None:
     assert "slipped at a friction of 0." in found.reason
     assert found.metrics.progress < 0.02
     assert found.metrics.link_contacts == 0
+
+
+@pytest.mark.parametrize("friction", [0.25, 0.5])
+def test_the_friction_that_is_found_is_that_of_the_ground(
+    friction: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    readings = []
+
+    def stop(plan: Plan, need: float, found: float, *, front: bool) -> Decision:
+        readings.append(found)
+        return Decision(why="that is what was to be read")
+
+    monkeypatch.setattr(plan_change, "after_slip", stop)
+    plan = sw.plan("single-stair-036", "go2w", friction=0.7)
+    sw.rollout(plan, friction=friction, controller=OWN)
+    assert len(readings) == 1
+    assert 0.94 * friction < readings[0] < 1.01 * friction
 
 
 def twice_as_large(name: str) -> sw.Robot:

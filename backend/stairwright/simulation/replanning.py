@@ -25,7 +25,7 @@ ENOUGH = 0.75  # of it; with less there is no going on where no other plan is fo
 LEAST = 0.2  # friction on which no robot is sent: what is known of it is too rough
 # Of the friction that was found, what another plan may need: with the motion where there is such a
 # plan, else at rest.
-USABLE = (1.0 / MOTION, 0.95)
+USABLE = (1.0 / MOTION, 0.9)
 ABOVE = 0.05  # m above the trunk's top, of the mass centre of a load whose height is not known
 
 KEPT = 0.003  # m of room for a mass centre that is elsewhere than planned: it is found to 2 mm

@@ -15,12 +15,12 @@ constexpr double kStands = 0.3;    // s before it begins
 constexpr double kRamp = 1.0;      // 1/s, growth of the friction that is asked for
 constexpr double kRelease = 3.0;   // 1/s
 constexpr double kHold = 0.1;      // s at the full need
-constexpr double kSmooth = 0.05;   // s, of forces
 constexpr double kSmoothPlace = 0.02;  // s; noise of encoders grows with the legs, that of a long one would look like slip
 constexpr double kLeastPull = 0.05;  // s; less says nothing of creep
 constexpr double kMostCreep = 0.03; // m/s
 constexpr double kTorque = 0.85;     // of what a motor gives: the test leaves the rest to the balance
 constexpr double kSlips = 0.045;   // m/s of rolling that gets nowhere; tyres creep by less
+constexpr double kFeels = 0.05;    // s for which wheels that slip are pushed on: with it most of the window is of slip
 
 double largest_load(const Reference& planned) { return std::max(planned.forces[0].z, planned.forces[1].z); }
 
@@ -62,13 +62,20 @@ double GripTest::most_push(const Reference& planned) const {
     return most;
 }
 
+double GripTest::used_in_slip(bool front) const {
+    const std::size_t left = front ? 0 : 2;
+    double sum = 0.0;
+    for (const Moment& moment : window_) sum += 0.5 * (moment.used[left] + moment.used[left + 1]);
+    return sum / static_cast<double>(window_.size());
+}
+
 // Rear wheels roll forward under the traction by which front wheels are pushed back; the trunk's motion is the same for both.
-void GripTest::watch_creep(const Reference& planned, const std::array<double, 4>& now, double dt) {
-    const double apart = 0.5 * (now[2] + now[3] - now[0] - now[1]);
+void GripTest::watch_creep(const Reference& planned, const Moment& now, double dt) {
+    const double apart = 0.5 * (now.rolled[2] + now.rolled[3] - now.rolled[0] - now.rolled[1]);
     if (steps_ > 1) crept_ += apart - apart_;
     apart_ = apart;
     const double front = planned.forces[0].z, rear = planned.forces[1].z, quarter = (front + rear) / 4;
-    const double pull = 0.25 * ((used_[0] + used_[1]) * front + (used_[2] + used_[3]) * rear);
+    const double pull = 0.25 * ((now.used[0] + now.used[1]) * front + (now.used[2] + now.used[3]) * rear);
     pulled_ += dt * pull / std::max(quarter, 1e-9);
 }
 
@@ -77,31 +84,33 @@ Reference GripTest::step(const Reference& planned, const RobotState& state, cons
     time_ += dt;
     if (time_ < kStands) return planned;
     const std::array<double, 4> reading = rolled(state);
-    if (!begun_) before_.fill(reading), rolled_ = reading, most_ = most_push(planned), begun_ = true;
+    if (!begun_) {
+        begun_ = true, rolled_ = reading, most_ = most_push(planned);
+        release_at_ = kStands + most_ / kRamp + kHold;
+        window_.fill({reading, {}});
+    }
     for (std::size_t i = 0; i < 4; ++i) rolled_[i] += dt / (kSmoothPlace + dt) * (reading[i] - rolled_[i]);
-    const std::array<double, 4>& now = rolled_;
-    for (std::size_t i = 0; i < 4; ++i) used_[i] += dt / (kSmooth + dt) * (used[i] - used_[i]);
-    const std::array<double, 4> then = std::exchange(before_[steps_++ % before_.size()], now);
+    const Moment now{rolled_, used}, then = std::exchange(window_[steps_++ % window_.size()], now);
     watch_creep(planned, now, dt);
     if (!level) over_ = true;
-    if (releasing_) {
+    if (time_ > release_at_) {
         push_ = std::max(0.0, push_ - kRelease * dt);
         over_ = over_ || push_ == 0.0;
         if (over_ && !slipped_ && pulled_ > kLeastPull) creep_ = std::clamp(crept_ / pulled_, 0.0, kMostCreep);
+    } else if (slipped_) {
+        slipped_->found = used_in_slip(slipped_->front);
     } else {
         push_ = std::min(most_, push_ + kRamp * dt);
-        releasing_ = time_ > kStands + most_ / kRamp + kHold;
         double speed[2];
         for (std::size_t pair = 0; pair < 2; ++pair) {
-            const double left = now[2 * pair] - then[2 * pair], right = now[2 * pair + 1] - then[2 * pair + 1];
-            speed[pair] = (std::abs(left) > std::abs(right) ? left : right) / (static_cast<double>(before_.size()) * dt);
+            const double left = now.rolled[2 * pair] - then.rolled[2 * pair], right = now.rolled[2 * pair + 1] - then.rolled[2 * pair + 1];
+            speed[pair] = (std::abs(left) > std::abs(right) ? left : right) / (static_cast<double>(window_.size()) * dt);
         }
         // What the trunk moves by is the same for both.
         if (std::abs(speed[1] - speed[0]) > kSlips) {
             const bool front = std::abs(speed[0]) > std::abs(speed[1]);
-            const std::size_t at = front ? 0 : 2;
-            slipped_ = Grip{0.5 * (used_[at] + used_[at + 1]), front};
-            releasing_ = true;
+            slipped_ = Grip{used_in_slip(front), front};
+            release_at_ = time_ + kFeels;
         }
     }
     Reference out = planned;

@@ -9,7 +9,7 @@
 namespace stairwright::control {
 
 struct Grip {
-    double found = 0.0;       // friction at which wheels slipped [1]
+    double found = 0.0;       // friction at which wheels slip [1]
     bool front = false;       // which pair did
 };
 
@@ -31,20 +31,29 @@ class GripTest {
     const std::optional<Grip>& slipped() const { return slipped_; }
 
   private:
+    struct Moment {
+        std::array<double, 4> rolled;  // m, smoothed, of each wheel
+        std::array<double, 4> used;    // grip [1]
+    };
+
     // How far each wheel has rolled less how far it has moved against the trunk [m].
     std::array<double, 4> rolled(const RobotState& state) const;
 
     // The friction that can be asked for: `need_`, or what the motors leave of it.
     double most_push(const Reference& planned) const;
 
-    void watch_creep(const Reference& planned, const std::array<double, 4>& now, double dt);
+    // Their mean over the window, of the pair that slips.
+    double used_in_slip(bool front) const;
+
+    void watch_creep(const Reference& planned, const Moment& now, double dt);
 
     Robot robot_;
     double need_;
-    bool over_, releasing_ = false, begun_ = false;
+    bool over_, begun_ = false;
     double time_ = 0.0, push_ = 0.0, most_ = 0.0;  // s; friction asked for now, and at most
-    std::array<std::array<double, 4>, 60> before_{};  // a ring of what the wheels have rolled [m]
-    std::array<double, 4> rolled_{}, used_{};  // smoothed
+    double release_at_ = 0.0;  // s
+    std::array<Moment, 60> window_{};  // a ring of the last moments
+    std::array<double, 4> rolled_{};  // m, smoothed
     std::size_t steps_ = 0;
     std::optional<Grip> slipped_;
     double pulled_ = 0.0, crept_ = 0.0, apart_ = 0.0;  // s and m, of rear wheels against front ones
