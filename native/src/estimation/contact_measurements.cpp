@@ -22,6 +22,8 @@ constexpr double kMissed = 0.004;       // m put back: the face is not where the
 constexpr double kSearchNoise = 0.01;   // m^2 of variance for a metre that a face is farther on
 constexpr double kTurnSearchNoise = 0.04;  // the same for an edge that a wheel does not turn about yet
 constexpr double kSame = 1e-6;          // m
+// Of a force's uncertainty: the direction of a smaller one says little, and that always the same way.
+constexpr double kLeans = 5.0;
 constexpr double kBounce = 0.1;          // s after a wheel has met a face in which its tyre gives way and comes back
 constexpr double kGivesWay = 4.0;       // of the variance of a place meanwhile: some millimetres
 constexpr double kGate = 9.0;           // of a normalised innovation squared
@@ -78,6 +80,7 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
 // and that way turns by ds / r. An edge that is higher than drawn, or comes earlier, looks from its place like another one.
 void Estimator::measure_turn(int i, Vec2 normal, Error along, double dt, Error& error) {
     const WheelState& w = wheels_[i];
+    if (dot(w.felt, normal) < kLeans * w.force_deviation) return;
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
     const double turning = -dot(w.felt, normal) / path_.radius();
     for (double& v : along) v *= turning;

@@ -21,7 +21,8 @@ constexpr double kForceSpeed = 0.15;    // m/s of the wheel's centre from which 
 constexpr double kRoom = 0.10;          // m to the next face that a pair needs to roll on freely
 constexpr double kHop = 0.1;            // s in the air that are no more than a hop, as after a riser is met fast
 constexpr double kHopSpeed = 0.2;       // m/s of the trunk from which on a riser is met so
-constexpr double kSure = 0.02;         // s that both faces of a corner must be felt before that counts
+constexpr double kSure = 0.02;         // s that both faces of a corner, or an edge farther on, must be felt before that counts
+constexpr double kLeap = 1e-3;         // m from where the wheel has rolled
 constexpr double kMostScale = 0.025;   // of the wheels: more is slip
 constexpr double kContradicted = 0.05;  // s
 constexpr double kWrongVelocity = 0.5;  // m/s
@@ -200,8 +201,13 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const double before = w.s;
     w.at_corner = on.corner ? w.at_corner + dt : 0.0;
     const bool unsure = on.corner && w.at_corner <= kSure;
+    // A force that passes may seem to be that of an edge some centimetres on; a controller that believed it would brake the
+    // wheel, and feel what confirms it.
+    const bool leaps = !on.corner && path_.pieces()[on.piece].arc && std::abs(on.s - (before + w.rolled)) > kLeap;
+    w.leaps = leaps ? w.leaps + dt : 0.0;
     // The other wheel of the pair is where it was: one alone must not be called back.
-    w.s = unsure && std::abs(on.s - before) > kNearCorner ? before + w.rolled : on.s;
+    const bool stays = (unsure && std::abs(on.s - before) > kNearCorner) || (leaps && w.leaps <= kSure);
+    w.s = stays ? before + w.rolled : on.s;
     w.aloft = touching ? 0.0 : w.aloft + dt;
     w.landed = touching ? w.landed + dt : 0.0;
     if (!touching && on.s > before) {  // in the air no wheel gets past a corner, unless that is sure

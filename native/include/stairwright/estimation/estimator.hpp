@@ -152,6 +152,7 @@ class Estimator {
         double met = -1e9;        // the last corner of which it has felt the wall [m]
         double aloft = 0.0;       // for how long it has been in the air [s]
         double landed = 0.0;      // since it has met the face or tread that it is on [s]
+        double leaps = 0.0;       // s for which it has seemed to be elsewhere round an edge
         double at_corner = 0.0;   // for how long it has felt both faces of a corner [s]
     };
     using Vec3 = std::array<double, 3>;
