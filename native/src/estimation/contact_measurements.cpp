@@ -80,9 +80,10 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
 // and that way turns by ds / r. An edge that is higher than drawn, or comes earlier, looks from its place like another one.
 void Estimator::measure_turn(int i, Vec2 normal, Error along, double dt, Error& error) {
     const WheelState& w = wheels_[i];
-    if (dot(w.felt, normal) < kLeans * w.force_deviation) return;
+    const double pressed = dot(w.felt, normal);
+    if (pressed < kLeans * w.force_deviation) return;
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
-    const double turning = -dot(w.felt, normal) / path_.radius();
+    const double turning = -pressed / path_.radius();
     for (double& v : along) v *= turning;
     const double variance = w.force_deviation * w.force_deviation * std::max(1.0, noise_.place_lasts / dt);
     const double off = w.traction - dot(w.felt, {normal.z, -normal.x}), before = error[own];
