@@ -10,8 +10,9 @@ import pytest
 
 from stairwright import load_robot, load_terrain, robots
 from stairwright.control import balance, rigid_body, rolling, tracking
-from stairwright.control.contact import face_normal
+from stairwright.control.contact import AFTER, BEFORE, face_normal, support
 from stairwright.control.measurement import measure
+from stairwright.control.setpoint import FORCES, WIDTH, Setpoint
 from stairwright.control.settings import ControllerSettings, parse_settings
 from stairwright.errors import InputError
 from stairwright.robot import kinematics
@@ -153,6 +154,46 @@ def test_planned_face_at_a_concave_corner() -> None:
     np.testing.assert_allclose(normal(corner + 0.005, corner - 0.01), floor, atol=1e-9)
     # Far behind its plan, the wheel counts where it is.
     np.testing.assert_allclose(normal(corner - 0.2, corner + 0.2), floor, atol=1e-9)
+
+
+def test_a_wheel_off_a_corner_stays_on_the_face_that_the_plan_leans_on() -> None:
+    """However far off, while the plan rests in the corner, on either side of it."""
+    path = wheel_path(load_terrain("single-stair-036"), 0.05)
+    corner = float(path.corners[0])
+    floor, wall = (0.0, 1.0), (-1.0, 0.0)
+    for lean, side, face, other in ((BEFORE, -1.0, floor, wall), (AFTER, 1.0, wall, floor)):
+        for planned in (corner - 1e-4, corner + 1e-4):
+            for off in (0.001, 0.011, 0.03):
+                out = np.empty(8)
+                support(path, corner + side * off, planned, 0.6, lean, out)
+                np.testing.assert_allclose(out[:2], face, atol=1e-9)
+        # A wheel on the other face gets to that which is leant on once it is in the corner.
+        support(path, corner - side * 0.009, corner, 0.6, lean, out)
+        np.testing.assert_allclose(out[:2], face, atol=1e-9)
+        support(path, corner - side * 0.02, corner - side * 1e-4, 0.6, lean, out)
+        np.testing.assert_allclose(out[:2], other, atol=1e-9)
+
+
+@pytest.mark.parametrize("roll", [0.0, 0.05])
+def test_roll_is_held_by_what_forces_lift(roll: float) -> None:
+    """A robot that straddles a block, left wheels farther down its edges than the right ones."""
+    robot, settings = load_robot("a1_wheeled"), ControllerSettings()
+    qpos, qvel = np.zeros(19), np.zeros(18)
+    mujoco.mju_euler2Quat(qpos[3:7], np.array([roll, 0.0, 0.0]), "xyz")
+    qpos[7:] = np.tile([0.9, -1.6, 0.0], 4)
+    state = measure(robot, qpos, qvel)
+    row = np.zeros(WIDTH)
+    row[FORCES] = 0.0, 60.0, 0.0, 56.0
+    angles = np.array([0.9, 0.5, -0.9, -0.5])
+    normals = np.column_stack([np.sin(angles), np.cos(angles)])
+    rows, asked = balance.side_differences(robot, settings, state, Setpoint.from_row(row), normals)
+    forces = np.linalg.lstsq(rows, asked, rcond=None)[0].reshape(4, 2)
+    np.testing.assert_allclose(forces[:, 0], 0.0, atol=1e-9)
+    lift = forces[:, 1] * normals[:, 1]
+    moment = robot.hips.half_track * (lift[0] - lift[1] + lift[2] - lift[3])
+    height = state.com[1] - state.wheels[:, 1].mean() + robot.wheel.radius
+    wanted = -robot.mass * height**2 * settings.roll_stiffness * state.roll
+    assert moment == pytest.approx(wanted, abs=1e-9)
 
 
 def test_settings_say_what_is_wrong() -> None:

@@ -21,7 +21,7 @@ MAX_PITCH_INTEGRAL = 15.0  # rad/s^2 that the pitch integral may add
 # carry all with one wheel of a pair, and nothing else keeps the robot from rolling over.
 EVEN = 0.02
 MOST_UNEVEN = 0.8  # of what a pair carries: left less right normal force
-_EVENLY = np.zeros(2)
+STEEP = 0.5  # cosine of the slope of a face: on steeper ones normal forces hardly lift
 
 
 def desired_wrench(
@@ -56,21 +56,33 @@ def integrate_pitch(
     return min(max(pitch_integral, -MAX_PITCH_INTEGRAL), MAX_PITCH_INTEGRAL)
 
 
-def roll_forces(
-    robot: Robot, settings: ControllerSettings, state: Measurement, target: Setpoint
-) -> Floats:
-    """(2,) left less right normal force of the pairs that keeps the robot from rolling over [N].
+def side_differences(
+    robot: Robot,
+    settings: ControllerSettings,
+    state: Measurement,
+    target: Setpoint,
+    normals: Floats,
+) -> tuple[Floats, Floats]:
+    """Rows (4, 8) of left less right forces of the pairs, and what they shall be (4,) [N].
 
-    Against gravity its stiffness must be above g / h. Pairs share it as they share the weight, up
-    to `MOST_UNEVEN` of what each carries.
+    Tangential forces shall be equal. Normal ones keep the robot from rolling over: against gravity
+    their stiffness must be above g / h. Pairs share it as they share the weight, up to
+    `MOST_UNEVEN` of what each carries. They count by what they lift: where one wheel is farther
+    round an edge than the other, equal ones do not, and the side that has sunk would sink on.
     """
     height = state.com[1] - state.wheels[:, 1].mean() + robot.wheel.radius
     wanted = settings.roll_stiffness * state.roll + settings.roll_damping * state.roll_rate
     moment = -robot.mass * height * height * wanted
     carried = np.maximum(target.forces[:, 1], 0.0)
     share = moment / robot.hips.half_track / max(float(carried.sum()), 1e-9)
-    uneven: Floats = carried * np.clip(share, -MOST_UNEVEN, MOST_UNEVEN)
-    return uneven
+    rows, asked = np.zeros((4, 8)), np.zeros(4)
+    for pair, (left, right) in enumerate(normals[:, 1].reshape(2, 2)):
+        mean = max(0.5 * (left + right), STEEP)
+        off = 0.5 * (left - right) / mean
+        rows[2 * pair, 4 * pair : 4 * pair + 4] = [1.0, 0.0, -1.0, 0.0]
+        rows[2 * pair + 1, 4 * pair : 4 * pair + 4] = [0.0, 1.0 + off, 0.0, -(1.0 - off)]
+        asked[2 * pair + 1] = carried[pair] * np.clip(share, -MOST_UNEVEN, MOST_UNEVEN) / mean
+    return rows, asked
 
 
 def force_cost(
@@ -79,21 +91,21 @@ def force_cost(
     desired: Floats,
     resting: Floats,
     previous: Floats,
-    even: float = 0.0,
-    uneven: Floats = _EVENLY,
+    differences: tuple[Floats, Floats] | None = None,
 ) -> tuple[Floats, Floats]:
     """Hessian H (8, 8) and gradient g (8,) of ``F' H F / 2 + g' F``, half the cost of eq 11.
 
     ``D' S D + alpha |F - F_rest|^2 + beta |F - F_prev|^2`` with ``D = A F - b_des``; the paper's
-    cost has ``F_rest = 0``. `even` weights the squares of left less right forces, which it has not;
-    of pairs' normal forces less `uneven` (2,) [N].
+    cost has ``F_rest = 0``, and not the squares of what `differences` are from what they shall be.
     """
     weights = np.array([settings.force_weight, settings.force_weight, settings.moment_weight])
     weighted = force_map.T * weights
     hessian = weighted @ force_map + (settings.alpha + settings.beta) * np.eye(8)
-    hessian += even * np.kron(np.eye(2), np.kron([[1.0, -1.0], [-1.0, 1.0]], np.eye(2)))
     gradient = -weighted @ desired - settings.alpha * resting - settings.beta * previous
-    gradient -= even * np.kron(uneven, [0.0, 1.0, 0.0, -1.0])
+    if differences is not None:
+        rows, asked = differences
+        hessian += EVEN * rows.T @ rows
+        gradient -= EVEN * rows.T @ asked
     return hessian, gradient
 
 

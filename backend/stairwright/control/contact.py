@@ -8,7 +8,8 @@ corner the curve has a kink and the wheel touches two faces, which asks for two 
   round), the *planned* face counts.
 - While plan and wheel are both in the corner, it leans on the face before, on the face after, or on
   both, as the static forces of the plan do. On both, the friction cones span one wider cone round
-  the bisector of the normals, whose apex is the wheel's centre.
+  the bisector of the normals, whose apex is the wheel's centre. A wheel farther off that is on the
+  very face that the plan leans on stays with it.
 """
 
 from __future__ import annotations
@@ -58,8 +59,13 @@ def support(
     """
     near = min(CORNER_PLANNED, CORNER_SHARE * path.radius)
     for corner in path.corners:
-        if abs(planned - corner) >= near or abs(measured - corner) >= CORNER_MEASURED * near:
+        if abs(planned - corner) >= near:
             continue
+        if abs(measured - corner) >= CORNER_MEASURED * near:
+            if lean != (BEFORE if measured < corner else AFTER):
+                continue
+            nx, nz = path.normal(measured)
+            break
         (ax, az), (bx, bz) = path.normal(corner - _BESIDE), path.normal(corner + _BESIDE)
         if lean == BOTH:
             length = math.hypot(ax + bx, az + bz)

@@ -124,13 +124,13 @@ class Controller:
             self.pitch_integral,
         )
         resting = np.einsum("nji,nj->ni", frames, (target.forces / 2)[LEG_PAIR]).ravel()
-        uneven = balance.roll_forces(robot, settings, state, target)
+        sides = balance.side_differences(robot, settings, state, target, normals)
         moving = moving[LEG_PAIR]
         rest = np.column_stack(
             [balance.leg_weight_torques(robot, state) + moving[:, :2], moving[:, 2]]
         )
         motors = MotorTorques.of(state, frames, points, held[:, 3], rest)
-        H, g = balance.force_cost(settings, A, desired, resting, self.forces, balance.EVEN, uneven)
+        H, g = balance.force_cost(settings, A, desired, resting, self.forces, sides)
         self.forces = solve_within_motors(
             partial(self._solved, friction=friction), H, g, motors, robot, joint_rates,
             settings.force_weight,

@@ -20,6 +20,7 @@ constexpr double kMaxPitchIntegral = 15.0;  // rad/s^2
 // Weight of the difference between left and right forces: where grip runs out the QP would rather carry all with
 // one wheel of a pair, and nothing else keeps the robot from rolling over.
 constexpr double kEven = 0.02;
+constexpr double kSteep = 0.5;       // cosine of the slope of a face: on steeper ones normal forces hardly lift
 constexpr double kMostUneven = 0.8;  // of what a pair carries: left less right normal force
 
 using Supports = std::array<WheelSupport, 4>;
@@ -66,6 +67,26 @@ double uneven_share(const Gains& g, double mass, const Robot& robot, const Measu
     return std::clamp(share, -kMostUneven, kMostUneven);
 }
 
+// How much each of a pair's normal forces counts in the difference that is asked of them, and that difference, as a share of
+// what it would be on a level face. Where one wheel is farther round an edge than the other, the same normal forces do
+// not lift the same, and the side that has sunk would sink on.
+struct Lifting {
+    double left, right, asked;
+};
+
+Lifting lifting(double left, double right) {
+    const double mean = std::max(0.5 * (left + right), kSteep);
+    const double off = 0.5 * (left - right) / mean;
+    return {1.0 + off, 1.0 - off, 1.0 / mean};
+}
+
+// Adds kEven (a f_i - b f_j - difference)^2 to twice the cost.
+void ask_difference(BalanceQp& qp, int i, double a, int j, double b, double difference) {
+    qp.H[i][i] += kEven * a * a, qp.H[j][j] += kEven * b * b;
+    qp.H[i][j] -= kEven * a * b, qp.H[j][i] -= kEven * a * b;
+    qp.g[i] -= kEven * a * difference, qp.g[j] += kEven * b * difference;
+}
+
 // Cost of eq 11: wrench error, distance from the plan's static forces, change, unevenness of left and right.
 BalanceQp balance_qp(const Gains& gains, const std::array<Wrench, 8>& A, const Wrench& wanted, const Supports& supports,
                      const Reference& target, const Forces& last, double uneven) {
@@ -75,21 +96,18 @@ BalanceQp balance_qp(const Gains& gains, const std::array<Wrench, 8>& A, const W
     for (int i = 0; i < 8; ++i) {
         for (int j = 0; j <= i; ++j)
             qp.H[i][j] = qp.H[j][i] = S * A[i].x * A[j].x + S * A[i].z * A[j].z + M * A[i].moment * A[j].moment;
-        qp.H[i][i] += gains.alpha + gains.beta + kEven;
+        qp.H[i][i] += gains.alpha + gains.beta;
         const Vec2 f = 0.5 * target.forces[i / 4];
         const Vec2 n = supports[i / 2].normal;
         const double resting = i % 2 == 0 ? f.x * n.z - f.z * n.x : f.x * n.x + f.z * n.z;
         qp.g[i] = -A[i].x * b.x - A[i].z * b.z - A[i].moment * b.moment;
         qp.g[i] -= gains.alpha * resting + gains.beta * last[i];
     }
-    for (const int left : {0, 1, 4, 5}) {  // tangential and normal of the left wheel of a pair
-        const int right = left + 2;
-        qp.H[left][right] -= kEven;
-        qp.H[right][left] -= kEven;
-        if (left % 2 == 0) continue;
-        const double difference = std::max(target.forces[left / 4].z, 0.0) * uneven;
-        qp.g[left] -= kEven * difference;
-        qp.g[right] += kEven * difference;
+    for (int pair = 0; pair < 2; ++pair) {
+        const int left = 4 * pair, right = left + 2;
+        const auto [on_left, on_right, asked] = lifting(supports[2 * pair].normal.z, supports[2 * pair + 1].normal.z);
+        ask_difference(qp, left, 1.0, right, 1.0, 0.0);
+        ask_difference(qp, left + 1, on_left, right + 1, on_right, asked * uneven * std::max(target.forces[pair].z, 0.0));
     }
     for (int i = 0; i < 4; ++i) qp.friction[i] = supports[i].friction;
     qp.load_limit = gains.force_limit;

@@ -46,7 +46,12 @@ WheelSupport wheel_support(const WheelPath& path, double measured, double planne
     for (std::size_t k = path.corner_from(planned - near); k < corners.size(); ++k) {
         const double corner = corners[k];
         if (corner > planned + near) break;
-        if (std::abs(planned - corner) >= near || std::abs(measured - corner) >= kCornerMeasured * near) continue;
+        if (std::abs(planned - corner) >= near) continue;
+        if (std::abs(measured - corner) >= kCornerMeasured * near) {
+            if (lean != (measured < corner ? Lean::before : Lean::after)) continue;
+            const Vec2 n = path.normal(measured);
+            return {n, friction, path.radius(), n, n};
+        }
         const Vec2 a = path.normal(corner - kBeside), b = path.normal(corner + kBeside);
         if (lean == Lean::both) {
             const Vec2 sum = a + b;

@@ -5,7 +5,8 @@
 // not passed (or the other way round), the planned face counts: else the robot would push on the old face for
 // ever. While plan and wheel are both in the corner, it leans on the face before, on the face after, or on both,
 // as the static forces of the plan do. On both, the friction cones span one wider cone round the bisector of the
-// normals, whose apex is the wheel's centre.
+// normals, whose apex is the wheel's centre. A wheel farther off that is on the very face that the plan leans on stays
+// with it.
 #pragma once
 
 #include <algorithm>
