@@ -91,6 +91,19 @@ def test_a_trunk_that_cannot_stand_there_is_told_where_it_can(end):
     assert moved.problem is None or moved.problem.kind != end
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_calves_thicker_than_their_wheels_are_refused_for_that(method):
+    robot = sw.load_robot("a1_wheeled").model_dump(mode="json")
+    robot["calf"]["radius"] = 0.055
+    problem = sw.plan({"points": STAIR}, robot, method=method).problem
+    assert problem.kind == "start"
+    assert problem.limit.quantity == "wheel radius"
+    assert (problem.limit.needed, problem.limit.available) == pytest.approx((0.055, 0.05))
+    assert "calves are thicker than their wheels" in problem.message
+    robot["calf"]["radius"] = 0.05 / 1.02
+    assert sw.plan({"points": [[-1.5, 0.0], [1.5, 0.0]]}, robot).feasible
+
+
 def test_wheels_too_large_for_the_hips_stand_apart():
     robot = sw.load_robot("a1_wheeled").model_dump(mode="json")
     robot["hips"] |= {"front": [0.04, 0.0], "rear": [-0.04, 0.0]}

@@ -148,9 +148,11 @@ def find_standing_poses(
     """Start and goal of `terrain`.
 
     Raises:
-        NoStandingPose: If a stretch is too short for the robot, or the goal not ahead of the start.
+        NoStandingPose: If a stretch is too short for the robot, the goal not ahead of the start, or
+            a calf below its tyre however it stands.
     """
     (low, first), (last, high) = stretches(path)
+    _check_calves(robot, low)
     gap = stance(robot)
     behind, ahead = _edge(path, robot, low), _edge(path, robot, high)
     flat = first >= high - 1e-6
@@ -179,6 +181,15 @@ def find_standing_poses(
         message = "the goal is not ahead of the start"
         raise NoStandingPose("goal", end.wheels[0], _AHEAD, way, message, "way from start to goal")
     return begin, end
+
+
+def _check_calves(robot: Robot, s: float) -> None:
+    """Refuse a robot whose calf holds all of its wheel: it touches the ground wherever it goes."""
+    for where, leg in zip(("front", "rear"), robot.legs, strict=True):
+        least = leg.calf.disc_round((0.0, -leg.calf.length))
+        if least >= leg.wheel.radius:
+            message = f"the {where} calves are thicker than their wheels and touch the ground"
+            raise NoStandingPose("start", s, least, leg.wheel.radius, message, "wheel radius")
 
 
 def _edge(path: WheelPath, robot: Robot, s: float) -> float:

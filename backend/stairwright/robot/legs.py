@@ -7,6 +7,7 @@ thigh and calf, straight capsules); here nothing is left out. SI units; frames o
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,6 +54,10 @@ class LinkForm:
     def radius(self) -> float:
         """Of its thickest capsule [m]."""
         return max(radius for _, _, radius in self.capsules)
+
+    def disc_round(self, place: Vector2) -> float:
+        """Radius of the largest disc round `place`, in its frame, that a capsule holds [m]."""
+        return max((r - _distance(place, a, b) for a, b, r in self.capsules), default=0.0)
 
     @property
     def com_along(self) -> Vector2:
@@ -184,3 +189,13 @@ def _form(link: Link) -> LinkForm:
         (shape.start, shape.end, shape.radius) for shape in link.shape
     ) or (((0.0, 0.0), (0.0, -link.length), link.radius),)
     return LinkForm(link.length, com, link.mass, link.inertia, capsules)
+
+
+def _distance(place: Vector2, start: Vector2, end: Vector2) -> float:
+    """Of a point from a line between two others."""
+    along = (end[0] - start[0], end[1] - start[1])
+    off = (place[0] - start[0], place[1] - start[1])
+    squared = along[0] ** 2 + along[1] ** 2
+    share = (off[0] * along[0] + off[1] * along[1]) / squared if squared > 0.0 else 0.0
+    share = min(max(share, 0.0), 1.0)
+    return math.hypot(off[0] - share * along[0], off[1] - share * along[1])

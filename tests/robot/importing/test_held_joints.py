@@ -42,8 +42,9 @@ def test_joints_that_turn_wheels_out_of_the_side_view_are_held(axis: str) -> Non
 def test_of_three_joints_in_the_side_view_the_user_says_which_is_rigid() -> None:
     text, straight = with_ankles("0 1 0"), imported(urdf(Design())).robot.calf.length
     message = refused(text)
-    assert "FL_calf_joint, FL_ankle_joint, FL_wheel_joint" in message
-    assert "hold" in message
+    assert message.startswith("file: 'FL_ankle_joint': one joint too many")
+    assert "FL_thigh_joint, FL_calf_joint, FL_ankle_joint" in message
+    assert "hold one, for instance FL_ankle_joint=0.3" in message
     bent = imported(text, dict.fromkeys(ANKLES, 0.5))
     length = math.hypot(straight - BELOW + BELOW * math.cos(0.5), BELOW * math.sin(0.5))
     assert bent.robot.calf.length == pytest.approx(length, abs=1e-4)

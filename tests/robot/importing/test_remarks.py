@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 
 import pytest
@@ -181,3 +182,13 @@ def test_a_robot_of_ours_comes_back() -> None:
             assert other.thigh.com == pytest.approx(own.thigh.com)
             assert other.calf.inertia == pytest.approx(own.calf.inertia)
             assert other.thigh_motor.torque == own.thigh_motor.torque
+
+
+def test_a_calf_that_is_guessed_touches_nothing_that_its_wheel_rolls_on() -> None:
+    def without_calves(radius: float) -> Imported:
+        shapes = r'(?<=</inertial>)<collision>.*?(?=</link>\n<joint name="\w\w_calf_joint")'
+        return imported(re.sub(shapes, "", urdf(Design(radius=radius))))
+
+    rod, thin = without_calves(0.08).robot.calf, without_calves(0.02).robot.calf
+    assert rod.radius > 0.7 * 0.02
+    assert thin.radius == pytest.approx(0.7 * 0.02)

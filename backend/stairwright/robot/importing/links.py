@@ -28,6 +28,7 @@ _BALL = int(mujoco.mjtGeom.mjGEOM_SPHERE)
 _PARALLEL = 0.999
 _LIGHTEST = 1e-6  # kg, of a robot's document
 _THIN, _THICK = 0.04, 0.2  # shares of a link's length: bounds of a radius that is guessed
+_INSIDE = 0.7  # of the wheel's radius: no calf is guessed to touch what its wheel rolls on
 
 
 @dataclass
@@ -85,7 +86,10 @@ def measure_leg(source: Source, frame: Frame, tree: Tree, side: SideLeg, notes: 
     links = []
     for link, (bodies, whole, inertia, drive) in enumerate(parts[:2]):
         com = side.side(whole.com, link)
-        capsules = _capsules(source, frame, side, bodies, link, inertia, whole.mass, notes)
+        most = _THICK * side.lengths[link]
+        if link == 1:
+            most = min(most, _INSIDE * (wheel.radius or wheel.least))
+        capsules = _capsules(source, frame, side, bodies, link, inertia, whole.mass, most, notes)
         links.append(LinkPart(whole.mass, com, inertia, capsules, drive))
     thigh, calf = links
     _fold(side, parts[2][1], calf, name, notes)
@@ -183,16 +187,18 @@ def _radius(shape: Solid, side: SideLeg, centre: Floats) -> float:
 
 def _capsules(
     source: Source, frame: Frame, side: SideLeg, bodies: list[int], link: int,
-    inertia: Moments, mass: float, notes: Notes,
+    inertia: Moments, mass: float, most: float, notes: Notes,
 ) -> list[Disc2]:  # fmt: skip
-    """One capsule round each shape; a guess where a mesh is missing or there is none."""
+    """One capsule round each shape; a guess, of radius `most` at most, where a mesh is missing or
+    there is none.
+    """
     found = [around(side.side(shape.cloud, link)) for shape in solids(source, frame, bodies)]
     unseen = [source.body(body) for body in bodies if source.unseen.get(body)]
     if found and not unseen:
         return found
     length = side.lengths[link]
     thick = math.sqrt(2.0 * min(inertia) / mass)  # a rod with this moment about its own axis
-    radius = float(np.clip(thick, _THIN * length, _THICK * length))
+    radius = max(min(thick, most), min(_THIN * length, most))
     label = unseen[0] if unseen else source.body(bodies[0])
     why = "its collision mesh was not sent" if unseen else "it has no collision shape"
     notes.assume(

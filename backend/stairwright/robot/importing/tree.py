@@ -202,13 +202,7 @@ def _chain(source: Source, path: list[int]) -> Chain:
         raise InputError(f"the leg that ends in {end!r} has {len(path)} joints; a leg needs "
                          "thigh, calf and wheel", ("file",))  # fmt: skip
     if len(path) > 4:
-        names = ", ".join(source.joint(joint) for joint in path[:8])
-        raise InputError(
-            f"{source.joint(path[0])!r}: one joint too many in the leg that ends in {end!r}, "
-            f"which has {names}; there may be an abduction, a thigh, a calf and a wheel: hold the "
-            "others",
-            ("file",),
-        )
+        raise InputError(_too_many(source, path, end), ("file",))
     thigh, calf, wheel = path[-3:]
     for joint in (calf, wheel):
         lean = _lean(source, thigh, joint)
@@ -219,6 +213,26 @@ def _chain(source: Source, path: list[int]) -> Chain:
                 ("file",),
             )
     return Chain(path[0] if len(path) == 4 else None, thigh, calf, wheel)
+
+
+def _too_many(source: Source, path: list[int], end: str) -> str:
+    """Which joints of a long leg are to be held."""
+    names = [source.joint(joint) for joint in path]
+    planar = [
+        name for joint, name in zip(path[:-1], names, strict=False)
+        if _alike(source, joint, path[-1])
+    ]  # fmt: skip
+    if len(planar) > 2:
+        return (
+            f"{planar[-1]!r}: one joint too many in the leg that ends in {end!r}, which bends in "
+            f"its plane at {listed(planar[:8])}; there may be a thigh and a calf: hold one, for "
+            f"instance {planar[-1]}=0.3 [rad]"
+        )
+    return (
+        f"{names[0]!r}: one joint too many in the leg that ends in {end!r}, which has "
+        f"{', '.join(names[:8])}; there may be an abduction, a thigh, a calf and a wheel: hold the "
+        "others"
+    )
 
 
 def _not_four(source: Source, paths: list[list[int]], wheels: list[list[int]]) -> str:
@@ -240,7 +254,8 @@ def _not_four(source: Source, paths: list[list[int]], wheels: list[list[int]]) -
             )
         if len(path) >= 3:
             return (
-                f"{body!r} is no wheel: the axis of {joint!r} is not parallel to that of "
+                f"{body!r} is no wheel: the axis of {joint!r} is "
+                f"{math.degrees(_lean(source, path[-1], path[-2])):.0f} degrees off that of "
                 f"{source.joint(path[-2])!r}; {len(wheels)} of four legs end in a wheel"
             )
     if not wheels:
