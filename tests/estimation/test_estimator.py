@@ -248,12 +248,12 @@ def test_it_knows_how_far_up_a_steep_slope_it_is(robot: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("friction", [0.2, 0.25, 0.3])
+@pytest.mark.parametrize("friction", [0.1, 0.15, 0.25])
 def test_a_robot_that_has_slid_away_believes_its_wheels_again(friction: float) -> None:
-    """A ramp of 34 degrees turns slippery when the robot is on it."""
-    plan = sw.plan({"points": [[-1.4, 0], [0, 0], [0.735, -0.5], [2.3, -0.5]]}, "a1_wheeled", 0.6)
+    """A ramp of 25 degrees turns slippery when the robot is on it: it stops by itself."""
+    plan = sw.plan({"points": [[-1.4, 0], [0, 0], [1.5, -0.7], [3.5, -0.7]]}, "a1_wheeled", 0.8)
     run = Run(plan, plan.friction, parse_settings(ROBOT), Disturbance(), 0, 50.0)
-    on_the_ramp = run.track.start + 0.6 * (run.track.end - run.track.start)
+    on_the_ramp = run.track.start + 0.4 * (run.track.end - run.track.start)
 
     def turns_slippery(_: object) -> None:
         if run.position > on_the_ramp:
@@ -261,9 +261,9 @@ def test_a_robot_that_has_slid_away_believes_its_wheels_again(friction: float) -
             model.geom_friction[:, 0] = model.pair_friction[:, :2] = friction
 
     result = run.result(run.simulate(None, turns_slippery), keep_plan=False)
-    assert result.outcome in ("success", "stuck", "stopped"), result.reason
+    assert result.outcome == "stopped", result.reason
     assert run.native is not None
-    speed_error = run.native.judged[-25:, 4]  # in the last half second
+    speed_error = run.native.judged[-5:, 4]  # in the last tenth of a second
     assert np.median(np.abs(speed_error)) < 0.05
 
 
