@@ -15,7 +15,7 @@ from stairwright.robot.importing.holding import written_hold
 from stairwright.robot.importing.read import read
 from stairwright.robot.importing.report import Imported
 from stairwright.robot.importing.upload import Upload
-from tests.robot.importing.files import Design
+from tests.robot.importing.files import LEGS, Design
 from tests.robot.importing.written import ANKLES, BELOW, hinge, link, urdf, with_ankles
 
 
@@ -53,6 +53,18 @@ def test_of_three_joints_in_the_side_view_the_user_says_which_is_rigid() -> None
     assert any(
         "range -2..2" in each for each in imported(text, dict.fromkeys(ANKLES, 2.2)).warnings
     )
+
+
+def test_a_hip_that_turns_like_the_thigh_can_be_held() -> None:
+    hips = [f"{leg}_hip_joint" for leg in LEGS]
+    text = re.sub(
+        r'(name="\w\w_hip_joint".*?<axis xyz=")[^"]*',
+        r"\g<1>0 1 0",
+        urdf(Design()),
+        flags=re.DOTALL,
+    )
+    assert "hold one, for instance FL_hip_joint=0 [rad]" in refused(text)
+    assert imported(text, dict.fromkeys(hips, 0.0)).robot.held_joints == dict.fromkeys(hips, 0.0)
 
 
 def test_an_arm_is_held_where_it_is_wanted() -> None:
