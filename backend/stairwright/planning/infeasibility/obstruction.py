@@ -27,7 +27,9 @@ from stairwright.planning.infeasibility.confirmation import (
 from stairwright.planning.infeasibility.relaxation import (
     AMPLE,
     CLOSE,
+    FARTHEST,
     LONGEST,
+    WIDE,
     Candidate,
     candidates_of,
     large_changes,
@@ -67,10 +69,10 @@ def _cause(
 ) -> Cause | None:
     """The single change that opens the way, if one does."""
     candidates = candidates_of(planner)
-    if blocked.weak and blocked.opened:
+    motors = [one for one in candidates if one.quantity == f"{blocked.weak} torque"]
+    if motors and blocked.opened:
         # A search came through: a little more torque is what its path most likely lacks.
-        motors = next(one for one in candidates if one.quantity == f"{blocked.weak} torque")
-        cause = strengthened(planner, motors, blocked.share, pool)
+        cause = strengthened(planner, motors[0], blocked.share, pool)
         if cause is not None:
             return cause
     places = list(blocked.stops)
@@ -91,6 +93,11 @@ def _cause(
         candidates = [one for one in candidates if one not in tried]
         if not tried or not candidates:
             break
+    if motors and not blocked.opened:
+        # Much more torque: what searches told of a little led to no plan.
+        cause = strengthened(planner, motors[0], blocked.share, pool)
+        if cause is not None:
+            return cause
     if planner.friction < AMPLE:
         answer = alone(planner, candidates_of(planner)[0], AMPLE / planner.friction, pool)
         if answer is not None:
@@ -236,8 +243,9 @@ def _problem(planner: PathPlanner, reached: Place | None, cause: Cause | None) -
     at, progress, stop = _end(planner, reached)
     if cause is None:
         what = (
-            f"neither legs of {LONGEST:g} times the length with friction {AMPLE:g} nor a profile "
-            f"of a fiftieth of the height would do: {stop}"
+            f"neither legs of {LONGEST:g} times the length with friction {AMPLE:g}, a profile of a "
+            f"fiftieth of the height, joints that turn {WIDE:g} rad farther nor hips {FARTHEST:g} "
+            f"times as far apart would do: {stop}"
         )
         return Problem.told("reach", at, progress, what)
     candidate = cause.candidate

@@ -5,11 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
 from stairwright.planning.attempt import Blocked, Outcomes, Solved
+from stairwright.planning.infeasibility.changed_robots import (
+    STRONGEST,
+    balanced,
+    farther,
+    flatter,
+    loaded,
+    longer,
+    stronger,
+    wider,
+)
 from stairwright.planning.lattice.body_lattice import LOOSE, Bounds
 from stairwright.planning.lattice.pieces import pieces
 from stairwright.planning.lattice.search import Place
@@ -23,10 +33,12 @@ from stairwright.terrain.profile import Terrain
 Kind = Literal["reach", "clearance", "statics", "torque", "joint_limit"]
 
 LONGEST = 3.0  # times the legs' length; no engineer would build more
-STRONGEST = 1000.0  # Nm; the most that a motor is described with
 AMPLE = 1.5  # friction that leaves nothing to wish for
 CLOSE = 0.02  # relative precision of the value that searches tell
 _FLAT = 0.02  # of a profile's height
+_LEAST = 0.01  # of a payload, and of how far a mass centre is off
+WIDE = 4.0  # rad that a range may be wider
+FARTHEST = 3.0  # times the distance of the hips
 _KEPT = 4
 _FINE = 1.7  # lattice of the questions, coarser than that of plans
 
@@ -151,24 +163,25 @@ def candidates_of(planner: PathPlanner) -> list[Candidate]:
     """Quantities in the order in which they are asked: cheap and likely first."""
     robot = planner.robot
     legs = robot.legs[0].reach
-    joints = (robot.joints.front, robot.joints.rear)
-    ranges = {
-        part: min(getattr(leg, part)[1] - getattr(leg, part)[0] for leg in joints)
-        for part in ("thigh", "calf")
-    }
     return [
         Candidate("statics", "friction", "1", planner.friction, max(2.0, 2.5 * planner.friction),
                   lambda c, v: replace(c, friction=v)),
         Candidate("reach", "leg length", "m", legs, LONGEST * legs,
-                  lambda c, v: _with_robot(c, _longer(robot, v / legs))),
+                  lambda c, v: _with_robot(c, longer(robot, v / legs))),
         Candidate("clearance", "trunk height", "m", robot.trunk.size[2], 0.1 * robot.trunk.size[2],
-                  lambda c, v: _with_robot(c, _flatter(robot, v))),
-        Candidate("joint_limit", "calf range", "rad", ranges["calf"], ranges["calf"] + 0.8,
-                  lambda c, v: _with_robot(c, _wider(robot, "calf", v - ranges["calf"]))),
-        Candidate("joint_limit", "thigh range", "rad", ranges["thigh"], ranges["thigh"] + 1.0,
-                  lambda c, v: _with_robot(c, _wider(robot, "thigh", v - ranges["thigh"]))),
+                  lambda c, v: _with_robot(c, flatter(robot, v))),
+        joint_range(robot, "calf", 0.8),
+        joint_range(robot, "thigh", 1.0),
         *(motor_torque(robot, motor) for motor in JOINTS if planner.torques),
     ]  # fmt: skip
+
+
+def joint_range(robot: Robot, part: Literal["thigh", "calf"], most: float) -> Candidate:
+    """The range of all thighs or calves, wider by `most` rad at most."""
+    ends = [getattr(leg, part) for leg in (robot.joints.front, robot.joints.rear)]
+    least = min(high - low for low, high in ends)
+    return Candidate("joint_limit", f"{part} range", "rad", least, least + most,
+                     lambda c, v: _with_robot(c, wider(robot, part, v - least)))  # fmt: skip
 
 
 def motor_torque(robot: Robot, motor: Motor) -> Candidate:
@@ -176,7 +189,7 @@ def motor_torque(robot: Robot, motor: Motor) -> Candidate:
     most = float(robot.torque_limits[:, JOINTS[motor]].max())
     return Candidate(
         "torque", f"{motor} torque", "Nm", most, STRONGEST,
-        lambda c, v: _with_robot(c, _stronger(robot, motor, v / most)),
+        lambda c, v: _with_robot(c, stronger(robot, motor, v / most)),
     )  # fmt: skip
 
 
@@ -187,13 +200,13 @@ def _legs_with_grip(planner: PathPlanner) -> Candidate:
     grip = max(AMPLE, planner.friction)
     return Candidate(
         "reach", "leg length", "m", legs, LONGEST * legs,
-        lambda c, v: replace(_with_robot(c, _longer(robot, v / legs)), friction=grip),
+        lambda c, v: replace(_with_robot(c, longer(robot, v / legs)), friction=grip),
         {"friction": grip},
     )  # fmt: skip
 
 
 def large_changes(planner: PathPlanner) -> list[Candidate]:
-    """What is asked where nothing else is enough: legs with ample friction, a lower profile."""
+    """What is asked where nothing else is enough, one after the other."""
     points = np.array(planner.terrain.points)
     base, height = float(points[0, 1]), float(np.ptp(points[:, 1]))
     changes = [_legs_with_grip(planner)]
@@ -205,82 +218,30 @@ def large_changes(planner: PathPlanner) -> list[Candidate]:
         changed = path_planner(Terrain.model_validate(document), c.robot, c.friction, c.weights)
         return replace(changed, torques=c.torques)
 
-    if height > 0.0:  # in the end it is flat, which opens every way
+    if height > 0.0:  # in the end it is flat
         lower = Candidate("reach", "profile height", "m", height, _FLAT * height, lowered)
         changes.append(lower)
-    return changes
+    return changes + list(_level_changes(planner.robot))
+
+
+def _level_changes(robot: Robot) -> Iterator[Candidate]:
+    """What robots may lack that do not even roll on the level."""
+    if robot.payload:
+        mass = robot.payload.mass
+        yield Candidate("statics", "payload", "kg", mass, _LEAST * mass,
+                        lambda c, v: _with_robot(c, loaded(robot, v)))  # fmt: skip
+    off = abs(robot.trunk.com[0])
+    if off > 0.0:
+        yield Candidate("statics", "trunk's mass centre off its middle", "m", off, _LEAST * off,
+                        lambda c, v: _with_robot(c, balanced(robot, v / off)))  # fmt: skip
+    yield joint_range(robot, "thigh", WIDE)
+    yield joint_range(robot, "calf", WIDE)
+    apart = robot.hips.front[0] - robot.hips.rear[0]
+    yield Candidate("clearance", "distance of the hips", "m", apart, FARTHEST * apart,
+                    lambda c, v: _with_robot(c, farther(robot, v / apart)))  # fmt: skip
 
 
 def _with_robot(planner: PathPlanner, robot: Robot) -> PathPlanner:
     """The same question for another robot, which stands as it would."""
     changed = path_planner(planner.terrain, robot, planner.friction, planner.weights)
     return replace(changed, torques=planner.torques)
-
-
-def _changed(robot: Robot, change: Callable[[dict[str, Any]], None]) -> Robot:
-    """A new robot (nothing cached) whose document `change` has changed."""
-    data = robot.model_dump()
-    change(data)
-    return Robot.model_validate(data)
-
-
-def _parts(data: dict[str, Any], *names: str) -> Iterator[dict[str, Any]]:
-    """The parts of these names of all legs, where the document has them."""
-    for legs in (data, data.get("rear") or {}):
-        yield from (legs[name] for name in names if legs.get(name))
-
-
-def _longer(robot: Robot, factor: float) -> Robot:
-    """The robot with thighs and calves longer by `factor`."""
-
-    def change(data: dict[str, Any]) -> None:
-        for link in _parts(data, "thigh", "calf"):
-            link["length"] *= factor
-            if isinstance(link["com"], (tuple, list)):
-                link["com"] = [link["com"][0], link["com"][1] * factor]
-            for piece in link.get("shape", []):
-                for end in ("start", "end"):
-                    piece[end] = [piece[end][0], piece[end][1] * factor]
-
-    return _changed(robot, change)
-
-
-def _flatter(robot: Robot, height: float) -> Robot:
-    """The robot whose trunk is `height` high, all its pieces lower by the same factor."""
-    factor = height / robot.trunk.size[2]
-
-    def change(data: dict[str, Any]) -> None:
-        trunk = data["trunk"]
-        trunk["size"] = [*trunk["size"][:2], height]
-        for piece in trunk.get("outline", []):
-            piece["points"] = [(x, z * factor) for x, z in piece["points"]]
-
-    return _changed(robot, change)
-
-
-def _wider(robot: Robot, part: str, extra: float) -> Robot:
-    """The robot with the range of `part` (thigh, calf) `extra` rad wider, half at each end."""
-    legs: dict[str, Any] = {}
-    for name in ("front", "rear"):
-        leg = getattr(robot.joints, name).model_dump()
-        low, high = leg[part]
-        wide = [low - extra / 2, high + extra / 2]
-        if part == "calf":  # the knee keeps its side and does not fold onto itself
-            wide = [
-                max(wide[0], 0.05 if low > 0 else -3.1),
-                min(wide[1], 3.1 if low > 0 else -0.05),
-            ]
-        legs[name] = leg | {part: tuple(wide)}
-    return _changed(robot, lambda data: data.update(joints=legs))
-
-
-def _stronger(robot: Robot, motor: Motor, factor: float) -> Robot:
-    """The robot whose leg or wheel motors are stronger by `factor`."""
-
-    def change(data: dict[str, Any]) -> None:
-        for motors in _parts(data, "actuators"):
-            for name in ("wheel",) if motor == "wheel" else ("leg", "thigh", "calf"):
-                if motors.get(name):
-                    motors[name]["torque"] = min(motors[name]["torque"] * factor, STRONGEST)
-
-    return _changed(robot, change)
