@@ -63,7 +63,7 @@ def test_wheel_motors_of_a_seventh_of_what_is_needed():
     ("quantity", "part", "values"),
     [
         ("payload", "payload", {"mass": 60.0, "place": [0.4, 0.1]}),
-        ("trunk's mass centre off its middle", "trunk", {"com": [-0.5, 0.0, 0.0]}),
+        ("trunk CoM offset", "trunk", {"com": [-0.5, 0.0, 0.0]}),
     ],
 )
 def test_a_mass_centre_that_no_wheels_stand_under(quantity, part, values):

@@ -144,8 +144,14 @@ function massCentre(): Vec2 {
 /** Baseline of its caption below it [px]. */
 const BASELINE = 22;
 
-/** Where the caption is; its letters stand on the baseline. */
-const captionOf = ([x, y]: Vec2): Label => ({ label: [x, y + BASELINE - 4], size: [66, 14] });
+const CAPTION: Vec2 = [66, 14];
+
+/** Where the caption is, inside the drawing; its letters stand on the baseline. */
+function captionOf([x, y]: Vec2): Label {
+  const half = CAPTION[0] / 2 + 4;
+  const within = Math.min(Math.max(x, half), size.value.width - half);
+  return { label: [within, y + BASELINE - 4], size: CAPTION };
+}
 
 /** To be pulled both ways. */
 function MassCentre() {
@@ -161,7 +167,7 @@ function MassCentre() {
         <circle r={4.5} />
         <path d="M-4.5 0A4.5 4.5 0 0 1 0 -4.5V0ZM4.5 0A4.5 4.5 0 0 1 0 4.5V0Z" />
       </g>
-      <text x={x} y={y + BASELINE} text-anchor="middle">
+      <text x={captionOf([x, y]).label[0]} y={y + BASELINE} text-anchor="middle">
         CoM {told(quantityOf("com.x"), robotDocument.value!.trunk.com?.[0] ?? 0)}
       </text>
     </Handle>

@@ -232,7 +232,7 @@ def _level_changes(robot: Robot) -> Iterator[Candidate]:
                         lambda c, v: _with_robot(c, loaded(robot, v)))  # fmt: skip
     off = abs(robot.trunk.com[0])
     if off > 0.0:
-        yield Candidate("statics", "trunk's mass centre off its middle", "m", off, _LEAST * off,
+        yield Candidate("statics", "trunk CoM offset", "m", off, _LEAST * off,
                         lambda c, v: _with_robot(c, balanced(robot, v / off)))  # fmt: skip
     yield joint_range(robot, "thigh", WIDE)
     yield joint_range(robot, "calf", WIDE)
