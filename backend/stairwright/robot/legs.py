@@ -57,7 +57,7 @@ class LinkForm:
 
     def disc_round(self, place: Vector2) -> float:
         """Radius of the largest disc round `place`, in its frame, that a capsule holds [m]."""
-        return max((r - _distance(place, a, b) for a, b, r in self.capsules), default=0.0)
+        return max(r - _distance(place, a, b) for a, b, r in self.capsules)
 
     @property
     def com_along(self) -> Vector2:

@@ -80,13 +80,9 @@ def balanced(robot: Robot, factor: float) -> Robot:
 
 
 def farther(robot: Robot, factor: float) -> Robot:
-    """The robot with its hips farther apart by `factor`, about their middle."""
-    front, rear = robot.hips.front, robot.hips.rear
-    middle = 0.5 * (front[0] + rear[0])
-    places = {
-        name: (middle + factor * (x - middle), z)
-        for name, (x, z) in (("front", front), ("rear", rear))
-    }
+    """The robot with its hips farther apart by `factor`; the trunk's centre is their middle."""
+    (front, z_front), (rear, z_rear) = robot.hips.front, robot.hips.rear
+    places = {"front": (factor * front, z_front), "rear": (factor * rear, z_rear)}
     return _changed(robot, lambda data: data["hips"].update(places))
 
 

@@ -198,7 +198,7 @@ def _capsules(
         return found
     length = side.lengths[link]
     thick = math.sqrt(2.0 * min(inertia) / mass)  # a rod with this moment about its own axis
-    radius = max(min(thick, most), min(_THIN * length, most))
+    radius = float(np.clip(thick, min(_THIN * length, most), most))
     label = unseen[0] if unseen else source.body(bodies[0])
     why = "its collision mesh was not sent" if unseen else "it has no collision shape"
     notes.assume(

@@ -217,17 +217,14 @@ def _chain(source: Source, path: list[int]) -> Chain:
 
 def _too_many(source: Source, path: list[int], end: str) -> str:
     """Which joints of a long leg are to be held."""
-    names = [source.joint(joint) for joint in path]
-    planar = [
-        name for joint, name in zip(path[:-1], names, strict=False)
-        if _alike(source, joint, path[-1])
-    ]  # fmt: skip
+    planar = [source.joint(joint) for joint in path[:-1] if _alike(source, joint, path[-1])]
     if len(planar) > 2:
         return (
             f"{planar[-1]!r}: one joint too many in the leg that ends in {end!r}, which bends in "
-            f"its plane at {listed(planar[:8])}; there may be a thigh and a calf: hold one, for "
+            f"its plane at {listed(planar)}; there may be a thigh and a calf: hold one, for "
             f"instance {planar[-1]}=0.3 [rad]"
         )
+    names = [source.joint(joint) for joint in path]
     return (
         f"{names[0]!r}: one joint too many in the leg that ends in {end!r}, which has "
         f"{', '.join(names[:8])}; there may be an abduction, a thigh, a calf and a wheel: hold the "
