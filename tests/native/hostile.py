@@ -85,7 +85,7 @@ def robots() -> dict[str, dict[str, Any]]:
         "no weight": robot(
             **{f"{part}__mass": 1e-6 for part in ("trunk", "thigh", "calf", "wheel")}
         ),
-        "no torque": robot(actuators__leg__torque=5e-324, actuators__wheel__speed=0.5),
+        "no torque": robot(actuators__leg__torque=5e-324, actuators__wheel__speed=5e-324),
         "one collision point": robot(collision_points={"trunk": [(0, 0)], "thigh": [], "calf": []}),
     }
 

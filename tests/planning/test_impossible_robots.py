@@ -82,3 +82,18 @@ def test_a_mass_centre_that_no_wheels_stand_under(quantity, part, values):
     share = problem.limit.needed / problem.limit.available
     assert asked(0.98 * share).feasible
     assert not asked(1.02 * share).feasible
+
+
+@pytest.mark.parametrize(("motor", "part"), [("leg", "thigh"), ("wheel", "wheel")])
+@pytest.mark.parametrize("method", ["path", "critical", "nominal"])
+def test_motors_too_slow_to_be_controlled(motor, part, method):
+    def slow(speed: float) -> sw.Plan:
+        actuators = sw.load_robot("a1_wheeled").actuators.model_dump(mode="json")
+        limited = robot(actuators={motor: actuators[motor] | {"speed": speed}})
+        return sw.plan(LEVEL, limited, method=method)
+
+    problem = slow(0.1).problem
+    assert (problem.kind, problem.limit.quantity) == ("start", f"{part} motor speed")
+    assert (problem.limit.available, problem.limit.unit) == (0.1, "rad/s")
+    assert slow(problem.limit.needed).feasible
+    assert not slow(0.98 * problem.limit.needed).feasible

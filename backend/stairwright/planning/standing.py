@@ -28,22 +28,23 @@ _TRY, _TRIES = 0.01, 200  # m; where else the trunk is tried, and how often eith
 _SHIFTS = 30  # rounds in which wheels are moved until the trunk is where it was asked to be
 _EXACT = 1e-9  # m; then it is there
 _AHEAD = 1e-5  # m; least way of each wheel, for plans need two poses that can be told apart
+_SLOWEST = 0.5  # rad/s; errors of a measured speed are as large as all that a slower motor does
 
 
 class NoStandingPose(Exception):
-    """There is no place to stand: `kind` is start or goal, `needed` and `available` lengths [m].
+    """There is no place to stand: `kind` is start or goal, `needed` and `available` in `unit`.
 
     Where no value of the quantity would do, `needed` is None.
     """
 
     def __init__(
         self, kind: End, s: float, needed: float | None, available: float, message: str,
-        quantity: str = "length",
+        quantity: str = "length", unit: str = "m",
     ) -> None:  # fmt: skip
         super().__init__(message)
         self.limit = (
             None if needed is None
-            else Limit(needed=needed, available=available, quantity=quantity, unit="m")
+            else Limit(needed=needed, available=available, quantity=quantity, unit=unit)
         )  # fmt: skip
         self.kind, self.s = kind, s
 
@@ -148,11 +149,12 @@ def find_standing_poses(
     """Start and goal of `terrain`.
 
     Raises:
-        NoStandingPose: If a stretch is too short for the robot, the goal not ahead of the start, or
-            a calf below its tyre however it stands.
+        NoStandingPose: If a stretch is too short for the robot, the goal not ahead of the start, a
+            calf below its tyre however it stands, or a motor too slow to be controlled.
     """
     (low, first), (last, high) = stretches(path)
     _check_calves(robot, low)
+    _check_motors(robot, low)
     gap = stance(robot)
     behind, ahead = _edge(path, robot, low), _edge(path, robot, high)
     flat = first >= high - 1e-6
@@ -190,6 +192,16 @@ def _check_calves(robot: Robot, s: float) -> None:
         if least >= leg.wheel.radius:
             message = f"the {where} calves are thicker than their wheels and touch the ground"
             raise NoStandingPose("start", s, least, leg.wheel.radius, message, "wheel radius")
+
+
+def _check_motors(robot: Robot, s: float) -> None:
+    """Refuse a robot whose motors are too slow to keep it upright, however slow its plan is."""
+    for leg in robot.legs:
+        for part, motor in zip(("thigh", "calf", "wheel"), leg.motors, strict=True):
+            if motor.speed < _SLOWEST:
+                message = f"the {part} motors are too slow to keep the robot upright"
+                quantity = f"{part} motor speed"
+                raise NoStandingPose("start", s, _SLOWEST, motor.speed, message, quantity, "rad/s")
 
 
 def _edge(path: WheelPath, robot: Robot, s: float) -> float:

@@ -198,8 +198,7 @@ class Actuator(Model):
     """A motor: peak torque at standstill that falls linearly to zero at its top speed."""
 
     torque: Positive = Field(description="peak torque [Nm]")
-    # Slower ones no controller can drive: what it measures of a speed is as large.
-    speed: float = Field(ge=0.5, le=1000.0, description="no-load speed [rad/s]")
+    speed: Positive = Field(description="no-load speed [rad/s]")
     armature: float = Field(ge=0.0, le=10.0, description="reflected rotor inertia [kg m^2]")
     damping: float = Field(ge=0.0, le=10.0, description="viscous friction [Nm s/rad]")
     continuous: float | None = optional(

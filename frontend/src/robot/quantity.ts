@@ -33,7 +33,7 @@ export const METRES: Kind = { unit: "m", factor: 1, digits: 3, min: 0.01, max: 5
 export const OFFSET: Kind = { unit: "mm", factor: 1000, digits: 0, min: -2, max: 2, step: 0.001 };
 export const MASS: Kind = { unit: "kg", factor: 1, digits: 2, min: 0.01, max: 500, step: 0.05 };
 export const TORQUE: Kind = { unit: "Nm", factor: 1, digits: 1, min: 0.1, max: 1000, step: 0.5 };
-export const SPEED: Kind = { unit: "rad/s", factor: 1, digits: 1, min: 0.5, max: 500, step: 0.5 };
+export const SPEED: Kind = { unit: "rad/s", factor: 1, digits: 1, min: 0.1, max: 500, step: 0.5 };
 export const ROTOR: Kind = { unit: "kg m²", factor: 1, digits: 4, min: 0, max: 10, step: 0.001 };
 export const ANGLE: Kind = {
   unit: "°",
