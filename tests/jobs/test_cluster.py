@@ -63,11 +63,12 @@ def _free_port() -> int:
 
 
 def _in_process(port: int) -> LocalCluster:
-    """One worker that is a thread of this process."""
-    return LocalCluster(
-        n_workers=1, processes=False, threads_per_worker=1, host="127.0.0.1",
-        scheduler_port=port, dashboard_address=None, silence_logs=50,
-    )  # fmt: skip
+    """One worker that is a thread of this process. No task is given up where a worker goes."""
+    with dask.config.set({"distributed.scheduler.allowed-failures": 3}):
+        return LocalCluster(
+            n_workers=1, processes=False, threads_per_worker=1, host="127.0.0.1",
+            scheduler_port=port, dashboard_address=None, silence_logs=50,
+        )  # fmt: skip
 
 
 def tell(address: str, folder: Path, story: Callable[[DaskSimulators], Awaitable[None]]) -> None:
@@ -244,6 +245,39 @@ def test_a_scheduler_that_goes_away(tmp_path: Path) -> None:
 
     first = _in_process(port)
     tell(first.scheduler_address, tmp_path, story)
+
+
+class _Leaving:
+    """A client whose scheduler is gone; while it closes it swallows who cancels it, as Dask's."""
+
+    status = "closed"
+
+    def __init__(self) -> None:
+        self.closing = asyncio.Event()
+
+    async def close(self, timeout: float) -> None:
+        self.closing.set()
+        with contextlib.suppress(asyncio.CancelledError):
+            await asyncio.sleep(timeout)
+
+
+def test_who_leaves_while_the_scheduler_goes_away(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def story() -> None:
+        client = _Leaving()
+
+        async def connect(_: DaskSimulators) -> _Leaving:
+            return client
+
+        monkeypatch.setattr(DaskSimulators, "_connect", connect)
+        found = DaskSimulators("tcp://127.0.0.1:9", Artefacts(tmp_path), deadline=60.0)
+        await found.start()
+        await client.closing.wait()
+        async with asyncio.timeout(20):
+            await found.stop()
+
+    asyncio.run(story())
 
 
 def test_the_service_uses_the_cluster(

@@ -74,6 +74,7 @@ class DaskSimulators:
         self._heard: dict[str, Shares] = {}  # by run
         self._working: set[asyncio.Task[Any]] = set()
         self._keeper: asyncio.Task[None] | None = None
+        self._leaving = False
 
     async def start(self) -> None:
         """Begin to connect, without waiting for it."""
@@ -81,6 +82,7 @@ class DaskSimulators:
 
     async def stop(self) -> None:
         """Leave the cluster."""
+        self._leaving = True
         if self._keeper is not None:
             self._keeper.cancel()
             await asyncio.gather(self._keeper, return_exceptions=True)
@@ -168,7 +170,7 @@ class DaskSimulators:
 
     async def _keep(self) -> None:
         """Connected, again and again."""
-        while True:
+        while not self._leaving:  # a client of Dask's that is closing swallows who cancels it
             try:
                 client = await self._connect()
             except (OSError, RuntimeError, TypeError, ValueError, ImportError) as error:
