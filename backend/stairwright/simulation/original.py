@@ -28,7 +28,7 @@ from stairwright.robot.importing.read import read_closely
 from stairwright.robot.importing.report import JointMap, Notes
 from stairwright.robot.importing.source import read_spec
 from stairwright.robot.importing.upload import Upload, unpack
-from stairwright.robot.mujoco_model import add_contact_sensors, set_physics
+from stairwright.robot.mujoco_model import add_contact_sensors, set_physics, stiffen_contacts
 from stairwright.robot.mujoco_terrain import TERRAIN_HALF_WIDTH, add_terrain
 from stairwright.terrain.profile import Terrain
 
@@ -143,6 +143,7 @@ def build_original(
     _add_motors(spec, robot, driven, [joints[j].name for j in reading.held])
     add_contact_sensors(spec, [bodies[wheel].name for wheel in wheels], bodies[base].name)
     model = spec.compile()
+    stiffen_contacts(model, [model.body(bodies[wheel].name).id for wheel in wheels])
     at = [model.joint(joint.name) for joint in driven]
     frame, body = reading.frame, source.data.xmat[base].reshape(3, 3)
     axes = frame.axes @ body

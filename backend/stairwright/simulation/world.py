@@ -12,7 +12,7 @@ import numpy as np
 
 from stairwright.arrays import Floats
 from stairwright.robot.description import LEGS, Robot
-from stairwright.robot.mujoco_model import build_spec
+from stairwright.robot.mujoco_model import build_spec, stiffen_contacts
 from stairwright.robot.mujoco_terrain import TERRAIN_HALF_WIDTH
 from stairwright.terrain.profile import Terrain
 
@@ -54,7 +54,9 @@ def build_world(
             wheel.friction = [max(_LEAST_FRICTION, own), 0.0, 0.0]
     _disturb_motors(spec, deviation)
     disturb_trunk(spec, robot, deviation)
-    return spec.compile()
+    model = spec.compile()
+    stiffen_contacts(model, [model.body(f"{leg}_wheel").id for leg in LEGS])
+    return model
 
 
 def _disturb_motors(spec: Any, deviation: Disturbance) -> None:
