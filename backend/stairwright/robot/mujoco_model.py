@@ -102,7 +102,7 @@ def set_physics(spec: Any) -> None:
 
 
 def stiffen_contacts(model: Any, wheels: Sequence[int]) -> None:
-    """Make contacts of a compiled model stiffer where wheels would creep and sink in as no tyre does.
+    """Make a compiled model's contacts stiffer where wheels would creep and sink as no tyre does.
 
     MuJoCo's contacts are as soft as the bodies in them are light, whatever these carry: with
     impedance d, time constant t and inverse mass A, a force F makes a wheel creep by
@@ -152,7 +152,7 @@ def build_model(
     half_width: float = TERRAIN_HALF_WIDTH,
     visual: bool = False,
 ) -> Any:
-    """The compiled `mujoco.MjModel` of `build_spec`, its contacts as stiff as rollouts have them."""
+    """The compiled `mujoco.MjModel` of `build_spec`, contacts as stiff as in rollouts."""
     spec = build_spec(robot, terrain, friction, half_width=half_width, visual=visual)
     model = spec.compile()
     stiffen_contacts(model, [model.body(f"{leg}_wheel").id for leg in LEGS])
