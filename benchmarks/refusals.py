@@ -16,6 +16,7 @@ import json
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
+from copy import deepcopy
 from itertools import count, islice
 from pathlib import Path
 from typing import Any
@@ -107,8 +108,9 @@ def changed(asked: Question, plan: sw.Plan, factor: float) -> Question | None:
     assert plan.problem.limit is not None
     limit = plan.problem.limit
     name, friction = limit.quantity, limit.given.get("friction", friction)
-    # A knee that bends both ways was planned bent to one side: that robot lacks the amount.
-    robot = json.loads(plan.robot_description.model_dump_json())
+    # A knee that bends both ways lacks the range on the side to which it was planned bent.
+    told = plan.robot_description.model_dump() if name == "calf range" else robot
+    robot = deepcopy(told)
     if name == "friction":
         return points, robot, friction * factor
     if name == "profile height":

@@ -131,3 +131,22 @@ def test_what_is_beyond_repair_is_not_looked_at_again_and_would_stay_as_it_is():
     anew = replace(planner, thorough=True).attempt(AT_ONCE)
     assert isinstance(anew, Blocked)
     assert (anew.reached, anew.share) == (end.reached, end.share)
+
+
+@pytest.mark.slow
+def test_knees_that_bend_both_ways_lack_the_least_that_any_bend_lacks():
+    """Both back, with which the robot comes farthest, it takes 37 Nm."""
+
+    def weak(torque):
+        robot = sw.load_robot("m20").model_dump(mode="json")
+        for joint in ("thigh", "calf"):
+            robot["actuators"][joint]["torque"] = torque
+        return robot
+
+    stair = {"points": [[-1.5, 0.0], [0.0, 0.0], [0.0, 0.3], [2.0, 0.3]]}
+    limit = sw.plan(stair, weak(12.2), 0.6).problem.limit
+    assert limit.quantity == "leg torque"
+    too_weak, enough = limit.confirmed
+    assert enough < 25.0
+    assert not sw.plan(stair, weak(too_weak), 0.6, diagnose=False).feasible
+    assert sw.plan(stair, weak(enough), 0.6, diagnose=False).feasible

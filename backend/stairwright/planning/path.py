@@ -86,7 +86,8 @@ def plan_path(
         if not planners:
             what = "no pose near to the one where the path is to begin is sound"
             return document(robot, problem=Problem.told("start", terrain.points[0], 0.0, what))
-    planner, found = _best(planners)
+    ways = _solved(planners)
+    planner, found = ways[0]
     robot = planner.robot
     if isinstance(found, Solved) and tolerance:
         outcome = within_tolerance(planner, found, tolerance)
@@ -105,18 +106,21 @@ def plan_path(
 
     if not diagnose:
         return document(robot, problem=undiagnosed(planner, found))
-    problem, way = explain(planner, found)
-    return document(robot, poses=way, problem=problem)
+    planner, problem, way = explain([(one, end) for one, end in ways if isinstance(end, Blocked)])
+    return document(planner.robot, poses=way, problem=problem)
 
 
-def _best(planners: Sequence[PathPlanner]) -> tuple[PathPlanner, Solved | Blocked]:
-    """The first course that has a path with some margin; else the path with most, else the way."""
+def _solved(planners: Sequence[PathPlanner]) -> list[tuple[PathPlanner, Solved | Blocked]]:
+    """What comes of courses up to the first that has a path with some margin.
+
+    In the order of that margin, those without a path in that of how far they come.
+    """
     tried: list[tuple[PathPlanner, Solved | Blocked]] = []
     for planner in planners:
         found = solve(planner, search_threads())
         tried.append((planner, found))
         if isinstance(found, Solved) and found.margin > _ENOUGH * planner.thin:
-            break
+            return tried[::-1]
 
     def worth(one: tuple[PathPlanner, Solved | Blocked]) -> tuple[float, float]:
         found = one[1]
@@ -124,4 +128,4 @@ def _best(planners: Sequence[PathPlanner]) -> tuple[PathPlanner, Solved | Blocke
             return np.inf, found.margin
         return sum(found.reached or (0.0, 0.0)), 0.0
 
-    return max(tried[::-1], key=worth) if len(tried) > 1 else tried[0]
+    return sorted(tried, key=worth, reverse=True)

@@ -26,8 +26,8 @@ from stairwright.planning.threads import in_this_thread, race
 Ranked = list[tuple[Candidate, float]]  # candidates, and factors that open the way
 
 _STEP = 1.02
-# Planning is tried so many steps above the least factor, and at the largest one.
-_MORE = (0, 10, 26, 50, 70)
+# Planning is tried so many steps above the least factor, as far as the candidate goes.
+_MORE = (0, 10, 26, 50, 70, 110, 200)
 _RIVALS = 2  # candidates for which planning is tried
 _RISES = 6  # times that motors are made stronger, by as much as the path lacks that came of it
 _LOOKS = 30  # questions about amounts, so that an answer comes in time
@@ -130,6 +130,14 @@ def alone(planner: PathPlanner, candidate: Candidate, ratio: float, pool: Execut
     if not candidate.feasible(planner, _ratio(candidate, step), pool):
         return None
     return _settled(planner, candidate, step, (), pool)
+
+
+def alike(planner: PathPlanner, cause: Cause, pool: Executor) -> Cause | None:
+    """What opens the way for another question with less of the same change, if less does."""
+    if cause.lower <= 1.0:
+        return None
+    found = alone(planner, cause.candidate.anew(), cause.lower, pool)
+    return found if found and found.upper < cause.upper else None
 
 
 def _settled(

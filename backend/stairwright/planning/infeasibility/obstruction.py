@@ -9,9 +9,9 @@ planning again with it: the answer is physically true, not a guess from the sear
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from concurrent.futures import Executor
-from functools import cache, partial
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor, Future
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from stairwright.planning.infeasibility.confirmation import (
     Beyond,
     Cause,
     Ranked,
+    alike,
     alone,
     confirmed,
     strengthened,
@@ -46,28 +47,71 @@ _ROUGH = 1.3  # relative precision of a factor before other quantities were aske
 _ASKED = 2  # times that candidates are ranked anew, without those that led nowhere
 
 
-def explain(planner: PathPlanner, blocked: Blocked) -> tuple[Problem, PathPoses | None]:
-    """Name what stops `course`, and tell how far it goes.
+def explain(
+    ways: Sequence[tuple[PathPlanner, Blocked]],
+) -> tuple[PathPlanner, Problem, PathPoses | None]:
+    """Name what stops the robot, and tell how far it goes.
 
     Args:
-        course: The question without an answer.
-        blocked: What its solution attempt returned.
+        ways: The question with the knees bent in every way that they bend, and what its solution
+            attempt returned; first the one that comes farthest.
+
+    Returns:
+        The question with the knees that need the least of what is named, the problem, and the poses
+        up to there.
     """
-    if blocked.weak:
-        planner = planner.within_torques
     pool = search_threads()
-    # As far as it goes: found beside the first plan that is tried, where a thread is at leisure.
-    partial_way = cache(lambda: pool.submit(planner.partial))
-    cause = _cause(planner, blocked, pool, partial_way)
-    way, ended = partial_way().result()
-    reached = blocked.reached if blocked.opened or not ended else ended
-    return _problem(planner, reached, cause), way
+    asked = [_Obstructed(*way, pool) for way in ways]
+    causes = ((one, _cause(one, pool)) for one in asked)
+    one, cause = next((found for found in causes if found[1]), (asked[0], None))
+    others = [other for other in asked if other is not one]
+    while cause and others:
+        other = others.pop(0)
+        less = alike(other.planner, cause, pool)
+        if less:  # who had no plan with more may have one: in narrow places searches need luck
+            one, cause = other, less
+            others = [other for other in asked if other is not one]
+    return one.planner, _problem(one.planner, one.reached, cause), one.way
 
 
-def _cause(
-    planner: PathPlanner, blocked: Blocked, pool: Executor, meanwhile: Callable[[], object]
-) -> Cause | None:
+class _Obstructed:
+    """A question without an answer, and how far it goes.
+
+    Args:
+        planner: The question.
+        blocked: What its solution attempt returned.
+        pool: Who searches.
+    """
+
+    def __init__(self, planner: PathPlanner, blocked: Blocked, pool: Executor) -> None:
+        self.planner = planner.within_torques if blocked.weak else planner
+        self.blocked = blocked
+        self._pool = pool
+
+    @cached_property
+    def ahead(self) -> Future[tuple[PathPoses | None, Place | None]]:
+        """As far as it goes: found beside the first plan that is tried, where a thread rests."""
+        return self._pool.submit(self.planner.partial)
+
+    @property
+    def way(self) -> PathPoses | None:
+        """The poses up to where it ends."""
+        return self.ahead.result()[0]
+
+    @property
+    def reached(self) -> Place | None:
+        """Where it ends."""
+        ended = self.ahead.result()[1]
+        return self.blocked.reached if self.blocked.opened or not ended else ended
+
+
+def _cause(obstructed: _Obstructed, pool: Executor) -> Cause | None:
     """The single change that opens the way, if one does."""
+    planner, blocked = obstructed.planner, obstructed.blocked
+
+    def meanwhile() -> object:
+        return obstructed.ahead
+
     candidates = candidates_of(planner)
     motors = [one for one in candidates if one.quantity == f"{blocked.weak} torque"]
     if motors and blocked.opened:

@@ -59,6 +59,10 @@ class Candidate:
     # What came of attempts at all of them.
     tried: dict[float, Outcomes] = field(default_factory=dict, compare=False, repr=False)
 
+    def anew(self) -> Candidate:
+        """The same one, of which nothing was asked."""
+        return replace(self, changed={}, tried={})
+
     def at(self, ratio: float) -> float:
         """The value that differs from what there is by the factor `ratio` > 1."""
         return self.available * ratio if self.limit > self.available else self.available / ratio
@@ -167,9 +171,9 @@ def candidates_of(planner: PathPlanner) -> list[Candidate]:
         Candidate("statics", "friction", "1", planner.friction, max(2.0, 2.5 * planner.friction),
                   lambda c, v: replace(c, friction=v)),
         Candidate("reach", "leg length", "m", legs, LONGEST * legs,
-                  lambda c, v: _with_robot(c, longer(robot, v / legs))),
+                  lambda c, v: _with_robot(c, longer(c.robot, v / legs))),
         Candidate("clearance", "trunk height", "m", robot.trunk.size[2], 0.1 * robot.trunk.size[2],
-                  lambda c, v: _with_robot(c, flatter(robot, v))),
+                  lambda c, v: _with_robot(c, flatter(c.robot, v))),
         joint_range(robot, "calf", 0.8),
         joint_range(robot, "thigh", 1.0),
         *(motor_torque(robot, motor) for motor in JOINTS if planner.torques),
@@ -181,7 +185,7 @@ def joint_range(robot: Robot, part: Literal["thigh", "calf"], most: float) -> Ca
     ends = [getattr(leg, part) for leg in (robot.joints.front, robot.joints.rear)]
     least = min(high - low for low, high in ends)
     return Candidate("joint_limit", f"{part} range", "rad", least, least + most,
-                     lambda c, v: _with_robot(c, wider(robot, part, v - least)))  # fmt: skip
+                     lambda c, v: _with_robot(c, wider(c.robot, part, v - least)))  # fmt: skip
 
 
 def motor_torque(robot: Robot, motor: Motor) -> Candidate:
@@ -189,7 +193,7 @@ def motor_torque(robot: Robot, motor: Motor) -> Candidate:
     most = float(robot.torque_limits[:, JOINTS[motor]].max())
     return Candidate(
         "torque", f"{motor} torque", "Nm", most, STRONGEST,
-        lambda c, v: _with_robot(c, stronger(robot, motor, v / most)),
+        lambda c, v: _with_robot(c, stronger(c.robot, motor, v / most)),
     )  # fmt: skip
 
 
@@ -200,7 +204,7 @@ def _legs_with_grip(planner: PathPlanner) -> Candidate:
     grip = max(AMPLE, planner.friction)
     return Candidate(
         "reach", "leg length", "m", legs, LONGEST * legs,
-        lambda c, v: replace(_with_robot(c, longer(robot, v / legs)), friction=grip),
+        lambda c, v: replace(_with_robot(c, longer(c.robot, v / legs)), friction=grip),
         {"friction": grip},
     )  # fmt: skip
 
@@ -229,16 +233,16 @@ def _level_changes(robot: Robot) -> Iterator[Candidate]:
     if robot.payload:
         mass = robot.payload.mass
         yield Candidate("statics", "payload", "kg", mass, _LEAST * mass,
-                        lambda c, v: _with_robot(c, loaded(robot, v)))  # fmt: skip
+                        lambda c, v: _with_robot(c, loaded(c.robot, v)))  # fmt: skip
     off = abs(robot.trunk.com[0])
     if off > 0.0:
         yield Candidate("statics", "trunk CoM offset", "m", off, _LEAST * off,
-                        lambda c, v: _with_robot(c, balanced(robot, v / off)))  # fmt: skip
+                        lambda c, v: _with_robot(c, balanced(c.robot, v / off)))  # fmt: skip
     yield joint_range(robot, "thigh", WIDE)
     yield joint_range(robot, "calf", WIDE)
     apart = robot.hips.front[0] - robot.hips.rear[0]
     yield Candidate("clearance", "distance of the hips", "m", apart, FARTHEST * apart,
-                    lambda c, v: _with_robot(c, farther(robot, v / apart)))  # fmt: skip
+                    lambda c, v: _with_robot(c, farther(c.robot, v / apart)))  # fmt: skip
 
 
 def _with_robot(planner: PathPlanner, robot: Robot) -> PathPlanner:
