@@ -4,11 +4,14 @@ import numpy as np
 import pytest
 
 import stairwright as sw
+from stairwright import _core
 from stairwright.planning.path_planner import path_planner
-from stairwright.planning.standing import stance
+from stairwright.planning.standing import StandingPose, find_standing_poses, stance
 from stairwright.planning.weights import PathWeights
 from stairwright.planning.wheel_samples import sample_wheel_places
+from stairwright.robot.kinematics import inverse
 from stairwright.terrain.profile import Terrain
+from stairwright.terrain.wheel_path import wheel_path
 
 A1S = ("a1_wheeled", "a1_wheeled_x")
 
@@ -108,6 +111,27 @@ def test_wheels_too_large_for_the_hips_stand_apart():
     robot = sw.load_robot("a1_wheeled").model_dump(mode="json")
     robot["hips"] |= {"front": [0.04, 0.0], "rear": [-0.04, 0.0]}
     assert stance(sw.load_robot(robot)) == pytest.approx(0.11, abs=0.01)
+
+
+@pytest.mark.parametrize("length", [0.3, 0.5])
+def test_a_trunk_that_hangs_over_stands_clear_of_the_step_behind(length):
+    robot = sw.load_robot("a1_wheeled").model_dump(mode="json")
+    robot["trunk"]["size"][0] = length + robot["hips"]["front"][0] - robot["hips"]["rear"][0]
+    robot = sw.load_robot(robot)
+    terrain = sw.load_terrain({"points": [[-1.5, 0.0], [0.0, 0.0], [0.0, -0.25], [3.0, -0.25]]})
+    path = wheel_path(terrain, robot.wheel.radius)
+    begin, end = find_standing_poses(terrain, robot, path)
+    ground = _core.Terrain(path.vertices)
+
+    def clearance(pose):
+        q = inverse(robot, *map(float, pose.body), path.centres(np.array(pose.wheels)))
+        return _core.least_clearance(ground, robot.native, pose.body, q)
+
+    assert clearance(begin) >= 0.02
+    assert clearance(end) >= 0.02
+    # No farther off than it takes: a stride nearer the trunk would come too near.
+    near = StandingPose(tuple(s - 0.05 for s in end.wheels), end.body - [0.05, 0.0, 0.0])
+    assert clearance(near) < 0.02
 
 
 @pytest.mark.slow

@@ -25,6 +25,8 @@ _SLOPE = 0.2  # rad; and nowhere steeper than this
 _FACE = math.atan(MOST_FRICTION)  # rad; no friction holds a wheel on what is steeper
 _NEAR = 0.02  # m; least distance of a standing wheel from an obstacle
 _TRY, _TRIES = 0.01, 200  # m; where else the trunk is tried, and how often either way
+_CLEAR = 0.02  # m of clearance for legs of 0.4 m, where there is room to stand farther off
+_FARTHEST, _STRIDE = 1.0, 0.05  # m; how far off then at most, and in which steps
 _SHIFTS = 30  # rounds in which wheels are moved until the trunk is where it was asked to be
 _EXACT = 1e-9  # m; then it is there
 _AHEAD = 1e-5  # m; least way of each wheel, for plans need two poses that can be told apart
@@ -169,15 +171,13 @@ def find_standing_poses(
     elif flat:
         begin = standing_pose(path, robot, low + behind + gap, low + behind)
     else:
-        near, far = _settle(path, robot, gap, "start", (low, first), behind)
-        begin = standing_pose(path, robot, first - near, first - far)
+        begin = _settle(path, robot, gap, "start", (low, first), behind)
     if terrain.goal is not None:
         end = _at(path, robot, gap, terrain.goal, "goal")
     elif flat:
         end = standing_pose(path, robot, high - ahead, high - ahead - gap)
     else:
-        near, far = _settle(path, robot, gap, "goal", (last, high), ahead)
-        end = standing_pose(path, robot, last + far, last + near)
+        end = _settle(path, robot, gap, "goal", (last, high), ahead)
     way = min(b - a for a, b in zip(begin.wheels, end.wheels, strict=True))
     if way < _AHEAD:
         message = "the goal is not ahead of the start"
@@ -212,8 +212,8 @@ def _edge(path: WheelPath, robot: Robot, s: float) -> float:
 
 def _settle(
     path: WheelPath, robot: Robot, gap: float, kind: End, stretch: tuple[float, float], edge: float
-) -> tuple[float, float]:
-    """Distances of both wheels, the nearer first, from where a level stretch meets what follows.
+) -> StandingPose:
+    """The standing pose near where a level stretch meets what follows.
 
     Args:
         path: The curve of wheel centres.
@@ -240,7 +240,24 @@ def _settle(
         missing = least + close + min(edge, close) - room
         message = f"the {which} flat stretch is too short"
         raise _too_short(kind, path, stretch, missing, message)
-    return near, far
+    front, rear, away = (far, near, 1.0) if kind == "goal" else (-near, -far, -1.0)
+    ground = _core.Terrain(path.vertices)
+
+    def farther(way: float) -> StandingPose:
+        return standing_pose(path, robot, s + front + away * way, s + rear + away * way)
+
+    def clearance(pose: StandingPose) -> float:
+        x, z, pitch = pose.body
+        q = kinematics.inverse(robot, x, z, pitch, path.centres(np.array(pose.wheels)))
+        return _core.least_clearance(ground, robot.native, pose.body, q)
+
+    pose, enough = farther(0.0), _CLEAR * scale(robot)
+    if clearance(pose) >= enough:
+        return pose
+    ways = np.arange(0.0, min(room - edge - far, _FARTHEST * scale(robot)), _STRIDE * scale(robot))
+    return max(
+        map(farther, ways), key=lambda one: round(min(clearance(one), enough), 4), default=pose
+    )
 
 
 def _too_short(
