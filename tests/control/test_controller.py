@@ -175,7 +175,8 @@ def test_a_wheel_off_a_corner_stays_on_the_face_that_the_plan_leans_on() -> None
 
 
 @pytest.mark.parametrize("roll", [0.0, 0.05])
-def test_roll_is_held_by_what_forces_lift(roll: float) -> None:
+@pytest.mark.parametrize("angles", [(0.0, 0.0), (0.9, 0.5), (1.57, 1.4)])
+def test_roll_is_held_by_what_forces_lift(roll: float, angles: tuple[float, float]) -> None:
     """A robot that straddles a block, left wheels farther down its edges than the right ones."""
     robot, settings = load_robot("a1_wheeled"), ControllerSettings()
     qpos, qvel = np.zeros(19), np.zeros(18)
@@ -184,13 +185,13 @@ def test_roll_is_held_by_what_forces_lift(roll: float) -> None:
     state = measure(robot, qpos, qvel)
     row = np.zeros(WIDTH)
     row[FORCES] = 0.0, 60.0, 0.0, 56.0
-    angles = np.array([0.9, 0.5, -0.9, -0.5])
-    normals = np.column_stack([np.sin(angles), np.cos(angles)])
-    rows, asked = balance.side_differences(robot, settings, state, Setpoint.from_row(row), normals)
+    slopes = np.array([*angles, *(-a for a in angles)])
+    frames = rigid_body.contact_frames(np.column_stack([np.sin(slopes), np.cos(slopes)]))
+    rows, asked = balance.side_differences(robot, settings, state, Setpoint.from_row(row), frames)
     forces = np.linalg.lstsq(rows, asked, rcond=None)[0].reshape(4, 2)
-    np.testing.assert_allclose(forces[:, 0], 0.0, atol=1e-9)
-    lift = forces[:, 1] * normals[:, 1]
-    moment = robot.hips.half_track * (lift[0] - lift[1] + lift[2] - lift[3])
+    left, right = np.einsum("nij,nj->ni", frames, forces).reshape(2, 2, 2).transpose(1, 0, 2)
+    np.testing.assert_allclose(left[:, 0], right[:, 0], atol=1e-9)
+    moment = robot.hips.half_track * (left - right)[:, 1].sum()
     height = state.com[1] - state.wheels[:, 1].mean() + robot.wheel.radius
     wanted = -robot.mass * height**2 * settings.roll_stiffness * state.roll
     assert moment == pytest.approx(wanted, abs=1e-9)

@@ -20,8 +20,7 @@ MAX_PITCH_INTEGRAL = 15.0  # rad/s^2 that the pitch integral may add
 # Weight of the difference between left and right forces: where grip runs out the QP would rather
 # carry all with one wheel of a pair, and nothing else keeps the robot from rolling over.
 EVEN = 0.02
-MOST_UNEVEN = 0.8  # of what a pair carries: left less right normal force
-STEEP = 0.5  # cosine of the slope of a face: on steeper ones normal forces hardly lift
+MOST_UNEVEN = 0.8  # of what a pair carries: left less right
 
 
 def desired_wrench(
@@ -61,28 +60,25 @@ def side_differences(
     settings: ControllerSettings,
     state: Measurement,
     target: Setpoint,
-    normals: Floats,
+    frames: Floats,
 ) -> tuple[Floats, Floats]:
     """Rows (4, 8) of left less right forces of the pairs, and what they shall be (4,) [N].
 
-    Tangential forces shall be equal. Normal ones keep the robot from rolling over: against gravity
+    Forces along x shall be equal. Those along z keep the robot from rolling over: against gravity
     their stiffness must be above g / h. Pairs share it as they share the weight, up to
-    `MOST_UNEVEN` of what each carries. They count by what they lift: where one wheel is farther
-    round an edge than the other, equal ones do not, and the side that has sunk would sink on.
+    `MOST_UNEVEN` of what each carries. `frames` (4, 2, 2) turn forces along and out of faces into
+    the world's.
     """
     height = state.com[1] - state.wheels[:, 1].mean() + robot.wheel.radius
     wanted = settings.roll_stiffness * state.roll + settings.roll_damping * state.roll_rate
     moment = -robot.mass * height * height * wanted
     carried = np.maximum(target.forces[:, 1], 0.0)
     share = moment / robot.hips.half_track / max(float(carried.sum()), 1e-9)
-    rows, asked = np.zeros((4, 8)), np.zeros(4)
-    for pair, (left, right) in enumerate(normals[:, 1].reshape(2, 2)):
-        mean = max(0.5 * (left + right), STEEP)
-        off = 0.5 * (left - right) / mean
-        rows[2 * pair, 4 * pair : 4 * pair + 4] = [1.0, 0.0, -1.0, 0.0]
-        rows[2 * pair + 1, 4 * pair : 4 * pair + 4] = [0.0, 1.0 + off, 0.0, -(1.0 - off)]
-        asked[2 * pair + 1] = carried[pair] * np.clip(share, -MOST_UNEVEN, MOST_UNEVEN) / mean
-    return rows, asked
+    rows, asked = np.zeros((2, 2, 8)), np.zeros((2, 2))
+    for pair, (left, right) in enumerate(frames.reshape(2, 2, 2, 2)):
+        rows[pair, :, 4 * pair : 4 * pair + 4] = np.hstack([left, -right])
+        asked[pair, 1] = carried[pair] * np.clip(share, -MOST_UNEVEN, MOST_UNEVEN)
+    return rows.reshape(4, 8), asked.ravel()
 
 
 def force_cost(

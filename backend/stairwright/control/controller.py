@@ -124,7 +124,7 @@ class Controller:
             self.pitch_integral,
         )
         resting = np.einsum("nji,nj->ni", frames, (target.forces / 2)[LEG_PAIR]).ravel()
-        sides = balance.side_differences(robot, settings, state, target, normals)
+        sides = balance.side_differences(robot, settings, state, target, frames)
         moving = moving[LEG_PAIR]
         rest = np.column_stack(
             [balance.leg_weight_torques(robot, state) + moving[:, :2], moving[:, 2]]

@@ -20,8 +20,7 @@ constexpr double kMaxPitchIntegral = 15.0;  // rad/s^2
 // Weight of the difference between left and right forces: where grip runs out the QP would rather carry all with
 // one wheel of a pair, and nothing else keeps the robot from rolling over.
 constexpr double kEven = 0.02;
-constexpr double kSteep = 0.5;       // cosine of the slope of a face: on steeper ones normal forces hardly lift
-constexpr double kMostUneven = 0.8;  // of what a pair carries: left less right normal force
+constexpr double kMostUneven = 0.8;  // of what a pair carries: left less right
 
 using Supports = std::array<WheelSupport, 4>;
 
@@ -55,7 +54,7 @@ Wrench desired_wrench(const Gains& g, double mass, const Measurement& m, const R
     return {mass * ax, mass * (az + kGravity), moment + m.inertia * spin};
 }
 
-// Left less right normal force, as a share of what each pair carries, that keeps the robot from rolling over.
+// Left less right vertical force, as a share of what each pair carries, that keeps the robot from rolling over.
 // Against gravity its stiffness must be above g / h.
 double uneven_share(const Gains& g, double mass, const Robot& robot, const Measurement& m, const Reference& target,
                     double radius) {
@@ -67,24 +66,20 @@ double uneven_share(const Gains& g, double mass, const Robot& robot, const Measu
     return std::clamp(share, -kMostUneven, kMostUneven);
 }
 
-// How much each of a pair's normal forces counts in the difference that is asked of them, and that difference, as a share of
-// what it would be on a level face. Where one wheel is farther round an edge than the other, the same normal forces do
-// not lift the same, and the side that has sunk would sink on.
-struct Lifting {
-    double left, right, asked;
-};
-
-Lifting lifting(double left, double right) {
-    const double mean = std::max(0.5 * (left + right), kSteep);
-    const double off = 0.5 * (left - right) / mean;
-    return {1.0 + off, 1.0 - off, 1.0 / mean};
-}
-
-// Adds kEven (a f_i - b f_j - difference)^2 to twice the cost.
-void ask_difference(BalanceQp& qp, int i, double a, int j, double b, double difference) {
-    qp.H[i][i] += kEven * a * a, qp.H[j][j] += kEven * b * b;
-    qp.H[i][j] -= kEven * a * b, qp.H[j][i] -= kEven * a * b;
-    qp.g[i] -= kEven * a * difference, qp.g[j] += kEven * b * difference;
+// Adds kEven (a . (f_left - f_right) - difference)^2 to twice the cost, a along the world's axis, the wheels' forces being
+// those of a pair along and out of their faces.
+void ask_difference(BalanceQp& qp, int pair, const Vec2& axis, const Supports& supports, double difference) {
+    std::array<double, 4> row;
+    for (int side = 0; side < 2; ++side) {
+        const WheelSupport& s = supports[2 * pair + side];
+        const double sign = side == 0 ? 1.0 : -1.0;
+        row[2 * side] = sign * dot(axis, s.tangent()), row[2 * side + 1] = sign * dot(axis, s.normal);
+    }
+    const int first = 4 * pair;
+    for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < 4; ++j) qp.H[first + i][first + j] += kEven * row[i] * row[j];
+        qp.g[first + i] -= kEven * row[i] * difference;
+    }
 }
 
 // Cost of eq 11: wrench error, distance from the plan's static forces, change, unevenness of left and right.
@@ -104,10 +99,8 @@ BalanceQp balance_qp(const Gains& gains, const std::array<Wrench, 8>& A, const W
         qp.g[i] -= gains.alpha * resting + gains.beta * last[i];
     }
     for (int pair = 0; pair < 2; ++pair) {
-        const int left = 4 * pair, right = left + 2;
-        const auto [on_left, on_right, asked] = lifting(supports[2 * pair].normal.z, supports[2 * pair + 1].normal.z);
-        ask_difference(qp, left, 1.0, right, 1.0, 0.0);
-        ask_difference(qp, left + 1, on_left, right + 1, on_right, asked * uneven * std::max(target.forces[pair].z, 0.0));
+        ask_difference(qp, pair, {1.0, 0.0}, supports, 0.0);
+        ask_difference(qp, pair, {0.0, 1.0}, supports, uneven * std::max(target.forces[pair].z, 0.0));
     }
     for (int i = 0; i < 4; ++i) qp.friction[i] = supports[i].friction;
     qp.load_limit = gains.force_limit;
