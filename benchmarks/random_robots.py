@@ -5,7 +5,12 @@ wheels, motors; masses with the cube of the size), its mass centre moved by up t
 distance of its hips, knees of any kind, and a payload of up to 30 % of its mass; profiles are those
 of `profiles.py`, scaled to the robot's legs.
 
-python benchmarks/random_robots.py [--first 0] [--count 100] [--processes 2] [--json FILE]
+With `--unlike`, parts of a robot that usually go together do not: legs and wheels of a tenth to
+three times their mass, rotors of up to five times their inertia or none, slow and fast motors, a
+narrow or wide track, rear legs that differ from the front ones.
+
+python benchmarks/random_robots.py [--first 0] [--count 100] [--unlike] [--processes 2]
+    [--json FILE]
 """
 
 from __future__ import annotations
@@ -15,6 +20,8 @@ import json
 import time
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
+from copy import deepcopy
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -47,7 +54,45 @@ def changed_link(link: dict[str, Any], length: float, mass: float) -> dict[str, 
     }
 
 
-def random_robot(seed: int) -> sw.Robot:
+def heavier(part: dict[str, Any], ratio: float) -> dict[str, Any]:
+    """A link or a wheel of `ratio` times the density."""
+    return part | {"mass": part["mass"] * ratio, "inertia": [i * ratio for i in part["inertia"]]}
+
+
+def unlike_parts(data: dict[str, Any], seed: int) -> None:
+    """Change parts of a robot's document one by one, in place."""
+    random = np.random.default_rng([1, seed])
+    legs = float(10.0 ** random.uniform(-1.0, 0.5))
+    for name in ("thigh", "calf", "wheel"):
+        data[name] = heavier(data[name], legs * factor(random, 1.5))
+    rotors = 0.0 if random.random() < 0.1 else factor(random, 5.0)
+    for motor in data["actuators"].values():
+        if motor is None:
+            continue
+        motor["armature"] = min(motor["armature"] * rotors, 10.0)
+        motor["damping"] = min(motor["damping"] * factor(random, 3.0), 10.0)
+        motor["speed"] = min(motor["speed"] * factor(random), 1000.0)
+    data["wheel"]["radius"] *= factor(random, 1.4)
+    data["hips"]["half_track"] *= factor(random, 1.4)
+    rise = 0.25 * data["trunk"]["size"][2] * float(random.uniform(-1.0, 1.0))
+    x = data["hips"]["front"][0]
+    data["hips"] |= {"front": (x, rise), "rear": (-x, -rise)}
+    tumbling = factor(random, 1.4)
+    data["trunk"]["inertia"] = [i * tumbling for i in data["trunk"]["inertia"]]
+    if random.random() < 0.5:
+        rear = {name: deepcopy(data[name]) for name in ("thigh", "calf", "wheel", "actuators")}
+        for name in ("thigh", "calf"):
+            rear[name] = heavier(
+                changed_link(rear[name], factor(random, 1.2), 1.0), factor(random, 1.5)
+            )
+        rear["wheel"] = heavier(rear["wheel"], factor(random, 1.5))
+        for motor in rear["actuators"].values():
+            if motor is not None:
+                motor["torque"] = min(motor["torque"] * factor(random, 1.3), 1000.0)
+        data["rear"] = rear
+
+
+def random_robot(seed: int, unlike: bool = False) -> sw.Robot:
     """A robot by its seed; see above."""
     random = np.random.default_rng(seed)
     data = sw.load_robot(PRESETS[seed % len(PRESETS)]).model_dump()
@@ -95,6 +140,8 @@ def random_robot(seed: int) -> sw.Robot:
                 "thigh": (-4.2, 1.2) if forward else (-1.2, 4.2),
                 "calf": (low, high_end) if forward else (-high_end, -low),
             }
+    if unlike:
+        unlike_parts(data, seed)
     reach = data["thigh"]["length"] + data["calf"]["length"]
     data["nominal_height"] = data["wheel"]["radius"] + reach * float(random.uniform(0.6, 0.8))
     if random.random() < 0.5:
@@ -103,8 +150,8 @@ def random_robot(seed: int) -> sw.Robot:
     return sw.Robot.model_validate(data)
 
 
-def one(seed: int) -> dict[str, Any]:
-    robot = random_robot(seed)
+def one(seed: int, unlike: bool = False) -> dict[str, Any]:
+    robot = random_robot(seed, unlike)
     kind, terrain = random_profile(seed)
     scale = min(leg.reach for leg in robot.legs) / 0.4
     begun = time.perf_counter()
@@ -127,13 +174,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--count", type=int, default=100)
+    parser.add_argument("--unlike", action="store_true")
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--json", type=Path)
     options = parser.parse_args()
     seeds = range(options.first, options.first + options.count)
     with ProcessPoolExecutor(options.processes) as pool:
         rows = []
-        for row in pool.map(one, seeds):
+        for row in pool.map(partial(one, unlike=options.unlike), seeds):
             rows.append(row)
             if row["outcome"] != "success" or not row["certified"]:
                 print(row, flush=True)
