@@ -17,9 +17,11 @@ from .settings import ControllerSettings
 MAX_ACCELERATION = 3.5  # m/s^2, along x
 CONTROL_PERIOD = 0.002  # s
 MAX_PITCH_INTEGRAL = 15.0  # rad/s^2 that the pitch integral may add
-# Weight of the difference between left and right forces: where grip runs out the QP would rather
-# carry all with one wheel of a pair, and nothing else keeps the robot from rolling over.
-EVEN = 0.02
+# Weights of the differences between left and right forces, along x and z: where grip runs out the
+# QP would rather carry all with one wheel of a pair, and nothing else keeps the robot from rolling
+# over. Yaw has the wheels' rates and tyres, too: on upright faces, where a wheel lifts by its grip
+# alone, the side that is to lift more may push more.
+EVEN = np.array([0.002, 0.02])
 MOST_UNEVEN = 0.8  # of what a pair carries: left less right
 
 
@@ -100,8 +102,9 @@ def force_cost(
     gradient = -weighted @ desired - settings.alpha * resting - settings.beta * previous
     if differences is not None:
         rows, asked = differences
-        hessian += EVEN * rows.T @ rows
-        gradient -= EVEN * rows.T @ asked
+        uneven = rows.T * np.tile(EVEN, 2)
+        hessian += uneven @ rows
+        gradient -= uneven @ asked
     return hessian, gradient
 
 

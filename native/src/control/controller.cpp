@@ -17,9 +17,10 @@ namespace {
 
 constexpr double kMaxAcceleration = 3.5;  // m/s^2 along x: a far-away reference must not throw the robot
 constexpr double kMaxPitchIntegral = 15.0;  // rad/s^2
-// Weight of the difference between left and right forces: where grip runs out the QP would rather carry all with
-// one wheel of a pair, and nothing else keeps the robot from rolling over.
-constexpr double kEven = 0.02;
+// Weights of the differences between left and right forces, along x and z: where grip runs out the QP would rather carry all
+// with one wheel of a pair, and nothing else keeps the robot from rolling over. Yaw has the wheels' rates and tyres, too: on
+// upright faces, where a wheel lifts by its grip alone, the side that is to lift more may push more.
+constexpr Vec2 kEven = {0.002, 0.02};
 constexpr double kMostUneven = 0.8;  // of what a pair carries: left less right
 
 using Supports = std::array<WheelSupport, 4>;
@@ -66,9 +67,8 @@ double uneven_share(const Gains& g, double mass, const Robot& robot, const Measu
     return std::clamp(share, -kMostUneven, kMostUneven);
 }
 
-// Adds kEven (a . (f_left - f_right) - difference)^2 to twice the cost, a along the world's axis, the wheels' forces being
-// those of a pair along and out of their faces.
-void ask_difference(BalanceQp& qp, int pair, const Vec2& axis, const Supports& supports, double difference) {
+// Adds weight (axis . (f_left - f_right) - difference)^2 to twice the cost; the QP has a wheel's force along and out of its face.
+void ask_difference(BalanceQp& qp, int pair, double weight, Vec2 axis, const Supports& supports, double difference) {
     std::array<double, 4> row;
     for (int side = 0; side < 2; ++side) {
         const WheelSupport& s = supports[2 * pair + side];
@@ -77,8 +77,8 @@ void ask_difference(BalanceQp& qp, int pair, const Vec2& axis, const Supports& s
     }
     const int first = 4 * pair;
     for (int i = 0; i < 4; ++i) {
-        for (int j = 0; j < 4; ++j) qp.H[first + i][first + j] += kEven * row[i] * row[j];
-        qp.g[first + i] -= kEven * row[i] * difference;
+        for (int j = 0; j < 4; ++j) qp.H[first + i][first + j] += weight * row[i] * row[j];
+        qp.g[first + i] -= weight * row[i] * difference;
     }
 }
 
@@ -99,8 +99,8 @@ BalanceQp balance_qp(const Gains& gains, const std::array<Wrench, 8>& A, const W
         qp.g[i] -= gains.alpha * resting + gains.beta * last[i];
     }
     for (int pair = 0; pair < 2; ++pair) {
-        ask_difference(qp, pair, {1.0, 0.0}, supports, 0.0);
-        ask_difference(qp, pair, {0.0, 1.0}, supports, uneven * std::max(target.forces[pair].z, 0.0));
+        ask_difference(qp, pair, kEven.x, {1.0, 0.0}, supports, 0.0);
+        ask_difference(qp, pair, kEven.z, {0.0, 1.0}, supports, uneven * std::max(target.forces[pair].z, 0.0));
     }
     for (int i = 0; i < 4; ++i) qp.friction[i] = supports[i].friction;
     qp.load_limit = gains.force_limit;
