@@ -74,5 +74,5 @@ def test_an_edge_that_comes_early_does_not_tip_what_stands_on_it() -> None:
     """Front wheels carried all but a few newtons when they were over it, the second one down."""
     plan = sw.plan(stair(0.179, 0.3635, 3, direction="down"), "go2w", friction=0.6)
     faces = [0.03, -0.03, -0.03, -0.03, 0.03, -0.03]
-    run = sw.rollout(plan, disturbance={"face_place_error": faces}, seed=3)
+    run = sw.rollout(plan, disturbance={"face_place_error": faces}, seed=4)
     assert run.success, run.reason

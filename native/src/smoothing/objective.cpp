@@ -67,7 +67,7 @@ Objective objective(const RefineProblem& problem, const NodeSpacing& spacing, do
     o.torque_room = {0.2, 8.0 * root, kFirmTorque};
     o.torque_hard = 100.0;
     o.hard = kHardWeight;
-    o.legs = MarginTerm{0.011, 150.0 * root, 0.007}.with(more.legs);
+    o.legs = MarginTerm{0.011 * large, 150.0 * root, 0.007}.with(more.legs);
     o.joints = MarginTerm{0.05, 30.0 * root, 0.004}.with(more.joints);
     o.pitch_weight = kPitchWeight * root * std::sqrt(w.pitch);
     o.height_weight = 0.3 * root;

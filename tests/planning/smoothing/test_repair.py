@@ -45,7 +45,7 @@ def test_a_path_that_the_polish_leaves_bad_is_mended(rise, run, friction):
 
 def test_down_a_stair_rear_wheels_wait_at_the_edge():
     """Farther back the front legs do not reach the next tread, farther on the edge is slippery."""
-    planner = flight("down", "d1", 0.6, 0.19, 0.26)
+    planner = flight("down", "d1", 0.6, 0.195, 0.255)
     assert not isinstance(planner.attempt(MOST_FORGIVING), Solved)
     assert isinstance(planner.attempt(ON_BRINKS), Solved)
 
