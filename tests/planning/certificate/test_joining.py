@@ -52,6 +52,20 @@ def test_motion_that_would_fail_in_a_rollout_is_named(terrain, friction, robot, 
     assert plan.poses[0].progress < motion.progress < plan.poses[-1].progress
 
 
+def test_motion_that_motors_cannot_hold_is_named():
+    """The poses themselves take less than the motion between them."""
+    robot = sw.load_robot("a1_wheeled").model_dump(mode="json")
+    free = sw.plan("single-stair-036", robot, method="critical")
+    assert free.certificate.motion is None
+    robot["actuators"]["leg"]["torque"] = 9.0
+    plan = sw.plan("single-stair-036", robot, method="critical")
+    motion = plan.certificate.motion
+    assert motion.kind == "torque"
+    assert "motors would have to hold" in motion.message
+    assert "9 Nm is all" in motion.message
+    assert sw.rollout(plan).outcome != "success"
+
+
 @pytest.mark.slow
 def test_motion_without_objection_succeeds():
     """Random stairs up and down; most have no objection, and of these every rollout succeeds."""

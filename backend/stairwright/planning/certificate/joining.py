@@ -11,6 +11,7 @@ from stairwright.planning.plan import Certificate, Check, Plan
 from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.poses.pose_reference import Reference
 from stairwright.planning.problem import Problem, ProblemKind, between_poses
+from stairwright.planning.static_torques import static_torques
 from stairwright.terrain.wheel_path import wheel_path
 
 # Room for the centre of mass: of 490 random stairs climbed with more every rollout succeeds, of
@@ -46,7 +47,21 @@ def motion_problem(plan: Plan) -> Problem | None:
     for name in _STOPS:
         if name in failed:
             return _problem(failed[name], plan, samples)
-    return _thin_balance(plan, samples)
+    return _overload(plan, samples) or _thin_balance(plan, samples)
+
+
+def _overload(plan: Plan, samples: Reference) -> Problem | None:
+    """Where standing still takes most of what a motor can give, if that is more than all."""
+    robot, q = plan.robot_description, samples.q
+    torques = static_torques(robot, samples.trunk, q, samples.contacts, samples.forces)
+    pairs = np.abs(torques.reshape(-1, 4, 3))[:, [0, 2]]  # left legs, the right ones are as they
+    shares = pairs / robot.torque_limits
+    i, pair, joint = np.unravel_index(int(np.argmax(shares)), shares.shape)
+    if shares[i, pair, joint] <= 1.0:
+        return None
+    motor = f"{('front', 'rear')[pair]} {('thigh', 'calf', 'wheel')[joint]} motors"
+    much = f"{pairs[i, pair, joint]:.3g} Nm, {robot.torque_limits[pair, joint]:.3g} Nm is all"
+    return _stopped("torque", f"the {motor} would have to hold {much}", plan, samples, int(i))
 
 
 def _thin_balance(plan: Plan, samples: Reference) -> Problem | None:
