@@ -165,7 +165,8 @@ def compile_source(upload: Upload, notes: Notes) -> Source:
         extra = sum(float(model.body(name).mass[0]) for name in own.massless)
         notes.warn(
             f"{listed(own.massless)}: shapes without <inertial>; MuJoCo weighs them as water, "
-            f"{extra:.4g} kg together, ROS as nothing: as MuJoCo here"
+            f"{extra:.4g} kg of {float(model.body_mass.sum()):.4g} kg, ROS as nothing: as MuJoCo "
+            "here; where that is wrong give them an <inertial> of a gram"
         )
     return source
 
