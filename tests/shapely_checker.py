@@ -49,8 +49,15 @@ def skeleton(robot: Any, x: float, z: float, pitch: float, q: Any) -> dict[str, 
     return out
 
 
+def run_out(vertices: np.ndarray) -> np.ndarray:
+    """The profile (n, 2) with a metre of level ground beyond either end."""
+    beyond = np.array([1.0, 0.0])
+    return np.vstack([vertices[0] - beyond, vertices, vertices[-1] + beyond])
+
+
 def ground(vertices: np.ndarray) -> tuple[Polygon, LineString]:
-    """The solid below the profile and the profile itself."""
+    """The solid below the profile, which goes on level beyond its ends, and its surface."""
+    vertices = run_out(vertices)
     low = vertices[:, 1].min() - 5.0
     first, last = vertices[0], vertices[-1]
     solid = Polygon([*map(tuple, vertices), (last[0], low), (first[0], low)])

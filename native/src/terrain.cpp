@@ -13,6 +13,7 @@ constexpr double kBucket = 0.02;    // m
 constexpr double kPierced = 0.005;  // m; depth of what a spike goes through that has no width to be deep in
 constexpr double kDeepest = 0.5;    // m; larger depths are not told apart
 constexpr double kFarthest = 1e4;  // m
+constexpr double kRunOut = 1.0;    // m
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void check_profile(const std::vector<Vec2>& vertices) {
@@ -25,10 +26,19 @@ void check_profile(const std::vector<Vec2>& vertices) {
     }
 }
 
+// The ground goes on level beyond its ends.
+std::vector<Vec2> run_out(const std::vector<Vec2>& profile) {
+    std::vector<Vec2> out = {profile.front() - Vec2{kRunOut, 0.0}};
+    out.insert(out.end(), profile.begin(), profile.end());
+    out.push_back(profile.back() + Vec2{kRunOut, 0.0});
+    return out;
+}
+
 }  // namespace
 
-Terrain::Terrain(std::vector<Vec2> vertices) : vertices_(std::move(vertices)) {
-    check_profile(vertices_);
+Terrain::Terrain(const std::vector<Vec2>& profile) {
+    check_profile(profile);
+    vertices_ = run_out(profile);
     const double begin = vertices_.front().x;
     const auto buckets = static_cast<std::size_t>((vertices_.back().x - begin) / kBucket) + 2;
     first_.resize(buckets);

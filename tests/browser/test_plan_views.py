@@ -265,6 +265,7 @@ def test_a_fast_plan_tells_what_limits_its_speed(product: Product) -> None:
         "joint_speed": "joint speed",
         "pitch_speed": "pitch rate",
         "wheel_speed": "wheel speed",
+        "impact": "impact",
     }
     limits = plan["timing"]["limits"]
     legend = page.get_by_role("list", name="What limits the speed")

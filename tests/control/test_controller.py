@@ -11,8 +11,9 @@ import pytest
 from stairwright import load_robot, load_terrain, robots
 from stairwright.control import balance, rigid_body, rolling, tracking
 from stairwright.control.contact import AFTER, BEFORE, face_normal, support
+from stairwright.control.inertial_loads import friction_loads
 from stairwright.control.measurement import measure
-from stairwright.control.setpoint import FORCES, WIDTH, Setpoint
+from stairwright.control.setpoint import FORCES, RATES, WIDTH, Setpoint
 from stairwright.control.settings import ControllerSettings, parse_settings
 from stairwright.errors import InputError
 from stairwright.robot import kinematics
@@ -126,6 +127,24 @@ def test_leg_weight_is_gravity_of_the_simulator() -> None:
     state = measure(robot, qpos, np.zeros(18))
     expected = data.qfrc_bias[6:].reshape(4, 3)[:, :2]
     np.testing.assert_allclose(balance.leg_weight_torques(robot, state), expected, atol=1e-9)
+
+
+def test_friction_of_the_motors_is_the_simulators() -> None:
+    robot, random = load_robot("go2w"), np.random.default_rng(5)
+    model = build_model(robot, load_terrain("flat"), 0.6)
+    data = mujoco.MjData(model)
+    row = np.zeros(41)
+    row[RATES : 2 * RATES] = random.normal(0.0, 2.0, RATES)
+    target = Setpoint.from_row(row)
+    loads = friction_loads(robot, target)
+    data.qvel[4] = target.pitch_rate
+    for leg in range(4):
+        pair = leg // 2
+        thigh, calf = target.q_rate[2 * pair : 2 * pair + 2]
+        wheel = target.wheel_speed[pair] / robot.wheel.radius - target.pitch_rate - thigh - calf
+        data.qvel[6 + 3 * leg : 9 + 3 * leg] = thigh, calf, wheel
+    mujoco.mj_forward(model, data)
+    assert np.repeat(loads, 2, axis=0).ravel() == pytest.approx(-data.qfrc_passive[6:])
 
 
 def test_rolling_and_tracking_laws() -> None:

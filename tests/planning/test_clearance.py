@@ -32,6 +32,18 @@ def test_clearance_equals_shapely(seed):
             assert distance == pytest.approx(verdict.legs_apart, abs=1e-9)
 
 
+@pytest.mark.parametrize("x", [-2.0, 3.0])
+def test_the_ground_goes_on_level_beyond_its_ends(x):
+    """As in simulation: a knee that hangs over the end of the drawing touches it."""
+    robot, terrain = sw.load_robot("a1_wheeled"), sw.Terrain(points=[(-2.0, 0.1), (3.0, 0.1)])
+    q = np.array([0.9, -1.8, 0.9, -1.8])
+    high = [
+        _core.least_clearance(_core.Terrain(each), robot.native, np.array([x, 0.3, 0.0]), q)
+        for each in (terrain.vertices, np.array([[-5.0, 0.1], [5.0, 0.1]]))
+    ]
+    assert high[0] == high[1] < 0.2
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_cells_are_the_ground(seed):
     """A point lies in some convex cell exactly where it is below the profile."""

@@ -24,7 +24,7 @@ from stairwright.terrain.wheel_path import WheelPath
 
 from . import balance, qp, rigid_body, rolling, tracking
 from .contact import locate, support, wheel_traction
-from .inertial_loads import inertial_loads
+from .inertial_loads import friction_loads, inertial_loads
 from .measurement import Measurement, measure
 from .motor_limits import MotorTorques, solve_within_motors
 from .setpoint import PITCH, Setpoint
@@ -125,7 +125,7 @@ class Controller:
         )
         resting = np.einsum("nji,nj->ni", frames, (target.forces / 2)[LEG_PAIR]).ravel()
         sides = balance.side_differences(robot, settings, state, target, frames)
-        moving = moving[LEG_PAIR]
+        moving = (moving + friction_loads(robot, target))[LEG_PAIR]
         rest = np.column_stack(
             [balance.leg_weight_torques(robot, state) + moving[:, :2], moving[:, 2]]
         )

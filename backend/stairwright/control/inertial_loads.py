@@ -77,3 +77,16 @@ def inertial_loads(robot: Robot, target: Setpoint) -> tuple[float, Floats]:
             leg.wheel.inertia[1] * spin + leg.wheel_motor.armature * (spin - lower[1]),
         )
     return moment, torques
+
+
+def friction_loads(robot: Robot, target: Setpoint) -> Floats:
+    """Motor torques (2, 3) that viscous friction takes at the planned rates [Nm].
+
+    Those of one front and one rear leg: thigh, calf, wheel.
+    """
+    legs = target.q_rate.reshape(2, 2)
+    # A wheel turns against its calf.
+    wheels = target.wheel_speed / robot.wheel.radius - target.pitch_rate - legs.sum(axis=1)
+    damping = np.array([[motor.damping for motor in leg.motors] for leg in robot.legs])
+    loads: Floats = damping * np.column_stack([legs, wheels])
+    return loads

@@ -36,8 +36,8 @@ from stairwright.planning.plan import Plan
 from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.poses.pose_reference import Reference
 from stairwright.planning.timing.limits import WHEEL_SPEED_SHARE
-from stairwright.planning.timing.moving_robot import REACH
-from stairwright.planning.timing.path_position import even_grid, path_positions, slopes
+from stairwright.planning.timing.moving_robot import reach_of
+from stairwright.planning.timing.path_position import even_grid, evened, path_positions, slopes
 from stairwright.planning.timing.steady import retimed
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
@@ -108,7 +108,7 @@ def track(
     columns = course.planned
     rows = np.zeros((len(grid), WIDTH))
     rows[:, :RATES] = np.stack([np.interp(grid, position, column) for column in columns.T], axis=1)
-    reach = REACH if fast else RATE_REACH  # a fast plan keeps its limits over that
+    reach = reach_of(robot) if fast else RATE_REACH  # a fast plan keeps its limits over that
     rates = slopes(grid, position, columns, reach)
     rows[:, RATES:ACCELERATIONS] = rates
     rows[:, ACCELERATIONS : ACCELERATIONS + RATES] = slopes(grid, grid, rates, reach)
@@ -119,7 +119,7 @@ def track(
     rows[:, PROGRESS] = np.interp(grid, position, course.progress)
     time = np.interp(grid, position, course.time)
     if fast:
-        speeds = 1.0 / slopes(grid, grid, time, reach)
+        speeds = 1.0 / evened(grid, slopes(grid, grid, time, reach), reach)
         if settings.speed is not None:
             speeds = np.minimum(speeds, settings.speed)
     else:

@@ -26,6 +26,7 @@ export const LIMITS: Readonly<Record<string, LimitKind>> = {
   joint_speed: { title: "joint speed", hint: "A thigh or calf turns as fast as it may" },
   pitch_speed: { title: "pitch rate", hint: "The trunk pitches as fast as it may" },
   wheel_speed: { title: "wheel speed", hint: "A wheel turns as fast as its motor allows" },
+  impact: { title: "impact", hint: "A wheel meets the face ahead as fast as it may" },
 };
 
 export const limitTitle = (name: string): string => LIMITS[name]?.title ?? name;

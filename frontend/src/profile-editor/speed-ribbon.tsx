@@ -93,4 +93,9 @@ export function RibbonPatterns() {
 }
 
 const PATTERNED = Object.keys(LIMITS).filter((name) => name !== "acceleration");
-const TURNED: Readonly<Record<string, number>> = { balance: 45, pitch_speed: 90, wheel_speed: 135 };
+const TURNED: Readonly<Record<string, number>> = {
+  balance: 45,
+  pitch_speed: 90,
+  wheel_speed: 135,
+  impact: 22,
+};

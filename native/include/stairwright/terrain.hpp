@@ -31,17 +31,18 @@ inline double segment_distance_squared(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
 
 inline double segment_distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d) { return std::sqrt(segment_distance_squared(a, b, c, d)); }
 
-// A profile whose x never decreases (equal x: a vertical face), indexed by buckets of x.
+// A profile whose x never decreases (equal x: a vertical face), and a metre of level ground beyond either end, as a
+// simulation has it; indexed by buckets of x.
 class Terrain {
   public:
-    // Throws std::invalid_argument if `vertices` are fewer than two, run back or hold what is no number.
-    explicit Terrain(std::vector<Vec2> vertices);
+    // Throws std::invalid_argument if the profile has fewer than two points, runs back or holds what is no number.
+    explicit Terrain(const std::vector<Vec2>& profile);
 
     const std::vector<Vec2>& vertices() const { return vertices_; }
     std::size_t segments() const { return vertices_.size() - 1; }
     // Index of a segment at or before the first that touches abscissas from `x` on.
     std::size_t first_segment(double x) const;
-    // Upper height of the ground at `x`; -inf beyond the profile's ends.
+    // Upper height of the ground at `x`; -inf where there is none.
     double height(double x) const;
     // Distance of a point from the profile, at most `query_radius`.
     double distance(Vec2 point, double query_radius) const;

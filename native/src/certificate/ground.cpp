@@ -9,6 +9,7 @@ namespace stairwright::certificate {
 namespace {
 
 constexpr double kSameX = 1e-9;    // m; vertices this near in x are of one vertical face
+constexpr double kBeyond = 1.0;    // m of level ground beyond either end
 constexpr double kOnGround = 1e-9; // m; a centre this near to the ground sees no face there
 constexpr double kAlike = 0.9999;  // cosine between normals of what counts as one face
 
@@ -19,6 +20,9 @@ constexpr auto kAfter = [](double x, Vec2 vertex) { return x < vertex.x; };
 
 Ground::Ground(std::vector<Vec2> vertices) : vertices_(std::move(vertices)) {
     if (vertices_.size() < 2) throw std::invalid_argument("a profile has at least two vertices");
+    const Vec2 first = vertices_.front(), last = vertices_.back();
+    vertices_.insert(vertices_.begin(), {first.x - kBeyond, first.z});
+    vertices_.push_back({last.x + kBeyond, last.z});
     for (std::size_t k = 0; k + 1 < vertices_.size(); ++k) boxes_.push_back(box_of(segment(k)));
 }
 

@@ -145,8 +145,8 @@ Command Controller::command(const RobotState& state, const Reference& target,
     std::array<LegMotors, 4> motors;
     for (int i = 0; i < 4; ++i) {
         motors[i] = leg_torques(robot_.legs[i / 2], m.legs[i], supports[i]);
-        const LegLoads& moving = inertial.legs[i / 2];
-        motors[i].thigh.rest += moving.thigh, motors[i].calf.rest += moving.calf, motors[i].wheel.rest += moving.wheel;
+        for (const LegLoads& moving : {inertial.legs[i / 2], friction_loads(robot_.legs[i / 2], i / 2, target.rate)})
+            motors[i].thigh.rest += moving.thigh, motors[i].calf.rest += moving.calf, motors[i].wheel.rest += moving.wheel;
     }
     const BalanceQp qp = balance_qp(g, force_map(m, supports), wanted, supports, target, forces_, uneven);
     solve_within_motors(qp, motors, robot_, state.joint_rates, g.force_weight, forces_);

@@ -20,7 +20,14 @@ constexpr double kLeastPull = 0.05;  // s; less says nothing of creep
 constexpr double kMostCreep = 0.03; // m/s
 constexpr double kTorque = 0.85;     // of what a motor gives: the test leaves the rest to the balance
 constexpr double kSlips = 0.045;   // m/s of rolling that gets nowhere; tyres creep by less
+constexpr double kLongLeg = 0.6;   // m of reach, from which on noise of encoders asks for more than that
 constexpr double kFeels = 0.05;    // s for which wheels that slip are pushed on: with it most of the window is of slip
+
+double longest_leg(const Robot& robot) {
+    double longest = 0.0;
+    for (const Leg& leg : robot.legs) longest = std::max(longest, norm(leg.thigh.end) + norm(leg.calf.end));
+    return longest;
+}
 
 double largest_load(const Reference& planned) { return std::max(planned.forces[0].z, planned.forces[1].z); }
 
@@ -107,7 +114,7 @@ Reference GripTest::step(const Reference& planned, const RobotState& state, cons
             speed[pair] = (std::abs(left) > std::abs(right) ? left : right) / (static_cast<double>(window_.size()) * dt);
         }
         // What the trunk moves by is the same for both.
-        if (std::abs(speed[1] - speed[0]) > kSlips) {
+        if (std::abs(speed[1] - speed[0]) > kSlips * std::max(1.0, longest_leg(robot_) / kLongLeg)) {
             const bool front = std::abs(speed[0]) > std::abs(speed[1]);
             slipped_ = Grip{used_in_slip(front), front};
             release_at_ = time_ + kFeels;

@@ -67,4 +67,10 @@ InertialLoads inertial_loads(const Robot& robot, const Reference& target) {
     return out;
 }
 
+LegLoads friction_loads(const Leg& leg, int pair, const Planned& rate) {
+    const double thigh = rate.joints[2 * pair], calf = rate.joints[2 * pair + 1];
+    const double wheel = rate.wheels[pair] / leg.wheel.radius - rate.pitch - thigh - calf;  // against the calf
+    return {leg.thigh_motor.damping * thigh, leg.calf_motor.damping * calf, leg.wheel_motor.damping * wheel};
+}
+
 }  // namespace stairwright::control

@@ -17,4 +17,7 @@ struct InertialLoads {
 
 InertialLoads inertial_loads(const Robot& robot, const Reference& target);
 
+// What the viscous friction of a leg's motors takes at planned rates.
+LegLoads friction_loads(const Leg& leg, int pair, const Planned& rate);
+
 }  // namespace stairwright::control

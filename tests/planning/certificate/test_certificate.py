@@ -19,6 +19,7 @@ from stairwright.planning.certificate.equilibrium import (
     near_faces,
     touching,
 )
+from tests.shapely_checker import run_out
 
 
 def rays_of(contacts, friction):
@@ -88,7 +89,7 @@ def test_touching_faces_are_those_that_shapely_finds():
     x = np.cumsum(rng.choice([0.0, 0.02, 0.1], 40)) - 1.0
     vertices = np.stack([x, np.cumsum(rng.normal(0.0, 0.05, 40))], axis=1)
     vertices = vertices[np.append(True, np.any(np.diff(vertices, axis=0) != 0.0, axis=1))]
-    line = shapely.linestrings(vertices)
+    line = shapely.linestrings(run_out(vertices))
     centres = rng.uniform([x[0] - 0.1, -0.5], [x[-1] + 0.1, 0.5], (400, 2))
     points, normals, found = touching(vertices, centres, 0.1, np.full(400, 0.1))
     distance = shapely.distance(line, shapely.points(centres))

@@ -18,6 +18,7 @@ from stairwright.planning.certificate.motion import Motion, Samples, sampled
 from stairwright.robot import kinematics as kin
 from stairwright.terrain.profile import Terrain, height_at
 from tests.robot.random_robots import random_robot
+from tests.shapely_checker import run_out
 
 
 def profile(seed):
@@ -88,8 +89,8 @@ class WithLine:
     """A motion and its ground for shapely."""
 
     def __init__(self, motion):
-        self.vertices, self.robot, self.body = motion.vertices, motion.robot, motion.body
-        self.line = shapely.linestrings(motion.vertices)
+        self.vertices, self.robot, self.body = run_out(motion.vertices), motion.robot, motion.body
+        self.line = shapely.linestrings(self.vertices)
 
 
 @pytest.mark.slow

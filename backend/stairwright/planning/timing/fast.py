@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Self
 
@@ -9,20 +10,22 @@ import numpy as np
 
 from stairwright import _core
 from stairwright.arrays import Floats
-from stairwright.planning.certificate.dynamics import WINDOW, Dynamics, dynamics_of
+from stairwright.planning.certificate.dynamics import WINDOW, dynamics_of
 from stairwright.planning.plan import Plan, Timing, plan_id
 from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.smoothing.path_timing import standing_effort
+from stairwright.planning.standing import scale
 from stairwright.terrain.wheel_path import wheel_path
 
 from .limits import LimitName, Limits, Pace, limits_of
-from .moving_robot import MovingRobot, moving_robot
+from .moving_robot import MovingRobot, moving_robot, reach_of
 from .path_position import path_positions
 
 SLOWEST = 0.01  # m/s along the path, where a plan starts and ends
 _ROUNDS = 8  # of slowing down where a plan would not be certified
 _SLOWER = 0.8  # each time
 _BINDS = 0.02  # of a cap or of a row's room
+_STRAINED = 0.8  # of a motor's torque for standing, up to which motion may take half of the rest
 
 
 @dataclass(frozen=True)
@@ -45,10 +48,11 @@ class TimingProblem:
         robot = plan.robot_description
         path = wheel_path(plan.terrain, robot.wheel.radius)
         line = reference(plan, joint_rate=None)
-        motion = moving_robot(line)
+        motion = moving_robot(line, reach_of(robot))
         progress = [pose.progress for pose in plan.poses]
         effort = np.interp(motion.progress, progress, standing_effort(plan))
-        limits = limits_of(motion, robot, path, plan.friction, effort, Pace.of(aggressiveness))
+        pace = Pace.of(aggressiveness).at_size(max(1.0, scale(robot)))
+        limits = limits_of(motion, robot, path, plan.friction, effort, pace)
         return cls(motion, limits, np.interp(progress, line.progress, path_positions(line)))
 
     def times(self, squares: Floats) -> Floats:
@@ -75,11 +79,16 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
     """
     problem = TimingProblem.of(plan, aggressiveness)
     squares = fastest(problem)
+    most = 0.5 * (1.0 + np.maximum(standing_effort(plan), _STRAINED))
     for _ in range(_ROUNDS):
         found = dynamics_of(plan, problem.pose_times(squares))
-        if not (found.out_of_balance | found.overloaded).any():
+        failures: dict[LimitName, Floats] = {
+            "balance": found.time[found.out_of_balance],
+            "torque": found.time[found.share > most],
+        }
+        if not any(map(len, failures.values())):
             break
-        slow_down(problem, found, squares)
+        slow_down(problem, failures, squares)
         squares = fastest(problem)
     times = problem.pose_times(squares).tolist()
     names = binding(problem, squares)
@@ -95,17 +104,15 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
     return plan.model_copy(update={"id": plan_id(*asked), "poses": timed, "timing": timing})
 
 
-def slow_down(problem: TimingProblem, found: Dynamics, squares: Floats) -> None:
-    """Lower caps where the certificate's own dynamics find too much asked for.
+def slow_down(
+    problem: TimingProblem, failures: Mapping[LimitName, Floats], squares: Floats
+) -> None:
+    """Lower caps at the times [s] where the certificate's own dynamics find too much asked for.
 
     Rows hold at samples of the path, with differences over a part of it; the certificate judges
     poses, with differences over a time.
     """
     passed, caps = problem.times(squares), problem.limits.caps
-    failures: dict[LimitName, Floats] = {
-        "balance": found.time[found.out_of_balance],
-        "torque": found.time[found.overloaded],
-    }
     for name, times in failures.items():
         near = np.zeros(len(passed), np.bool_)
         for time in times:

@@ -6,8 +6,9 @@ path is certified at rest.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -21,15 +22,19 @@ from stairwright.terrain.wheel_path import WheelPath
 from .moving_robot import MovingRobot
 
 LimitName = Literal[
-    "balance", "torque", "acceleration", "joint_speed", "pitch_speed", "wheel_speed"
+    "balance", "torque", "acceleration", "joint_speed", "pitch_speed", "wheel_speed", "impact"
 ]
 
 WHEEL_SPEED_SHARE = 0.85  # of the no-load speed: the rest leaves torque
 LEG_SPEED_SHARE = 0.5  # of what the motor reaches under the load of standing
-TORQUE_SHARE = 0.9  # of the motors' torque that standing and moving may take together
-FRICTION_SHARE = 0.95  # of the friction, as the controller keeps to
+# Of the motors' torque and of the friction (of which the controller keeps to 0.95), for standing
+# and moving together: the rest is what the controller corrects with.
+TORQUE_SHARE = 0.8
+FRICTION_SHARE = 0.85
 _LEAST_SPARE = 0.02  # of a motor's torque that counts where there is hardly any
 _STILL = 1e-9
+_NEAR = 1e-4  # m to either side of a corner
+_MEETS = 0.01  # m before and behind a corner where a wheel counts as meeting it
 
 
 @dataclass(frozen=True)
@@ -43,6 +48,7 @@ class Pace:
         joint_acceleration: Of thighs and calves [rad/s^2].
         joint_speed: Of thighs and calves [rad/s].
         pitch_speed: [rad/s].
+        impact_speed: Of a wheel towards a face that it meets [m/s].
     """
 
     sway: float
@@ -51,6 +57,7 @@ class Pace:
     joint_acceleration: float
     joint_speed: float
     pitch_speed: float
+    impact_speed: float
 
     @classmethod
     def of(cls, aggressiveness: float) -> Pace:
@@ -58,9 +65,25 @@ class Pace:
         ends = zip(astuple(GENTLE), astuple(HARD), strict=True)
         return cls(*(low * (high / low) ** aggressiveness for low, high in ends))
 
+    def at_size(self, large: float) -> Pace:
+        """Of a robot whose legs are `large` (>= 1) times those these were chosen with.
 
-GENTLE = Pace(0.5, 0.25, 1.5, 8.0, 1.5, 0.8)
-HARD = Pace(0.8, 2.0, 10.0, 60.0, 9.0, 3.0)
+        At equal accelerations of the CoM (equal Froude numbers) angles accelerate in inverse
+        proportion to lengths, and turn in inverse proportion to their root.
+        """
+        root = math.sqrt(large)
+        return replace(
+            self,
+            pitch_acceleration=self.pitch_acceleration / large,
+            joint_acceleration=self.joint_acceleration / large,
+            joint_speed=self.joint_speed / root,
+            pitch_speed=self.pitch_speed / root,
+            impact_speed=self.impact_speed * root,
+        )
+
+
+GENTLE = Pace(0.5, 0.25, 1.5, 8.0, 1.5, 0.8, 0.1)
+HARD = Pace(0.65, 2.0, 10.0, 60.0, 9.0, 3.0, 0.5)
 
 
 @dataclass(frozen=True)
@@ -101,7 +124,9 @@ def limits_of(
     ]
     names = tuple(name for name, rows in groups for _ in range(rows.shape[1]))
     rows = np.ascontiguousarray(np.concatenate([rows for _, rows in groups], axis=1))
-    return Limits(rows, names, _caps(motion, robot, effort, pace))
+    caps = _caps(motion, robot, effort, pace)
+    caps["impact"] = _impact_cap(motion, path, pace)
+    return Limits(rows, names, caps)
 
 
 def _both_ways(slope: Floats, bend: Floats, room: Floats) -> list[Floats]:
@@ -135,3 +160,20 @@ def _caps(motion: MovingRobot, robot: Robot, effort: Floats, pace: Pace) -> dict
         "pitch_speed": cap(pace.pitch_speed, np.abs(motion.first[:, PITCH])),
         "wheel_speed": cap(wheel, np.abs(motion.first[:, WHEELS]).max(axis=1)),
     }
+
+
+def _impact_cap(motion: MovingRobot, path: WheelPath, pace: Pace) -> Floats:
+    """Largest x (n,) with which wheels meet the next face at a concave corner."""
+    cap = np.full(len(motion.position), 1e6)
+    before, after = (path.centres(path.corners + side) for side in (-_NEAR, _NEAR))
+    at = path.centres(path.corners)
+    into, out = at - before, after - at
+    sines = np.abs(into[:, 0] * out[:, 1] - into[:, 1] * out[:, 0]) / _NEAR**2
+    for pair in (0, 1):
+        places = motion.values[:, WHEELS][:, pair]
+        rates = np.abs(motion.first[:, WHEELS][:, pair])
+        for corner, sine in zip(path.corners, sines, strict=True):
+            near = np.abs(places - corner) <= _MEETS
+            most = (pace.impact_speed / np.maximum(sine * rates[near], _STILL)) ** 2
+            cap[near] = np.minimum(cap[near], most)
+    return cap

@@ -8,10 +8,17 @@ import numpy as np
 
 from stairwright.arrays import Floats
 from stairwright.planning.poses.pose_reference import Reference
+from stairwright.planning.standing import scale
+from stairwright.robot.description import Robot
 
 from .path_position import even_grid, path_positions, slopes
 
-REACH = 0.0125  # m; derivatives are differences over this far, both ways
+_REACH = 0.0125  # m, for legs of 0.4 m or less: more than poses of a plan are apart
+
+
+def reach_of(robot: Robot) -> float:
+    """How far, both ways, differences are taken for derivatives [m]."""
+    return _REACH * max(1.0, scale(robot))
 
 
 @dataclass(frozen=True)
@@ -38,16 +45,16 @@ class MovingRobot:
         return float(self.position[1] - self.position[0])
 
 
-def moving_robot(reference: Reference) -> MovingRobot:
-    """The robot along `reference`."""
+def moving_robot(reference: Reference, reach: float) -> MovingRobot:
+    """The robot along `reference`; for `reach` see `reach_of`."""
     at = path_positions(reference)
     grid = even_grid(at)
     columns = reference.planned
-    first = slopes(grid, at, columns, REACH)
+    first = slopes(grid, at, columns, reach)
     return MovingRobot(
         position=grid,
         progress=np.interp(grid, at, reference.progress),
         values=np.column_stack([np.interp(grid, at, column) for column in columns.T]),
         first=np.ascontiguousarray(first),
-        second=np.ascontiguousarray(slopes(grid, grid, first, REACH)),
+        second=np.ascontiguousarray(slopes(grid, grid, first, reach)),
     )

@@ -40,3 +40,14 @@ def slopes(grid: Floats, at: Floats, values: Floats, reach: float) -> Floats:
     rise = [np.interp(high, at, each) - np.interp(low, at, each) for each in columns]
     slope: Floats = (np.array(rise) / (high - low)).T.reshape(len(grid), *values.shape[1:])
     return slope
+
+
+def evened(grid: Floats, values: Floats, reach: float) -> Floats:
+    """Means (n,) of values (n,) over `reach` both ways.
+
+    Between two poses a plan's times tell one speed, which makes a staircase of speeds. Its slopes
+    over `reach` still jump where another pose comes within it, their means do not.
+    """
+    steps = 0.5 * (values[1:] + values[:-1]) * np.diff(grid)
+    area = np.concatenate([[0.0], np.cumsum(steps)])
+    return slopes(grid, grid, area, reach)

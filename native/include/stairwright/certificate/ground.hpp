@@ -26,7 +26,7 @@ class Ground {
 
     // Whether there is ground below all points that are no farther than `reach` from `p`.
     bool spans(Vec2 p, double reach) const { return p.x - reach >= vertices_.front().x && p.x + reach <= vertices_.back().x; }
-    // Whether `p` lies above the ground; beyond the profile's ends there is none.
+    // Whether `p` lies above the ground, which goes on level for a metre beyond its ends.
     bool above(Vec2 p) const;
     // Distance [m] of a convex shape by its corners (see shapes.hpp), 0 where they meet; `enough` if it is no less.
     double distance(std::span<const Vec2> corners, double enough = std::numeric_limits<double>::infinity()) const;
