@@ -30,15 +30,16 @@ Patch = tuple[object, str, Any]
 _track = governor.track
 
 
-def _without_rows(name: str) -> Callable[..., Limits]:
-    """`limits_of` less the rows of one name."""
+def _without(name: str) -> Callable[..., Limits]:
+    """`limits_of` less the rows and the cap of one name."""
     whole = fast.limits_of
 
     def fewer(*args: Any) -> Limits:
         limits = whole(*args)
         kept = [k for k, each in enumerate(limits.names) if each != name]
         rows = np.ascontiguousarray(limits.rows[:, kept])
-        return Limits(rows, tuple(limits.names[k] for k in kept), limits.caps)
+        caps = {each: cap for each, cap in limits.caps.items() if each != name}
+        return Limits(rows, tuple(limits.names[k] for k in kept), caps)
 
     return fewer
 
@@ -53,12 +54,13 @@ def _without_acceleration(*args: Any, **kwargs: Any) -> governor.Track:
 PARTS: dict[str, list[Patch]] = {
     "everything": [],
     "path not searched for speed": [(PathWeights, "for_speed", lambda weights: weights)],
-    "no rows of balance": [(fast, "limits_of", _without_rows("balance"))],
-    "no rows of torque": [(fast, "limits_of", _without_rows("torque"))],
-    "no bounds on accelerations": [(fast, "limits_of", _without_rows("acceleration"))],
+    "no rows of balance": [(fast, "limits_of", _without("balance"))],
+    "no rows of torque": [(fast, "limits_of", _without("torque"))],
+    "no bounds on accelerations": [(fast, "limits_of", _without("acceleration"))],
+    "no bound on impacts": [(fast, "limits_of", _without("impact"))],
     "not slowed down for the certificate": [(fast, "_ROUNDS", 0)],
     "accelerations not fed forward": [(governor, "track", _without_acceleration)],
-    "controller differentiates over 5 mm": [(governor, "REACH", governor.RATE_REACH)],
+    "controller differentiates over 5 mm": [(governor, "reach_of", lambda _: governor.RATE_REACH)],
 }
 
 
