@@ -9,8 +9,11 @@ With `--unlike`, parts of a robot that usually go together do not: legs and whee
 three times their mass, rotors of up to five times their inertia or none, slow and fast motors, a
 narrow or wide track, rear legs that differ from the front ones.
 
-python benchmarks/random_robots.py [--first 0] [--count 100] [--unlike] [--processes 2]
-    [--json FILE]
+With `--varied` the friction is one of 0.35 to 1.1, and half of the plans have weights from a
+thirtieth to 30.
+
+python benchmarks/random_robots.py [--first 0] [--count 100] [--unlike] [--varied] [--timing fast]
+    [--processes 2] [--json FILE]
 """
 
 from __future__ import annotations
@@ -150,12 +153,26 @@ def random_robot(seed: int, unlike: bool = False) -> sw.Robot:
     return sw.Robot.model_validate(data)
 
 
-def one(seed: int, unlike: bool = False) -> dict[str, Any]:
-    robot = random_robot(seed, unlike)
+def varied(seed: int) -> dict[str, Any]:
+    """Friction and weights of a plan."""
+    random = np.random.default_rng([7, seed])
+    weights = {}
+    friction = float(random.choice([0.35, 0.5, 0.7, 0.9, 1.1]))
+    if random.random() < 0.5:
+        for name in ("com_margin", "clearance", "torque", "smoothness", "pitch"):
+            if random.random() < 0.5:
+                weights[name] = factor(random, 30.0)
+    return {"friction": friction, "weights": weights}
+
+
+def one(seed: int, options: argparse.Namespace) -> dict[str, Any]:
+    robot = random_robot(seed, options.unlike)
     kind, terrain = random_profile(seed)
     scale = min(leg.reach for leg in robot.legs) / 0.4
     begun = time.perf_counter()
-    plan = sw.plan({"points": [(x * scale, z * scale) for x, z in terrain.points]}, robot, 0.6)
+    asked = varied(seed) if options.varied else {"friction": 0.6}
+    points = [(x * scale, z * scale) for x, z in terrain.points]
+    plan = sw.plan({"points": points}, robot, timing=options.timing, **asked)
     row = {
         "seed": seed, "kind": kind, "like": PRESETS[seed % len(PRESETS)], "planned": plan.feasible,
         "seconds": time.perf_counter() - begun, "binding": plan.binding and plan.binding.quantity,
@@ -175,13 +192,15 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--unlike", action="store_true")
+    parser.add_argument("--varied", action="store_true")
+    parser.add_argument("--timing", choices=("steady", "fast"), default="steady")
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--json", type=Path)
     options = parser.parse_args()
     seeds = range(options.first, options.first + options.count)
     with ProcessPoolExecutor(options.processes) as pool:
         rows = []
-        for row in pool.map(partial(one, unlike=options.unlike), seeds):
+        for row in pool.map(partial(one, options=options), seeds):
             rows.append(row)
             if row["outcome"] != "success" or not row["certified"]:
                 print(row, flush=True)

@@ -10,6 +10,7 @@ import stairwright as sw
 from stairwright.errors import InputError
 from stairwright.planning import path_planner
 from stairwright.planning.plan import Plan
+from stairwright.planning.timing import fast as timing
 from stairwright.planning.timing.fast import hastened
 from stairwright.planning.timing.limits import Pace
 from stairwright.planning.timing.path_position import evened
@@ -91,6 +92,16 @@ def test_speeds_of_poses_far_apart_rise_evenly() -> None:
         np.ptp(np.gradient(each, grid)[60:-60]) for each in (evened(grid, once, 0.05), once)
     )
     assert ripple < 0.05 < 0.15 < bursts
+
+
+def test_however_hard_it_is_driven_the_certificate_holds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where it takes many rounds of slowing down: here each one hardly slows."""
+    reckless = Pace(0.9, 30.0, 300.0, 2000.0, 90.0, 30.0, 9.0)
+    monkeypatch.setattr(Pace, "of", lambda _: reckless)
+    monkeypatch.setattr(timing, "_SLOWER", 0.985)
+    plan = sw.plan("three-stairs-up", "a1_wheeled_x", timing="fast")
+    assert plan.feasible
+    assert plan.certificate.passed
 
 
 def test_inertia_tips_nothing(fast: Plan) -> None:

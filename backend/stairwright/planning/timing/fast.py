@@ -22,8 +22,10 @@ from .moving_robot import MovingRobot, moving_robot, reach_of
 from .path_position import path_positions
 
 SLOWEST = 0.01  # m/s along the path, where a plan starts and ends
-_ROUNDS = 8  # of slowing down where a plan would not be certified
+_ROUNDS = 40  # of slowing down where a plan would not be certified; few need more than 8
 _SLOWER = 0.8  # each time
+_CLEAR = 0.01  # m of clearance, for legs of 0.4 m or less, below which it is driven gently
+_LEAST_EASE = 0.3
 _BINDS = 0.02  # of a cap or of a row's room
 _STRAINED = 0.8  # of a motor's torque for standing, up to which motion may take half of the rest
 
@@ -51,8 +53,10 @@ class TimingProblem:
         motion = moving_robot(line, reach_of(robot))
         progress = [pose.progress for pose in plan.poses]
         effort = np.interp(motion.progress, progress, standing_effort(plan))
-        pace = Pace.of(aggressiveness).at_size(max(1.0, scale(robot)))
-        limits = limits_of(motion, robot, path, plan.friction, effort, pace)
+        large = max(1.0, scale(robot))
+        pace = Pace.of(aggressiveness).at_size(large)
+        ease = np.interp(motion.progress, progress, _ease(plan, large))
+        limits = limits_of(motion, robot, path, plan.friction, effort, pace, ease)
         return cls(motion, limits, np.interp(progress, line.progress, path_positions(line)))
 
     def times(self, squares: Floats) -> Floats:
@@ -68,6 +72,13 @@ class TimingProblem:
     def pose_times(self, squares: Floats) -> Floats:
         """When each pose is reached (p,) [s]."""
         return np.interp(self.poses, self.motion.position, self.times(squares))
+
+
+def _ease(plan: Plan, large: float) -> Floats:
+    """Share (n,) of accelerations that is allowed at each pose: less near the ground."""
+    clearance = np.array([pose.margins.clearance for pose in plan.poses])
+    ease: Floats = np.clip(clearance / (_CLEAR * large), _LEAST_EASE, 1.0)
+    return ease
 
 
 def hastened(plan: Plan, aggressiveness: float) -> Plan:

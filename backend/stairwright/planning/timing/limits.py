@@ -102,6 +102,7 @@ def limits_of(
     friction: float,
     effort: Floats,
     pace: Pace,
+    ease: Floats,
 ) -> Limits:
     """Limits along `motion`.
 
@@ -112,6 +113,7 @@ def limits_of(
         friction: Coulomb friction of all faces.
         effort: (n,) largest share of a leg motor's torque that standing takes.
         pace: How hard it may be driven.
+        ease: (n,) share of its accelerations that is allowed.
     """
     balance, torque = _core.dynamic_limits(
         robot.native, path.native, friction, motion.values, motion.first, motion.second,
@@ -120,7 +122,7 @@ def limits_of(
     groups: list[tuple[LimitName, Floats]] = [
         ("balance", balance),
         ("torque", torque),
-        ("acceleration", np.stack(list(_accelerations(motion, pace)), axis=1)),
+        ("acceleration", np.stack(list(_accelerations(motion, pace, ease)), axis=1)),
     ]
     names = tuple(name for name, rows in groups for _ in range(rows.shape[1]))
     rows = np.ascontiguousarray(np.concatenate([rows for _, rows in groups], axis=1))
@@ -134,15 +136,14 @@ def _both_ways(slope: Floats, bend: Floats, room: Floats) -> list[Floats]:
     return [np.stack([-side * bend, -side * slope, room], axis=-1) for side in (1.0, -1.0)]
 
 
-def _accelerations(motion: MovingRobot, pace: Pace) -> Iterator[Floats]:
+def _accelerations(motion: MovingRobot, pace: Pace, ease: Floats) -> Iterator[Floats]:
     """Bounds, both ways, on what the controller has to follow."""
     most = np.full(motion.first.shape[1], np.inf)
     most[COM] = pace.acceleration
     most[PITCH] = pace.pitch_acceleration
     most[JOINTS] = pace.joint_acceleration
-    room = np.ones(len(motion.position))
     for k in np.flatnonzero(np.isfinite(most)):
-        yield from _both_ways(motion.first[:, k] / most[k], motion.second[:, k] / most[k], room)
+        yield from _both_ways(motion.first[:, k] / most[k], motion.second[:, k] / most[k], ease)
 
 
 def _caps(motion: MovingRobot, robot: Robot, effort: Floats, pace: Pace) -> dict[LimitName, Floats]:
