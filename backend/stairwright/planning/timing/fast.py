@@ -38,11 +38,13 @@ class TimingProblem:
         motion: Along the path.
         limits: Of speed and acceleration.
         poses: (p,) position of the plan's poses [m].
+        effort: (p,) largest share of a leg motor's torque that standing takes at them.
     """
 
     motion: MovingRobot
     limits: Limits
     poses: Floats
+    effort: Floats
 
     @classmethod
     def of(cls, plan: Plan, aggressiveness: float) -> Self:
@@ -52,12 +54,14 @@ class TimingProblem:
         line = reference(plan, joint_rate=None)
         motion = moving_robot(line, reach_of(robot))
         progress = [pose.progress for pose in plan.poses]
-        effort = np.interp(motion.progress, progress, standing_effort(plan))
+        effort = standing_effort(plan)
         large = max(1.0, scale(robot))
         pace = Pace.of(aggressiveness).at_size(large)
         ease = np.interp(motion.progress, progress, _ease(plan, large))
-        limits = limits_of(motion, robot, path, plan.friction, effort, pace, ease)
-        return cls(motion, limits, np.interp(progress, line.progress, path_positions(line)))
+        standing = np.interp(motion.progress, progress, effort)
+        limits = limits_of(motion, robot, path, plan.friction, standing, pace, ease)
+        poses = np.interp(progress, line.progress, path_positions(line))
+        return cls(motion, limits, poses, effort)
 
     def times(self, squares: Floats) -> Floats:
         """When each sample is reached (n,) [s]: constant acceleration between two."""
@@ -90,7 +94,7 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
     """
     problem = TimingProblem.of(plan, aggressiveness)
     squares = fastest(problem)
-    most = 0.5 * (1.0 + np.maximum(standing_effort(plan), _STRAINED))
+    most = 0.5 * (1.0 + np.maximum(problem.effort, _STRAINED))
     for _ in range(_ROUNDS):
         found = dynamics_of(plan, problem.pose_times(squares))
         failures: dict[LimitName, Floats] = {
