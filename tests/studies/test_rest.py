@@ -167,10 +167,9 @@ def test_cancelled_and_gone_on_with(api: httpx.Client) -> None:
     again = api.post("/studies", json=LONG).json()
     assert (again["id"], again["state"]) == (name, "queued")
     while (state := api.get(f"/studies/{name}").json())["state"] != "running" or (
-        state["done"] <= kept
+        state["done"] <= kept or state["eta"] is None  # its pace is known after its first batch
     ):
         time.sleep(0.1)
-    assert state["eta"] is not None
     plan = api.post("/plans", json={"terrain": "curb-015"})  # plans do not wait meanwhile
     assert plan.status_code == 200
     assert api.delete(f"/studies/{name}").status_code == 204
