@@ -116,7 +116,7 @@ def test_arrows_read_cells_and_space_keeps_one(room: Product) -> None:
     page = room.page
     canvas = _canvas(page)
     canvas.focus()
-    for key in ("ArrowLeft", "ArrowDown", "ArrowDown"):
+    for key in ("Escape", "ArrowLeft", "ArrowDown", "ArrowDown", "ArrowLeft"):
         page.keyboard.press(key)
     said = canvas.locator("[aria-live]")
     expect(said).to_have_text(re.compile("^rise 0.15 m, tread 0.26 m: feasible, com margin"))

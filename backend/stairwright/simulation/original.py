@@ -111,8 +111,8 @@ def build_original(
     Raises:
         InputError: If its trunk can move in some directions only.
     """
-    spec, _, lost = read_spec(upload, Notes())
-    source = reading.source
+    read = read_spec(upload, Notes())
+    spec, source = read.spec, reading.source
     bodies, joints = list(spec.bodies), _by_id(spec, source.model)
     base = _base(reading)
     for k, body in enumerate(bodies[1:], 1):
@@ -135,7 +135,7 @@ def build_original(
     wheels = [int(source.model.jnt_bodyid[reading.legs[leg].chain.wheel]) for leg in LEGS]
     planes = _planes(reading, wheels)
     for leg, wheel, plane in zip(LEGS, wheels, planes, strict=True):
-        if any(body is bodies[wheel] for body in lost) or not list(bodies[wheel].geoms):
+        if any(body is bodies[wheel] for body in read.lost) or not list(bodies[wheel].geoms):
             _add_ball(bodies[wheel], plane, robot.wheel.radius)
         labels[bodies[wheel].name] = f"{leg}_wheel"
     chosen = [leg.chain for leg in (reading.legs[name] for name in LEGS)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import struct
 import subprocess
 import sys
@@ -120,6 +121,14 @@ def test_a_mesh_that_was_sent_is_read(tmp_path: Path) -> None:
     (tmp_path / "meshes").mkdir()
     (tmp_path / "meshes" / "fin.obj").write_text(TETRA)
     assert sw.import_robot(tmp_path / "robot.xml").robot.trunk == made.robot.trunk
+
+
+def test_a_mass_that_only_a_mesh_tells_is_asked_for() -> None:
+    text = MJCF.replace("<asset>", '<asset><mesh name="fin" file="fin.obj"/>')
+    thigh = r'(<body name="FL_thigh"[^>]*>)<inertial[^>]*/>'
+    text = re.sub(thigh, r'\1<geom type="mesh" mesh="fin"/>', text)
+    with pytest.raises(InputError, match="had the mass of FL_thigh: send the file in a zip with"):
+        read(Upload("a.xml", text.encode()), {})
 
 
 def test_includes_are_read_from_the_zip_and_only_once() -> None:

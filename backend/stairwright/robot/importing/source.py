@@ -75,11 +75,25 @@ class Source:
         mujoco.mj_comPos(self.model, self.data)
 
 
-def read_spec(upload: Upload, notes: Notes) -> tuple[Any, urdf.Urdf | None, list[Any]]:
-    """An editable MuJoCo specification of a robot file that needs no file.
+@dataclass
+class Specification:
+    """A robot file before it is compiled; it needs no other file.
 
-    Returns:
-        The specification, URDF's own facts, and the body of each colliding shape left out.
+    Attributes:
+        spec: MuJoCo's editable specification.
+        own: URDF's own facts; None of MJCF.
+        lost: The body of each colliding shape left out.
+        weightless: Bodies that had the mass of a mesh that was not sent.
+    """
+
+    spec: Any
+    own: urdf.Urdf | None
+    lost: list[Any] = field(default_factory=list)
+    weightless: list[str] = field(default_factory=list)
+
+
+def read_spec(upload: Upload, notes: Notes) -> Specification:
+    """Read a robot file.
 
     Raises:
         InputError: If it is no robot file.
@@ -103,22 +117,25 @@ def read_spec(upload: Upload, notes: Notes) -> tuple[Any, urdf.Urdf | None, list
         raise InputError(
             f"more than {_MOST_BODIES} bodies or {_MOST_GEOMS} shapes: no robot", ("file",)
         )
-    return spec, own, _drop_unseen(spec, upload, notes)
+    read = Specification(spec, own)
+    _drop_unseen(read, upload, notes)
+    return read
 
 
-def _drop_unseen(spec: Any, upload: Upload, notes: Notes) -> list[Any]:
-    """Delete shapes that nobody needs or whose mesh is missing; the bodies that lost one."""
+def _drop_unseen(read: Specification, upload: Upload, notes: Notes) -> None:
+    """Delete shapes that nobody needs or whose mesh is missing, and tell what bodies lose by it."""
+    spec, files = read.spec, []
     missing = provide(spec, upload)
-    lost, files, weightless = [], [], []
     for geom in list(spec.geoms):
         kind, body = int(geom.type), geom.parent
         touches = bool(geom.contype or geom.conaffinity)
         absent = kind == _MESH and geom.meshname in missing
         if absent and touches:
-            lost.append(body)
+            read.lost.append(body)
             files.append(missing[geom.meshname])
-        if absent and not body.explicitinertial and spec.worldbody is not body:
-            weightless.append(body.name)
+        weighs = not body.explicitinertial and spec.worldbody is not body
+        if absent and weighs and body.name not in read.weightless:
+            read.weightless.append(body.name)
         if absent or (kind not in _SHAPES and kind != _PLANE):
             spec.delete(geom)
     used = {geom.meshname for geom in spec.geoms if int(geom.type) == _MESH}
@@ -130,9 +147,8 @@ def _drop_unseen(spec: Any, upload: Upload, notes: Notes) -> list[Any]:
             "collision meshes that were not sent or cannot be read (STL, OBJ, DAE, PLY and OFF "
             f"can): {listed(sorted(set(files)))}"
         )
-    if weightless:
-        notes.warn(f"{listed(weightless)}: the mass of a mesh that was not sent is missing")
-    return lost
+    if read.weightless:
+        notes.warn(f"{listed(read.weightless)}: the mass of a mesh that was not sent is missing")
 
 
 def compile_source(upload: Upload, notes: Notes) -> Source:
@@ -141,13 +157,20 @@ def compile_source(upload: Upload, notes: Notes) -> Source:
     Raises:
         InputError: If MuJoCo refuses it or its numbers are out of all bounds.
     """
-    spec, own, lost = read_spec(upload, notes)
+    read = read_spec(upload, notes)
+    spec, own = read.spec, read.own
     try:
         model = spec.compile()
     except (ValueError, RuntimeError) as error:
-        raise InputError(f"MuJoCo refuses it: {_reason(error)}", ("file",)) from None
+        why = f"MuJoCo refuses it: {_reason(error)}"
+        if read.weightless:
+            why += (
+                f"; meshes that were not sent had the mass of {listed(read.weightless)}: send the "
+                "file in a zip with them"
+            )
+        raise InputError(why, ("file",)) from None
     unseen: dict[int, int] = {}
-    for body in lost:
+    for body in read.lost:
         unseen[int(body.id)] = unseen.get(int(body.id), 0) + 1
     _check_numbers(model)
     stem = PurePosixPath(upload.name).stem
