@@ -132,6 +132,18 @@ def test_an_arm_that_lies_on_the_trunk_does_not_collide_with_it() -> None:
     assert [(own.labels[a], own.labels[b]) for a, b in touching] == []
 
 
+def test_shapes_that_overlap_as_it_stands_do_not_collide() -> None:
+    """Makers draw a trunk over the hips' motors, and train without collisions of their own."""
+    text, machine = as_read(mjcf(Design()).replace('size="0.19 0.05 0.06"', 'size="0.19 0.2 0.06"'))
+    own = built(text, machine)
+    seen = Mirror(own)
+    seen.qpos[:4] = 0.3, 0.0, 5.0, 1.0
+    planar = kinematics.standing_joints(machine)
+    seen.qpos[7:] = np.insert(planar[[0, 1, 0, 1, 2, 3, 2, 3]], [2, 4, 6, 8], 0.0)
+    seen.place()
+    assert seen.data.ncon == 0
+
+
 def test_what_does_not_fit_is_refused() -> None:
     text, _ = robot(False, "mjcf")
     plan = sw.plan(CURB, "a1_wheeled")

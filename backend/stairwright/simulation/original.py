@@ -2,7 +2,8 @@
 
 What is ours: the terrain, physics settings and contact sensors, torque motors on the 12 joints, a
 position servo on each joint that is held (abduction), and a free joint where the file has none. A
-wheel whose mesh is missing touches as a ball of the plan's radius.
+wheel whose mesh is missing touches as a ball of the plan's radius. Parts that overlap as the robot
+stands do not touch each other: so their shapes are drawn, and so MoveIt takes them.
 
 How joints are mapped: `robot.importing` finds thigh, calf and wheel of each leg by the tree's shape
 and says sign and offset of each: ours = sign * theirs + offset, and torques take the same sign.
@@ -10,9 +11,8 @@ and says sign and offset of each: ours = sign * theirs + offset, and torques tak
 
 from __future__ import annotations
 
-import itertools
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import mujoco
@@ -28,13 +28,15 @@ from stairwright.robot.importing.read import read_closely
 from stairwright.robot.importing.report import JointMap, Notes
 from stairwright.robot.importing.source import read_spec
 from stairwright.robot.importing.upload import Upload, unpack
+from stairwright.robot.kinematics import standing_joints
 from stairwright.robot.mujoco_model import add_contact_sensors, set_physics, stiffen_contacts
 from stairwright.robot.mujoco_terrain import TERRAIN_HALF_WIDTH, add_terrain
 from stairwright.terrain.profile import Terrain
 
+from .original_shapes import BALLS, add_ball, join_held
+
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 _ALIKE = 1e-3  # m between the plan's robot and the file's
-_BALLS = 2  # MuJoCo's bit of what they collide with
 _GIVES = 0.05  # rad at which an abduction servo gives its full torque
 _SERVO_TORQUE = 0.5  # of weight times leg length, where the file has no limit
 
@@ -122,7 +124,7 @@ def build_original(
     for geom in spec.geoms:
         geom.name = ""
     labels = _labels(reading, bodies)
-    _join(spec, reading, bodies, labels)
+    join_held(spec, reading, bodies, labels)
     _remove_others(spec, bodies, source.model, base)
     _set_free(bodies[source.model.body_rootid[base]])
     set_physics(spec)
@@ -131,12 +133,12 @@ def build_original(
         if mesh.name.startswith("terrain_"):
             mesh.scale = [1.0, 1.0, 1.0]
     for geom in spec.worldbody.geoms:
-        geom.conaffinity |= _BALLS
+        geom.conaffinity |= BALLS
     wheels = [int(source.model.jnt_bodyid[reading.legs[leg].chain.wheel]) for leg in LEGS]
     planes = _planes(reading, wheels)
     for leg, wheel, plane in zip(LEGS, wheels, planes, strict=True):
         if any(body is bodies[wheel] for body in read.lost) or not list(bodies[wheel].geoms):
-            _add_ball(bodies[wheel], plane, robot.wheel.radius)
+            add_ball(bodies[wheel], plane, robot.wheel.radius)
         labels[bodies[wheel].name] = f"{leg}_wheel"
     chosen = [leg.chain for leg in (reading.legs[name] for name in LEGS)]
     driven = [joints[j] for chain in chosen for j in (chain.thigh, chain.calf, chain.wheel)]
@@ -147,7 +149,7 @@ def build_original(
     at = [model.joint(joint.name) for joint in driven]
     frame, body = reading.frame, source.data.xmat[base].reshape(3, 3)
     axes = frame.axes @ body
-    return Original(
+    own = Original(
         model=model,
         maps=tuple(reading.joints[name] for name in JOINTS),
         positions=np.array([int(model.jnt_qposadr[joint.id]) for joint in at]),
@@ -163,6 +165,7 @@ def build_original(
         planes=planes,
         labels=[_label(model, geom, labels) for geom in range(model.ngeom)],
     )
+    return _apart(spec, own, robot)
 
 
 def _by_id(spec: Any, model: Any) -> list[Any]:
@@ -204,22 +207,27 @@ def _labels(reading: Reading, bodies: list[Any]) -> dict[str, str]:
     return found
 
 
-def _join(spec: Any, reading: Reading, bodies: list[Any], labels: dict[str, str]) -> None:
-    """What held joints part is one: it touches neither itself nor, as a leg's link, the next."""
-    model = reading.source.model
-    parts: dict[str, list[str]] = {}
-    for body in bodies[1:]:
-        if list(body.geoms):
-            parts.setdefault(labels[body.name], []).append(body.name)
-    parted = {labels[bodies[int(model.jnt_bodyid[joint])].name] for joint in reading.held}
-    pairs = [pair for part in parted for pair in itertools.combinations(parts.get(part, []), 2)]
-    for leg in LEGS:
-        chain = [f"{leg}_{part}" for part in ("thigh", "calf", "wheel")]
-        for first, second in itertools.pairwise(chain):
-            if not parted.isdisjoint((first, second)):
-                pairs += itertools.product(parts.get(first, []), parts.get(second, []))
-    for one, other in pairs:
-        spec.add_exclude(bodyname1=one, bodyname2=other)
+def _apart(spec: Any, own: Original, robot: Robot) -> Original:
+    """The same, where parts that overlap as the robot stands do not touch each other."""
+    model, data = own.model, mujoco.MjData(own.model)
+    planar = dict(
+        zip(("F_thigh", "F_calf", "R_thigh", "R_calf"), standing_joints(robot), strict=True)
+    )
+    for address, value in own.held.items():
+        data.qpos[address] = value
+    for name, theirs, address in zip(JOINTS, own.maps, own.positions, strict=True):
+        ours = planar.get(name[0] + name[2:], 0.0)
+        data.qpos[address] = theirs.sign * (ours - theirs.offset)
+    mujoco.mj_forward(model, data)
+    touching = np.sort(model.geom_bodyid[data.contact.geom[data.contact.dist < 0.0]])
+    overlaps = {(int(a), int(b)) for a, b in touching if a > 0}
+    if not overlaps:
+        return own
+    for first, second in overlaps:
+        spec.add_exclude(bodyname1=model.body(first).name, bodyname2=model.body(second).name)
+    model = spec.compile()
+    stiffen_contacts(model, own.wheels.tolist())
+    return replace(own, model=model)
 
 
 def _label(model: Any, geom: int, labels: dict[str, str]) -> str:
@@ -259,16 +267,6 @@ def _planes(reading: Reading, wheels: list[int]) -> Floats:
         place = reading.frame.origin + (leg.axes.T @ own) @ reading.frame.axes
         found.append((place - data.xpos[body]) @ data.xmat[body].reshape(3, 3))
     return np.array(found)
-
-
-def _add_ball(wheel: Any, place: Floats, radius: float) -> None:
-    """A ball is as wide as it is high, which no wheel is: it touches terrain and balls alone."""
-    for geom in list(wheel.geoms):
-        geom.contype = geom.conaffinity = 0
-    wheel.add_geom(
-        type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius, 0, 0], pos=place, contype=_BALLS,
-        conaffinity=_BALLS, mass=0.0, density=0.0, condim=3,
-    )  # fmt: skip
 
 
 def _add_motors(spec: Any, robot: Robot, driven: list[Any], held: list[str]) -> None:
