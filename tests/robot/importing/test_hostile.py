@@ -127,7 +127,9 @@ def test_a_mass_that_only_a_mesh_tells_is_asked_for() -> None:
     text = MJCF.replace("<asset>", '<asset><mesh name="fin" file="fin.obj"/>')
     thigh = r'(<body name="FL_thigh"[^>]*>)<inertial[^>]*/>'
     text = re.sub(thigh, r'\1<geom type="mesh" mesh="fin"/>', text)
-    with pytest.raises(InputError, match="had the mass of FL_thigh: send the file in a zip with"):
+    with pytest.raises(
+        InputError, match="a zip with its meshes: the mass of FL_thigh is theirs alone"
+    ):
         read(Upload("a.xml", text.encode()), {})
 
 

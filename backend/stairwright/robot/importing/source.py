@@ -164,10 +164,8 @@ def compile_source(upload: Upload, notes: Notes) -> Source:
     except (ValueError, RuntimeError) as error:
         why = f"MuJoCo refuses it: {_reason(error)}"
         if read.weightless:
-            why += (
-                f"; meshes that were not sent had the mass of {listed(read.weightless)}: send the "
-                "file in a zip with them"
-            )
+            bodies = listed(read.weightless)
+            why = f"send a zip with its meshes: the mass of {bodies} is theirs alone. {why}"
         raise InputError(why, ("file",)) from None
     unseen: dict[int, int] = {}
     for body in read.lost:
