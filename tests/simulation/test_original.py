@@ -138,8 +138,7 @@ def test_shapes_that_overlap_as_it_stands_do_not_collide() -> None:
     own = built(text, machine)
     seen = Mirror(own)
     seen.qpos[:4] = 0.3, 0.0, 5.0, 1.0
-    planar = kinematics.standing_joints(machine)
-    seen.qpos[7:] = np.insert(planar[[0, 1, 0, 1, 2, 3, 2, 3]], [2, 4, 6, 8], 0.0)
+    seen.qpos[7:] = kinematics.all_joints(kinematics.standing_joints(machine))
     seen.place()
     assert seen.data.ncon == 0
 

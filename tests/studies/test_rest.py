@@ -170,6 +170,7 @@ def test_cancelled_and_gone_on_with(api: httpx.Client) -> None:
         state["done"] <= kept or state["eta"] is None  # its pace is known after its first batch
     ):
         time.sleep(0.1)
+    assert state["eta"] > 0.0
     plan = api.post("/plans", json={"terrain": "curb-015"})  # plans do not wait meanwhile
     assert plan.status_code == 200
     assert api.delete(f"/studies/{name}").status_code == 204

@@ -16,6 +16,7 @@ from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.static_torques import static_torques
 from stairwright.robot import spatial
 from stairwright.robot.description import Robot
+from stairwright.robot.kinematics import all_joints
 
 from .retiming import Limits, Retimed, retime
 
@@ -69,9 +70,9 @@ def joint_commands(plan: Plan, rate: float) -> JointCommands:
     made = retime(motion.time, path, _limits(robot), rate)
     return JointCommands(
         time=made.time,
-        position=_twelve(made.values[:, _LEGS], made.values[:, _WHEELS]),
-        velocity=_twelve(made.rates[:, _LEGS], made.rates[:, _WHEELS]),
-        acceleration=_twelve(made.accelerations[:, _LEGS], made.accelerations[:, _WHEELS]),
+        position=all_joints(made.values[:, _LEGS], made.values[:, _WHEELS]),
+        velocity=all_joints(made.rates[:, _LEGS], made.rates[:, _WHEELS]),
+        acceleration=all_joints(made.accelerations[:, _LEGS], made.accelerations[:, _WHEELS]),
         effort=_bounded(robot, _mirrored(made)),
         base_position=np.insert(made.values[:, _TRUNK][:, :2], 1, 0.0, axis=1),
         base_quaternion=spatial.quaternion_y(made.values[:, _TRUNK][:, 2]),
@@ -89,13 +90,6 @@ def _limits(robot: Robot) -> Limits:
     acceleration[_PROGRESS] = PROGRESS_ACCELERATION
     tolerance[_LEGS] = TOLERANCE
     return Limits(speed, acceleration, jerk, tolerance)
-
-
-def _twelve(legs: Floats, wheels: Floats) -> Floats:
-    """The 12 joints (n, 12) of planar leg joints (n, 4) and the pairs' wheels (n, 2)."""
-    front = np.column_stack([legs[:, :2], wheels[:, :1]])
-    rear = np.column_stack([legs[:, 2:], wheels[:, 1:]])
-    return np.concatenate([front, front, rear, rear], axis=1)
 
 
 def _mirrored(made: Retimed) -> Floats:

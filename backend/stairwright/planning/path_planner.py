@@ -32,7 +32,7 @@ from stairwright.planning.smoothing.path_document import PathPoses, make_plan
 from stairwright.planning.smoothing.path_timing import path_parameter
 from stairwright.planning.smoothing.refine import Refined, refine
 from stairwright.planning.smoothing.repair import STAGES, Stage, repair
-from stairwright.planning.standing import StandingPose, find_standing_poses, scale
+from stairwright.planning.standing import StandingPose, enlargement, find_standing_poses
 from stairwright.planning.threads import still_wanted
 from stairwright.planning.timing.fast import TimingProblem
 from stairwright.planning.weights import PathWeights
@@ -47,7 +47,7 @@ STEADIER = 10.0  # times that of the CoM margin
 
 def thin_com_margin(robot: Robot) -> float:
     """CoM margin up to which a path of the robot is compared with others [m]."""
-    return THIN * max(1.0, scale(robot))
+    return THIN * enlargement(robot)
 
 
 def path_planner(

@@ -64,6 +64,11 @@ def scale(robot: Robot) -> float:
     return min(leg.reach for leg in robot.legs) / 0.4
 
 
+def enlargement(robot: Robot) -> float:
+    """The same for what grows with larger robots and stays as it is for smaller ones: 1 or more."""
+    return max(1.0, scale(robot))
+
+
 def stretches(path: WheelPath) -> tuple[tuple[float, float], tuple[float, float]]:
     """Begin and end of the first and of the last level stretch, as arc lengths [m].
 

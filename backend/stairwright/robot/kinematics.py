@@ -144,6 +144,19 @@ def standing_joints(robot: Robot) -> Floats:
     return inverse(robot, zero, zero, zero, wheels)
 
 
+def all_joints(legs: Floats, wheels: Floats | None = None) -> Floats:
+    """Positions or rates (..., 12) of the joints of FL, FR, RL, RR.
+
+    Args:
+        legs: (..., 4) planar joints: thigh and calf, front and rear.
+        wheels: (..., 2) of both pairs; by default at 0.
+    """
+    turned = np.zeros((*legs.shape[:-1], 2)) if wheels is None else wheels
+    front = np.concatenate([legs[..., :2], turned[..., :1]], axis=-1)
+    rear = np.concatenate([legs[..., 2:], turned[..., 1:]], axis=-1)
+    return np.concatenate([front, front, rear, rear], axis=-1)
+
+
 def limits(robot: Robot) -> Floats:
     """Limits (4, 2) of the planar joints [rad]."""
     front, rear = robot.joints.front, robot.joints.rear

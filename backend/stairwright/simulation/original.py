@@ -28,7 +28,7 @@ from stairwright.robot.importing.read import read_closely
 from stairwright.robot.importing.report import JointMap, Notes
 from stairwright.robot.importing.source import read_spec
 from stairwright.robot.importing.upload import Upload, unpack
-from stairwright.robot.kinematics import standing_joints
+from stairwright.robot.kinematics import all_joints, standing_joints
 from stairwright.robot.mujoco_model import add_contact_sensors, set_physics, stiffen_contacts
 from stairwright.robot.mujoco_terrain import TERRAIN_HALF_WIDTH, add_terrain
 from stairwright.terrain.profile import Terrain
@@ -69,6 +69,15 @@ class Original:
     wheels: Ints
     planes: Floats
     labels: list[str]
+
+    def positions_with(self, joints: Floats) -> Floats:
+        """The model's qpos with our joints (12,) at these angles [rad], and held ones held."""
+        qpos: Floats = self.model.qpos0.copy()
+        for address, value in self.held.items():
+            qpos[address] = value
+        signs, offsets = np.array([(own.sign, own.offset) for own in self.maps]).T
+        qpos[self.positions] = signs * (joints - offsets)
+        return qpos
 
 
 def read_original(model: str | os.PathLike[str], robot: Robot) -> tuple[Upload, Reading]:
@@ -210,14 +219,7 @@ def _labels(reading: Reading, bodies: list[Any]) -> dict[str, str]:
 def _apart(spec: Any, own: Original, robot: Robot) -> Original:
     """The same, where parts that overlap as the robot stands do not touch each other."""
     model, data = own.model, mujoco.MjData(own.model)
-    planar = dict(
-        zip(("F_thigh", "F_calf", "R_thigh", "R_calf"), standing_joints(robot), strict=True)
-    )
-    for address, value in own.held.items():
-        data.qpos[address] = value
-    for name, theirs, address in zip(JOINTS, own.maps, own.positions, strict=True):
-        ours = planar.get(name[0] + name[2:], 0.0)
-        data.qpos[address] = theirs.sign * (ours - theirs.offset)
+    data.qpos[:] = own.positions_with(all_joints(standing_joints(robot)))
     mujoco.mj_forward(model, data)
     touching = np.sort(model.geom_bodyid[data.contact.geom[data.contact.dist < 0.0]])
     overlaps = {(int(a), int(b)) for a, b in touching if a > 0}

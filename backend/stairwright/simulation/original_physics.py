@@ -47,10 +47,7 @@ class Mirror:
     def place(self) -> None:
         """Put the file's model where `qpos` is, at rest."""
         own, data = self.original, self.data
-        data.qpos[:] = own.model.qpos0
-        for address, value in own.held.items():
-            data.qpos[address] = value
-        data.qpos[own.positions] = self._signs * (self.qpos[7:] - self._offsets)
+        data.qpos[:] = own.positions_with(self.qpos[7:])
         turn = rotation(self.qpos[3:7]) @ own.axes  # of the trunk's body
         root = self._root()
         place = self.qpos[:3] - turn @ own.centre

@@ -18,6 +18,7 @@ from stairwright.control.setpoint import PROGRESS, RATES, Setpoint
 from stairwright.control.settings import ControllerSettings
 from stairwright.documents import content_hash
 from stairwright.planning.plan import Plan
+from stairwright.robot.kinematics import all_joints
 from stairwright.terrain.wheel_path import wheel_path
 
 from . import score
@@ -108,9 +109,8 @@ class Run:
     def _first_positions(self) -> Floats:
         """Place, quaternion and joints (19,) of the plan's first pose."""
         pose, x = self.plan.poses[0], self.plan.poses[0].x_c - self.disturbance.x_offset
-        front, rear = (*pose.q[:2], 0.0), (*pose.q[2:], 0.0)
         turn = math.cos(pose.pitch / 2), 0.0, math.sin(pose.pitch / 2), 0.0
-        return np.array([x, 0.0, pose.z_c, *turn, *front, *front, *rear, *rear])
+        return np.array([x, 0.0, pose.z_c, *turn, *all_joints(np.array(pose.q))])
 
     def simulate(
         self,

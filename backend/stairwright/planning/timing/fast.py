@@ -14,7 +14,7 @@ from stairwright.planning.certificate.dynamics import WINDOW, dynamics_of
 from stairwright.planning.plan import Plan, Timing, plan_id
 from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.smoothing.path_timing import standing_effort
-from stairwright.planning.standing import scale
+from stairwright.planning.standing import enlargement
 from stairwright.terrain.wheel_path import wheel_path
 
 from .limits import LimitName, Limits, Pace, limits_of
@@ -55,7 +55,7 @@ class TimingProblem:
         motion = moving_robot(line, reach_of(robot))
         progress = [pose.progress for pose in plan.poses]
         effort = standing_effort(plan)
-        large = max(1.0, scale(robot))
+        large = enlargement(robot)
         pace = Pace.of(aggressiveness).at_size(large)
         ease = np.interp(motion.progress, progress, _ease(plan, large))
         standing = np.interp(motion.progress, progress, effort)

@@ -8,7 +8,7 @@ import numpy as np
 
 from stairwright.arrays import Floats
 from stairwright.planning.poses.pose_reference import Reference
-from stairwright.planning.standing import scale
+from stairwright.planning.standing import enlargement
 from stairwright.robot.description import Robot
 
 from .path_position import even_grid, path_positions, slopes
@@ -18,7 +18,7 @@ _REACH = 0.0125  # m, for legs of 0.4 m or less: more than poses of a plan are a
 
 def reach_of(robot: Robot) -> float:
     """How far, both ways, differences are taken for derivatives [m]."""
-    return _REACH * max(1.0, scale(robot))
+    return _REACH * enlargement(robot)
 
 
 @dataclass(frozen=True)
