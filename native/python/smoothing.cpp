@@ -95,12 +95,15 @@ nb::ndarray<nb::numpy, double> rows(const BandMatrix& h) {
     return give(std::move(out), {h.size(), kBand + 1});
 }
 
-RefinedPath run(const RefineProblem& problem, const Nodes& ends, const Nodes& poses, const NodeSpacing& spacing, std::size_t held) {
+RefinedPath run(const RefineProblem& problem, const Nodes& ends, const Nodes& poses, const NodeSpacing& spacing, std::size_t held,
+                const Points& as_drawn) {
     if (ends.shape(0) != 2 || poses.shape(0) < 2 || held < 1 || held > 20)
         throw nb::value_error("a way needs two ends, two poses and 1 to 20 nodes held");
     const std::vector<Node> given = nodes(poses), two = nodes(ends);
+    std::vector<WheelPlaces> drawn;
+    for (std::size_t k = 0; k < as_drawn.shape(0); ++k) drawn.push_back({as_drawn(k, 0), as_drawn(k, 1)});
     const nb::gil_scoped_release released;
-    return smoothing::refine(problem, {two[0], two[1]}, given, spacing, held);
+    return smoothing::refine(problem, {two[0], two[1]}, given, spacing, held, drawn);
 }
 
 }  // namespace
@@ -132,11 +135,12 @@ void bind_smoothing(nb::module_& m) {
              nb::arg("standing_height"), nb::arg("weights"), nb::arg("torques") = false,
              nb::arg("extra") = ExtraMargins(), nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>())
         .def("refine", [](const RefineProblem& problem, const Nodes& ends, const Nodes& poses, const NodeSpacing& spacing,
-                          std::size_t held) {
-            const RefinedPath found = run(problem, ends, poses, spacing, held);
+                          std::size_t held, const Points& as_drawn) {
+            const RefinedPath found = run(problem, ends, poses, spacing, held, as_drawn);
             return std::pair(rows(found.nodes), arrays(found.margins));
-        }, nb::arg("ends"), nb::arg("poses"), nb::arg("spacing"), nb::arg("held") = 1,
-           "Rows (s_front, s_rear, x, z, pitch) of the nodes, and their margins by name.")
+        }, nb::arg("ends"), nb::arg("poses"), nb::arg("spacing"), nb::arg("held"), nb::arg("as_drawn"),
+           "Rows (s_front, s_rear, x, z, pitch) of the nodes, and their margins by name. Round the arc lengths (s_front, s_rear)\n"
+           "`as_drawn` no room is kept for ground that is not.")
         .def("cost", [](const RefineProblem& problem, const Nodes& path) {
             const smoothing::PathCost found = smoothing::path_cost(problem, nodes(path));
             const smoothing::CostTerms& t = found.terms;

@@ -160,7 +160,7 @@ def calls() -> Iterator[str]:
         refining = _core.RefineProblem(ground, curve, model, 0.6, 0.05, 0.01, 0.3, weights)
         poses = np.cumsum(random.uniform(0, 0.03, (30, 5)), axis=0)
         poses += np.array([0.5, 0.1, 0.5, 0.3, 0.0])
-        refining.refine(poses[[0, -1]], poses, _core.NodeSpacing(0.5, 0.02, 0.1))
+        refining.refine(poses[[0, -1]], poses, _core.NodeSpacing(0.5, 0.02, 0.1), 1, odd(3, 2))
         refining.margins(odd(10, 5)), refining.cost(odd(10, 5))
         own = _core.PoseProblem(ground, curve, machine, odd(9, 2), [0.5, 1.0], [0.5])
         own.reference_posture(float(random.normal())), own.pose_records(0.6, odd(6, 5), odd(6, 4))

@@ -30,7 +30,7 @@ from stairwright.planning.path_problem import PathProblem
 from stairwright.planning.smoothing.node_margins import BEYOND_REPAIR, FIRM_TORQUE
 from stairwright.planning.smoothing.path_document import PathPoses, make_plan
 from stairwright.planning.smoothing.path_timing import path_parameter
-from stairwright.planning.smoothing.refine import Refined, refine
+from stairwright.planning.smoothing.refine import Refined, refine_with_room
 from stairwright.planning.smoothing.repair import STAGES, Stage, repair
 from stairwright.planning.standing import StandingPose, enlargement, find_standing_poses
 from stairwright.planning.threads import still_wanted
@@ -222,7 +222,7 @@ class PathPlanner(PathProblem):
         if finding.s is None or finding.body is None or len(finding.s) < 2:
             return None, finding.reached
         last = StandingPose((float(finding.s[-1, 0]), float(finding.s[-1, 1])), finding.body[-1])
-        found = refine(self, (self.ends[0], last), finding.s, finding.body)
+        found = refine_with_room(self, (self.ends[0], last), finding.s, finding.body)
         found = repair(self, found, found.margins.bad, STAGES[0])
         bad = np.flatnonzero(found.margins.least_slack < 0.0)
         if len(bad):
@@ -240,7 +240,7 @@ class PathPlanner(PathProblem):
         assert finding.s is not None
         assert finding.body is not None
         still_wanted()
-        found = refine(self, self.ends, finding.s, finding.body)
+        found = refine_with_room(self, self.ends, finding.s, finding.body)
         judged: Refined | None = None
         for stage in (*self._stages(found), None):
             still_wanted()

@@ -18,6 +18,7 @@ namespace {
 constexpr int kIterations = 40;
 constexpr std::size_t kFewestNodes = 40;
 constexpr double kStop = 0.0018;  // m
+constexpr double kAsDrawn = 0.3;   // m that both wheels roll together; how far a pose shapes others, for legs of 0.4 m
 
 // Nodes as columns: front and rear arc length, trunk x, z, pitch.
 std::array<Column, 5> columns(std::span<const Node> nodes) {
@@ -60,6 +61,12 @@ bool rolls_forward(std::span<const Node> poses) {
     return true;
 }
 
+bool is_near(const WheelPlaces& s, std::span<const WheelPlaces> places, double distance) {
+    return std::ranges::any_of(places, [&](const WheelPlaces& at) {
+        return std::abs(at.front - s.front) + std::abs(at.rear - s.rear) < distance;
+    });
+}
+
 // A wheel this near to a concave corner stops in it: only there it leans on both faces.
 void stop_in_corners(Column& s, const std::vector<double>& corners) {
     for (double& at : s) {
@@ -88,7 +95,7 @@ void keep_rising(Column& s, double first, double last) {
 }  // namespace
 
 RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends, std::span<const Node> poses,
-                   const NodeSpacing& spacing, std::size_t held) {
+                   const NodeSpacing& spacing, std::size_t held, std::span<const WheelPlaces> as_drawn) {
     if (poses.size() < 2 || held < 1 || held > kFewestNodes)
         throw std::invalid_argument("a path has two poses or more; from 1 to 40 nodes at its ends can be held");
     std::vector<Node> way(poses.begin(), poses.end());
@@ -118,7 +125,9 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
     std::vector<std::vector<WheelLoads>> loads;
     if (problem.torques)
         loads = loads_along(problem.path, nodes, changes, problem.friction, problem.lag, problem.robot.mass * kGravity);
-    const std::vector<std::array<Surprise, 2>> met = surprises(problem, nodes, intervals);
+    std::vector<std::array<Surprise, 2>> met = surprises(problem, nodes, intervals);
+    for (std::size_t k = 0; k < n; ++k)
+        if (is_near(nodes[k].s, as_drawn, kAsDrawn * size)) met[k] = {};
     const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, loads, met, fixed,
                                      objective(problem, spacing, hop / kUsualSpacing)};
     smooth(smoothing, bodies, kIterations, spacing.thorough);

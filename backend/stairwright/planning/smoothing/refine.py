@@ -58,6 +58,19 @@ class NodeSpacing(NamedTuple):
 
 
 COARSE = NodeSpacing(1.0, 0.009, 0.3)
+NOWHERE: Floats = np.empty((0, 2))
+
+
+def refine_with_room(
+    q: PathProblem, ends: tuple[StandingPose, StandingPose], s: Floats, body: Floats
+) -> Refined:
+    """Smooth a lattice path so that it keeps room for ground that is not as drawn, but not at the
+    cost of a bound: where one is violated it keeps none.
+    """
+    found = refine(q, ends, s, body)
+    if found.margins.worst >= 0.0:
+        return found
+    return refine(q, ends, s, body, as_drawn=found.s[found.margins.bad])
 
 
 def refine(
@@ -67,6 +80,7 @@ def refine(
     body: Floats,
     spacing: NodeSpacing = COARSE,
     held: int = 1,
+    as_drawn: Floats = NOWHERE,
 ) -> Refined:
     """Turn a lattice path into dense, smooth nodes.
 
@@ -77,11 +91,13 @@ def refine(
         body: (n, 3) trunk poses.
         spacing: How nodes are laid.
         held: Nodes at either end that stay where they are.
+        as_drawn: (m, 2) arc lengths of the wheels round which no room is kept for ground that is
+            not as drawn.
     """
     still_wanted()
     both = np.array([[*end.wheels, *end.body] for end in ends])
     laid = _core.NodeSpacing(*spacing)
-    nodes, margins = q.refine_problem.refine(both, np.hstack([s, body]), laid, held)
+    nodes, margins = q.refine_problem.refine(both, np.hstack([s, body]), laid, held, as_drawn)
     still_wanted()
     return Refined(
         np.ascontiguousarray(nodes[:, :2]),

@@ -69,7 +69,7 @@ def repair(
         path = _local_path(q, found, begin, end, *inner, stage.fine, brinks)
         if path is None:
             continue
-        piece = _smoothed(q, found.part(begin, end + 1), path)
+        piece = _smoothed(q, found.part(begin, end + 1), path, found.s[bad])
         if piece is not None:
             parts += [found.part(last, begin), piece]
             last = end + 1
@@ -116,13 +116,17 @@ def _local_path(
     )
 
 
-def _smoothed(q: PathProblem, old: Refined, path: tuple[Floats, Floats]) -> Refined | None:
-    """The path as nodes, if they are better than the `old` ones."""
+def _smoothed(
+    q: PathProblem, old: Refined, path: tuple[Floats, Floats], bad: Floats
+) -> Refined | None:
+    """The path as nodes, if they are better than the `old` ones, which are `bad` at (m, 2) arc
+    lengths.
+    """
     ends = (old.standing_pose(0), old.standing_pose(-1))
     pieces = []
     for spacing in _SPACINGS:
         still_wanted()
-        pieces.append(refine(q, ends, *path, spacing, _HELD))
+        pieces.append(refine(q, ends, *path, spacing, _HELD, as_drawn=bad))
         if not len(pieces[-1].margins.bad):
             return pieces[-1]
     best = max(pieces, key=lambda one: one.margins.worst)
