@@ -10,10 +10,10 @@ from stairwright.planning.smoothing.path_document import least_margins
 from stairwright.terrain.stairs import stair
 
 STEP_DOWN = [(-1.3, 0.0), (0.0, 0.0), (0.0, -0.155), (1.3, -0.155)]
-STEEP = stair(0.285, 0.48, 4, approach=2.0, platform=2.0).points
+FLIGHT_DOWN = stair(0.16, 0.4, 3, direction="down").points
 
 
-@pytest.mark.parametrize(("robot", "points"), [("a1_wheeled", STEP_DOWN), ("anymal_wheels", STEEP)])
+@pytest.mark.parametrize(("robot", "points"), [("a1_wheeled", STEP_DOWN), ("d1", FLIGHT_DOWN)])
 def test_it_has_more_margin_and_is_certified(
     robot: str, points: list[tuple[float, float]], monkeypatch: pytest.MonkeyPatch
 ) -> None:

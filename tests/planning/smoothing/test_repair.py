@@ -88,7 +88,7 @@ def test_pieces_of_neighbours_do_not_overlap(monkeypatch):
     monkeypatch.setattr(
         repairs, "_local_path", lambda q, found, begin, end, *_: ways.append((begin, end)) or (0, 0)
     )
-    monkeypatch.setattr(repairs, "_smoothed", lambda q, old, way: old)
+    monkeypatch.setattr(repairs, "_smoothed", lambda q, old, way, bad: old)
     travel = found.s.mean(axis=1) - found.s[0].mean()
     for apart in np.arange(0.3, 0.4, 0.002):
         ways.clear()
