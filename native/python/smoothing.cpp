@@ -119,6 +119,9 @@ void bind_smoothing(nb::module_& m) {
         .def_prop_ro("most_wheel_distance", &RobotModel::most_wheel_distance, "Of the wheels' centres, in any pose [m].")
         .def_prop_ro("legs_alike", &RobotModel::legs_alike, "Whether front and rear leg reach alike, whatever their hips.");
     m.attr("LEGS_GAP") = kLegsGap;
+    m.attr("LIGHT") = smoothing::kLight;
+    m.attr("LEAN") = smoothing::kLean;
+    m.attr("LOW") = smoothing::kLow;
     m.attr("BESIDE") = kBeside;
     nb::class_<PathWeights>(m, "PathWeights")
         .def(nb::init<double, double, double, double, double>(), nb::arg("com_margin"), nb::arg("clearance"),

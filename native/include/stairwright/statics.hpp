@@ -47,6 +47,8 @@ double friction_needed(std::span<const Contact> contacts, double com_x);
 // A contact force in the contact's frame: tangential is positive along (n_z, -n_x), forward on the level.
 struct ContactForce {
     double tangential = 0.0, normal = 0.0;
+
+    double size() const { return std::hypot(tangential, normal); }
 };
 
 // In world axes.

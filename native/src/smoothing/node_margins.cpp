@@ -8,8 +8,6 @@ namespace {
 
 constexpr double kQueryRadius = 0.3;  // m; larger clearances are not told apart
 
-double size(const ContactForce& f) { return std::hypot(f.tangential, f.normal); }
-
 double larger(double a, double b) { return std::abs(b) > std::abs(a) ? b : a; }
 
 // Largest static torques of both legs of all ways of touching the ground that hold the robot; of `otherwise` if none does.
@@ -64,7 +62,7 @@ std::vector<NodeMargins> node_margins(const Terrain& terrain, const WheelPath& p
         else
             support = {before, {front.at[0], rear.at[0]}, true};
         node.forces = before = support.forces;
-        const int carrying = size(support.forces[kRear]) > size(support.forces[kFront]) ? kRear : kFront;
+        const int carrying = support.forces[kRear].size() > support.forces[kFront].size() ? kRear : kFront;
         node.com_height = node.geometry.posture.com.z - contacts[carrying].at[0].point.z;
         node.torques = worst_torques(robot, node.geometry.posture, touches(path, s, friction, lag), friction, weight, support);
     }

@@ -9,6 +9,7 @@
 #include "stairwright/smoothing/resample.hpp"
 #include "stairwright/whole.hpp"
 #include "surprises.hpp"
+#include "tipping.hpp"
 
 namespace stairwright::smoothing {
 
@@ -90,7 +91,8 @@ PathCost path_cost(const RefineProblem& problem, std::span<const Node> path) {
     const double share = u.back() / static_cast<double>(count - 1) / kUsualSpacing;
     const Objective o = objective(problem, spacing, share);
     const std::vector<std::array<Surprise, 2>> met = surprises(problem, nodes, intervals);
-    const SmoothingProblem at{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, {}, met, {}, o};
+    const std::vector<std::array<double, 2>> tipping = tipping_heights(problem, nodes, intervals);
+    const SmoothingProblem at{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, {}, met, tipping, {}, o};
     std::vector<Residuals> rows;
     PathCost out;
     for (std::size_t k = 0; k < count; ++k) {

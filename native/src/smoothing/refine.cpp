@@ -10,6 +10,7 @@
 #include "stairwright/smoothing/smoothing.hpp"
 #include "stairwright/whole.hpp"
 #include "surprises.hpp"
+#include "tipping.hpp"
 
 namespace stairwright::smoothing {
 
@@ -128,7 +129,8 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
     std::vector<std::array<Surprise, 2>> met = surprises(problem, nodes, intervals);
     for (std::size_t k = 0; k < n; ++k)
         if (is_near(nodes[k].s, as_drawn, kAsDrawn * size)) met[k] = {};
-    const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, loads, met, fixed,
+    const std::vector<std::array<double, 2>> tipping = tipping_heights(problem, nodes, intervals);
+    const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, loads, met, tipping, fixed,
                                      objective(problem, spacing, hop / kUsualSpacing)};
     smooth(smoothing, bodies, kIterations, spacing.thorough);
     for (std::size_t k = 0; k < n; ++k) nodes[k].body = bodies[k];

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tipping.hpp"
+
 namespace stairwright::smoothing {
 
 namespace {
 
+constexpr double kSpare = 5e-4;  // m of CoM margin beyond what must be
 constexpr double kStep = 1e-5;   // m and rad; of finite differences
 
 double shortfall(double value, const MarginTerm& term) { return term.weight * std::max(0.0, term.target - value); }
@@ -16,15 +19,16 @@ double hinge(double value, const MarginTerm& term, double hard) {
     return term.weight * std::max(0.0, term.target - value) + hard * std::max(0.0, term.least - value);
 }
 
-// Both sides of one CoM interval.
-void com_residuals(double x, const Interval& interval, const MarginTerm& term, double hard, double* out) {
+// Both sides of one CoM interval, which must leave `least` beside them.
+void com_residuals(double x, const Interval& interval, const MarginTerm& term, double hard, double* out,
+                   const std::array<double, 2>& least = {}) {
     // A narrow interval cannot give the target on both sides: aim at its middle.
     const double target = std::min(term.target, 0.45 * std::max(0.0, interval.upper - interval.lower));
     const double below = x - interval.lower, above = interval.upper - x;
     out[0] = term.weight * std::max(0.0, target - below);
     out[1] = term.weight * std::max(0.0, target - above);
-    out[0] += hard * std::max(0.0, 0.25 * target - below);
-    out[1] += hard * std::max(0.0, 0.25 * target - above);
+    out[0] += hard * std::max(0.0, std::max(0.25 * target, least[0]) - below);
+    out[1] += hard * std::max(0.0, std::max(0.25 * target, least[1]) - above);
 }
 
 // Static torques of the leg joints over their limits, front thigh, front calf, rear thigh, rear calf. Each wheel pair
@@ -82,7 +86,12 @@ Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Bod
     const NodeIntervals& interval = problem.intervals[node];
     const double x = geometry.posture.com.x;
     Residuals r;
-    com_residuals(x, interval.full, o.com, o.hard, &r[kComLow]);
+    std::array<double, 2> least{};
+    for (const std::size_t end : {0, 1}) {
+        const double lean = lean_margin(problem.robot, geometry.posture.com.z - problem.tipping[node][end]);
+        if (lean > 0.0) least[end] = lean + kSpare;
+    }
+    com_residuals(x, interval.full, o.com, o.hard, &r[kComLow], least);
     com_residuals(x, interval.reserve, o.reserve, 0.0, &r[kReserveLow]);
     com_residuals(x, interval.lagged, o.lagged, 0.0, &r[kLaggedLow]);
     r[kTrunk] = hinge(geometry.trunk, o.trunk, o.hard);

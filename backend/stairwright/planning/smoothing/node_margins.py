@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from stairwright._core import LEGS_GAP
+from stairwright._core import LEAN, LEGS_GAP, LIGHT, LOW
 from stairwright.arrays import Floats, Ints
 
 Motor = Literal["leg", "wheel"]
@@ -23,12 +23,9 @@ LEAST_COM = 0.001  # m; no robot's centre of mass is known better
 # Where the CoM has less room than this [m], that share of the friction must be left: else a wheel
 # that slides a little tips the robot.
 THIN_COM, FIRM_GRIP = 0.006, 0.08
-# Where a pair of wheels carries less than this share of the weight, the robot stands on the other
-# one. There that share of the friction must be left: on an edge a wheel that is 5 mm off has to
-# hold a few degrees more. And by that much it may lean from what is planned [rad] without tipping
-# over, about a height of that share of its legs: a robot that is low tips slowly.
-LIGHT, STANDING_GRIP = 0.15, 0.12
-LEAN, LOW = 0.05, 0.75
+# Where the robot stands on one pair of wheels, that share of the friction must be left: on an edge a
+# wheel that is 5 mm off has to hold a few degrees more.
+STANDING_GRIP = 0.12
 FIRM_TORQUE = 0.9  # of the motors' torques that standing may take: the rest moves and corrects
 BEYOND_REPAIR = 0.15  # of a motor's torque; where more is lacking somewhere another path is needed
 _SPARE = 5e-4  # m

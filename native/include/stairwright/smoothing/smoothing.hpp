@@ -58,6 +58,7 @@ struct SmoothingProblem {
     std::span<const NodeIntervals> intervals;
     std::span<const std::vector<WheelLoads>> loads;  // by node, see loads_along, where motors are weak; else empty
     std::span<const std::array<Surprise, 2>> surprises;  // by node, see surprises
+    std::span<const std::array<double, 2>> tipping;  // by node, see tipping_heights
     std::vector<bool> fixed;  // nodes that must not move
     Objective objective;
 };
