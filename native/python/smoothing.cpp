@@ -70,6 +70,7 @@ Arrays arrays(const std::vector<NodeMargins>& m) {
     scalar("joint_slack", [](const NodeMargins& n) { return n.geometry.joints.slack; });
     scalar("com_margin", [](const NodeMargins& n) { return n.com; });
     scalar("firm_com_margin", [](const NodeMargins& n) { return n.firm_com; });
+    scalar("strayed_com_margin", [](const NodeMargins& n) { return n.strayed_com; });
     scalar("com_height", [](const NodeMargins& n) { return n.com_height; });
     scalar("friction_needed", [](const NodeMargins& n) { return n.friction_needed; });
     out["forces"] = column<4>(m, {2, 2}, [](const NodeMargins& n) {

@@ -115,17 +115,21 @@ Interval stated_interval(const WheelPath& path, WheelPlaces s, double friction) 
     return com_interval(counted.span());
 }
 
-Interval steady_interval(const WheelPath& path, WheelPlaces s, double friction) {
-    Interval out = pair_interval(path, s, friction, kGentleRays);
+Interval strayed_interval(const WheelPath& path, WheelPlaces s, double friction, double stray, double ray_limit) {
+    Interval out = pair_interval(path, s, friction, ray_limit);
     for (const int pair : {kFront, kRear}) {
-        for (const double stray : {kStray, -kStray}) {
-            if (out.empty() || !tilts(path, s[pair], s[pair] + stray)) continue;
+        for (const double by : {stray, -stray}) {
+            if (out.empty() || !tilts(path, s[pair], s[pair] + by)) continue;
             WheelPlaces other = s;
-            (pair == kFront ? other.front : other.rear) += stray;
-            out = out.intersect(pair_interval(path, other, friction, kGentleRays));
+            (pair == kFront ? other.front : other.rear) += by;
+            out = out.intersect(pair_interval(path, other, friction, ray_limit));
         }
     }
     return out;
+}
+
+Interval steady_interval(const WheelPath& path, WheelPlaces s, double friction) {
+    return strayed_interval(path, s, friction, kStray, kGentleRays);
 }
 
 namespace {

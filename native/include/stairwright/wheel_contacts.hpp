@@ -11,6 +11,7 @@ namespace stairwright {
 
 inline constexpr double kGentleRays = 0.75;  // weights; ray strength that poses with reserve do with: no wheels that pinch
 inline constexpr double kStray = 0.005;      // m; how far a wheel may be from its place
+inline constexpr double kLeastStray = 0.003; // m; how far any controller's wheels are: what holds no farther falls
 inline constexpr double kTouch = 1e-4;       // m; a wheel this near to a concave corner (by arc length) touches both faces
 inline constexpr double kBeside = 1.1e-4;    // m; a wheel this far from one touches the nearer face alone
 
@@ -41,8 +42,11 @@ Interval pair_interval(const WheelPath& path, WheelPlaces s, double friction, do
 // The same with friction on both faces of a corner, as plans state their margins.
 Interval stated_interval(const WheelPath& path, WheelPlaces s, double friction);
 
-// CoM interval without pinching that also holds where a wheel on an edge strays by kStray: round an edge a few
-// millimetres tilt the face by a tenth of a radian. Empty where no CoM suits all cases.
+// CoM interval that also holds where a wheel on an edge strays: round an edge a few millimetres tilt the face by a tenth of a
+// radian. Empty where no CoM suits all cases.
+Interval strayed_interval(const WheelPath& path, WheelPlaces s, double friction, double stray, double ray_limit = kRayLimit);
+
+// The same without pinching, and kStray.
 Interval steady_interval(const WheelPath& path, WheelPlaces s, double friction);
 
 // CoM interval that also holds if either wheel is `lag` behind its plan, or kStray ahead. A wheel that arrives late

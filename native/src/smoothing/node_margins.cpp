@@ -52,6 +52,7 @@ std::vector<NodeMargins> node_margins(const Terrain& terrain, const WheelPath& p
             for (const Contact& contact : wheel.span()) all[count++] = contact;
         node.com = com_margin(com_interval({all.data(), count}), com_x);
         node.firm_com = com_margin(pair_interval(path, s, friction), com_x);
+        node.strayed_com = com_margin(strayed_interval(path, s, friction, kLeastStray), com_x);
         node.friction_needed = friction_needed({all.data(), count}, com_x);
 
         const Faces front = with_bisector(contacts[kFront], wheels[kFront], path.radius());

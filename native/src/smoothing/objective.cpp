@@ -91,7 +91,7 @@ PathCost path_cost(const RefineProblem& problem, std::span<const Node> path) {
     const double share = u.back() / static_cast<double>(count - 1) / kUsualSpacing;
     const Objective o = objective(problem, spacing, share);
     const std::vector<std::array<Surprise, 2>> met = surprises(problem, nodes, intervals);
-    const std::vector<std::array<double, 2>> tipping = tipping_heights(problem, nodes, intervals);
+    const std::vector<TippingBounds> tipping = tipping_bounds(problem, nodes, intervals);
     const SmoothingProblem at{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, {}, met, tipping, {}, o};
     std::vector<Residuals> rows;
     PathCost out;

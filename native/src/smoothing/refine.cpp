@@ -129,7 +129,7 @@ RefinedPath refine(const RefineProblem& problem, const std::array<Node, 2>& ends
     std::vector<std::array<Surprise, 2>> met = surprises(problem, nodes, intervals);
     for (std::size_t k = 0; k < n; ++k)
         if (is_near(nodes[k].s, as_drawn, kAsDrawn * size)) met[k] = {};
-    const std::vector<std::array<double, 2>> tipping = tipping_heights(problem, nodes, intervals);
+    const std::vector<TippingBounds> tipping = tipping_bounds(problem, nodes, intervals);
     const SmoothingProblem smoothing{problem.terrain, problem.robot, wheels, contacts, slopes, intervals, loads, met, tipping, fixed,
                                      objective(problem, spacing, hop / kUsualSpacing)};
     smooth(smoothing, bodies, kIterations, spacing.thorough);

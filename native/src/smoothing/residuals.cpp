@@ -9,7 +9,6 @@ namespace stairwright::smoothing {
 
 namespace {
 
-constexpr double kSpare = 5e-4;  // m of CoM margin beyond what must be
 constexpr double kStep = 1e-5;   // m and rad; of finite differences
 
 double shortfall(double value, const MarginTerm& term) { return term.weight * std::max(0.0, term.target - value); }
@@ -86,12 +85,8 @@ Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Bod
     const NodeIntervals& interval = problem.intervals[node];
     const double x = geometry.posture.com.x;
     Residuals r;
-    std::array<double, 2> least{};
-    for (const std::size_t end : {0, 1}) {
-        const double lean = lean_margin(problem.robot, geometry.posture.com.z - problem.tipping[node][end]);
-        if (lean > 0.0) least[end] = lean + kSpare;
-    }
-    com_residuals(x, interval.full, o.com, o.hard, &r[kComLow], least);
+    com_residuals(x, interval.full, o.com, o.hard, &r[kComLow],
+                  least_com_margins(problem.robot, problem.tipping[node], interval.full, geometry.posture.com.z));
     com_residuals(x, interval.reserve, o.reserve, 0.0, &r[kReserveLow]);
     com_residuals(x, interval.lagged, o.lagged, 0.0, &r[kLaggedLow]);
     r[kTrunk] = hinge(geometry.trunk, o.trunk, o.hard);

@@ -9,16 +9,18 @@ namespace {
 
 constexpr double kInside = 0.008;  // m inside the end of an interval; there friction holds whatever it holds at all
 constexpr double kMostInside = 0.25;  // of the interval
+constexpr double kSpare = 5e-4;  // m of CoM margin beyond what must be
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-std::vector<std::array<double, 2>> tipping_heights(const RefineProblem& problem, std::span<const Node> nodes,
-                                                   std::span<const NodeIntervals> intervals) {
-    constexpr double kNever = std::numeric_limits<double>::infinity();
-    std::vector<std::array<double, 2>> out(nodes.size(), {kNever, kNever});
+std::vector<TippingBounds> tipping_bounds(const RefineProblem& problem, std::span<const Node> nodes,
+                                          std::span<const NodeIntervals> intervals) {
+    std::vector<TippingBounds> out(nodes.size());
     for (std::size_t k = 0; k < nodes.size(); ++k) {
         const Interval& com = intervals[k].full;
         const WheelPlaces& s = nodes[k].s;
+        out[k] = {strayed_interval(problem.path, s, problem.friction, kLeastStray), {kNever, kNever}};
         std::array<WheelContacts, 2> contacts;
         std::array<Faces, 2> faces;
         for (const int pair : {kFront, kRear}) {
@@ -31,15 +33,22 @@ std::vector<std::array<double, 2>> tipping_heights(const RefineProblem& problem,
             const Support support = gentlest_support(faces[kFront], faces[kRear], ends[end], problem.friction);
             if (!support.found) continue;
             const double front = support.forces[kFront].size(), rear = support.forces[kRear].size();
-            if (std::min(front, rear) < kLight * (front + rear)) out[k][end] = contacts[rear > front ? kRear : kFront].at[0].point.z;
+            if (std::min(front, rear) < kLight * (front + rear))
+                out[k].heights[end] = contacts[rear > front ? kRear : kFront].at[0].point.z;
         }
     }
     return out;
 }
 
-double lean_margin(const RobotModel& robot, double height) {
+std::array<double, 2> least_com_margins(const RobotModel& robot, const TippingBounds& bounds, const Interval& com, double com_z) {
     const Leg& leg = robot.legs[kFront].leg;
-    return kLean * std::max(0.0, height - kLow * (leg.thigh.length + leg.calf.length));
+    const double low = kLow * (leg.thigh.length + leg.calf.length);
+    std::array<double, 2> out = {bounds.strayed.lower - com.lower, com.upper - bounds.strayed.upper};
+    for (const std::size_t end : {0, 1}) {
+        out[end] = std::max(out[end], kLean * (com_z - bounds.heights[end] - low));
+        if (out[end] > 0.0) out[end] += kSpare;
+    }
+    return out;
 }
 
 }  // namespace stairwright::smoothing

@@ -1,16 +1,15 @@
-// Where the robot stands on one pair of wheels, and what CoM margin it takes not to tip over when it leans.
+// What CoM margin a robot keeps at each pose that no lean from it and no wheel a little beside its place makes fall.
 #pragma once
 
 #include "stairwright/smoothing/objective.hpp"
 
 namespace stairwright::smoothing {
 
-// Heights of the contacts over which the robot would tip at the lower and at the upper end of each node's CoM interval; infinite
-// where both pairs carry it there, so that it cannot.
-std::vector<std::array<double, 2>> tipping_heights(const RefineProblem& problem, std::span<const Node> nodes,
-                                                   std::span<const NodeIntervals> intervals);
+// For the smoothing, by node.
+std::vector<TippingBounds> tipping_bounds(const RefineProblem& problem, std::span<const Node> nodes,
+                                          std::span<const NodeIntervals> intervals);
 
-// CoM margin of a robot that may lean by kLean, with its CoM so high above the contact over which it would tip [m].
-double lean_margin(const RobotModel& robot, double height);
+// Least margins at the lower and at the upper end of a node's CoM interval [m].
+std::array<double, 2> least_com_margins(const RobotModel& robot, const TippingBounds& bounds, const Interval& com, double com_z);
 
 }  // namespace stairwright::smoothing

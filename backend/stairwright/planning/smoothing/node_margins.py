@@ -48,6 +48,7 @@ class NodeMargins:
         com_margin: (n,) at the friction there is.
         firm_com_margin: (n,) the same with friction on one face of a corner only, which robots can
             hold.
+        strayed_com_margin: (n,) the same where a wheel on an edge is 3 mm from its place.
         com_height: (n,) of the CoM above the contacts of the pair that carries more [m].
         friction_needed: (n,).
         forces: (n, 2, 2) force of each wheel pair, tangential and normal [N]; a wheel between two
@@ -66,6 +67,7 @@ class NodeMargins:
     joint_slack: Floats
     com_margin: Floats
     firm_com_margin: Floats
+    strayed_com_margin: Floats
     com_height: Floats
     friction_needed: Floats
     forces: Floats
@@ -94,7 +96,7 @@ class NodeMargins:
 
     @cached_property
     def _slacks(self) -> Floats:
-        """(8, n) margins, each against its bound, in comparable sizes."""
+        """(9, n) margins, each against its bound, in comparable sizes."""
 
         def spare_friction(least: float) -> Floats:
             return 0.2 * ((1.0 - least) * self.friction - self.friction_needed)
@@ -108,6 +110,7 @@ class NodeMargins:
                 self.legs_distance - LEGS_GAP,
                 0.2 * self.joint_slack,
                 self.firm_com_margin - LEAST_COM,
+                self.strayed_com_margin,
                 np.maximum(self.firm_com_margin - THIN_COM, spare_friction(FIRM_GRIP)),
                 np.maximum(np.minimum(lean, spare_friction(STANDING_GRIP)), light),
                 *(0.3 * (FIRM_TORQUE - self.torque_shares(motor)) for motor in JOINTS),

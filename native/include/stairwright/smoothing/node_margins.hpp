@@ -31,6 +31,7 @@ struct NodeMargins {
     PoseGeometry geometry;
     double com = 0.0;                    // CoM margin at the friction there is [m]
     double firm_com = 0.0;               // the same with friction on one face of a corner only, which robots can hold [m]
+    double strayed_com = 0.0;            // the same where a wheel on an edge is kLeastStray from its place [m]
     double friction_needed = 0.0;
     double com_height = 0.0;             // of the CoM above the contacts of the pair that carries more [m]
     std::array<ContactForce, 2> forces;  // of each wheel pair [N]; a wheel between two faces: along what carries it

@@ -49,6 +49,14 @@ struct Surprise {
     Vec2 edge;         // above the other tread
 };
 
+// When a robot tips over.
+struct TippingBounds {
+    Interval strayed;               // of a CoM that is held also where a wheel on an edge is kLeastStray from its place
+    // Heights of the contacts over which the robot would tip at the lower and the upper end of its CoM interval; infinite where
+    // both pairs carry it there, so that it cannot.
+    std::array<double, 2> heights;
+};
+
 struct SmoothingProblem {
     const Terrain& terrain;
     const RobotModel& robot;
@@ -58,7 +66,7 @@ struct SmoothingProblem {
     std::span<const NodeIntervals> intervals;
     std::span<const std::vector<WheelLoads>> loads;  // by node, see loads_along, where motors are weak; else empty
     std::span<const std::array<Surprise, 2>> surprises;  // by node, see surprises
-    std::span<const std::array<double, 2>> tipping;  // by node, see tipping_heights
+    std::span<const TippingBounds> tipping;  // by node
     std::vector<bool> fixed;  // nodes that must not move
     Objective objective;
 };
