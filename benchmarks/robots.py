@@ -32,7 +32,8 @@ with a pair of wheels on level ground.
 With the front in front, `a1_wheeled` (all knees back) and `d1` go down these flights with 5 to 9 mm
 of CoM margin or not at all, and win 6 to 17 of 29 trials; in most others they stand, as they find
 that their mass centre is not where the plan has it and that there is no plan for where it is. With
-the rear in front they win all but one. All rows are of 2026-11-28.
+the rear in front they win all but one. Walls, ramps and three flights whose plans have changed are
+of 2026-11-29; the other rows of 2026-11-28, and their plans the same to the bit.
 
 Rows are kept in a folder by the hash of the code and the question, so that a run that was ended
 goes on, and several may share the work.

@@ -23,8 +23,8 @@ LEAST_COM = 0.001  # m; no robot's centre of mass is known better
 # Where the CoM has less room than this [m], that share of the friction must be left: else a wheel
 # that slides a little tips the robot.
 THIN_COM, FIRM_GRIP = 0.006, 0.08
-# Where the robot stands on one pair of wheels, that share of the friction must be left: on an edge a
-# wheel that is 5 mm off has to hold a few degrees more.
+# Where the robot stands on one pair of wheels, that share of the friction must be left: on an edge
+# a wheel that is 5 mm off has to hold a few degrees more.
 STANDING_GRIP = 0.12
 FIRM_TORQUE = 0.9  # of the motors' torques that standing may take: the rest moves and corrects
 BEYOND_REPAIR = 0.15  # of a motor's torque; where more is lacking somewhere another path is needed
