@@ -17,6 +17,7 @@ from stairwright.errors import InputError
 from stairwright.jobs import launch
 from stairwright.jobs import pool as pools
 from stairwright.jobs.failures import DeadlineExceeded, WorkerDied
+from stairwright.jobs.memory import keep_no_more_than
 from stairwright.jobs.pool import WorkerPool
 from stairwright.jobs.uploads import import_terrain
 from stairwright.jobs.worker import RESTLESS, Limits
@@ -255,6 +256,19 @@ def test_a_worker_without_work_gives_memory_back() -> None:
         used = await pool.run(scatter, deadline=10)
         assert used > before + 80e6
         await asyncio.sleep(RESTLESS + 1.0)
+        assert await pool.run(resident, deadline=10) < before + 20e6
+
+    tell(story)
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="others keep nothing")
+def test_a_process_that_keeps_memory_keeps_no_more_than_it_may() -> None:
+    async def story(pool: WorkerPool) -> None:
+        before = await pool.run(resident, deadline=10)
+        used = await pool.run(scatter, deadline=10)
+        await pool.run(keep_no_more_than, 2 * used, deadline=10)
+        assert await pool.run(resident, deadline=10) > before + 80e6
+        await pool.run(keep_no_more_than, before, deadline=10)
         assert await pool.run(resident, deadline=10) < before + 20e6
 
     tell(story)

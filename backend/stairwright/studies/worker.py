@@ -10,6 +10,7 @@ import orjson
 
 from stairwright.documents import parse
 from stairwright.jobs.cluster.worker import check_version, watch
+from stairwright.jobs.memory import AMPLE, keep_no_more_than
 
 from .cell import evaluate
 from .document import Study
@@ -44,6 +45,7 @@ def evaluate_batch(document: bytes, engine: str, cells: list[int]) -> Batch:
     for cell in cells:
         with watch.over(limit):
             records[cell] = evaluate(questions, point(study, cell))
+        keep_no_more_than(AMPLE)
     return Batch(records, time.monotonic() - begun)
 
 
