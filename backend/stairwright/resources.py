@@ -1,7 +1,10 @@
-"""What this machine has: where data lies that ships with the program or is its user's; cores."""
+"""What this machine has: where data lies that ships with the program or is its user's; cores; how
+much memory this process uses.
+"""
 
 from __future__ import annotations
 
+import mmap
 import os
 import sys
 from pathlib import Path
@@ -49,3 +52,21 @@ def default_data_folder() -> Path:
 def all_cores() -> int:
     """How many cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def address_space() -> int:
+    """Bytes of address space in use now; where no /proc tells, a guess on the high side."""
+    return _statm(0, otherwise=2 * 2**30)
+
+
+def resident_memory() -> int:
+    """Bytes of memory in use now; 0 where no /proc tells."""
+    return _statm(1, otherwise=0)
+
+
+def _statm(column: int, otherwise: int) -> int:
+    try:
+        with open("/proc/self/statm", encoding="ascii") as file:  # noqa: PTH123
+            return int(file.read().split()[column]) * mmap.PAGESIZE
+    except OSError:
+        return otherwise

@@ -123,6 +123,7 @@ void bind_smoothing(nb::module_& m) {
     m.attr("LIGHT") = smoothing::kLight;
     m.attr("LEAN") = smoothing::kLean;
     m.attr("LOW") = smoothing::kLow;
+    m.attr("SPARE") = smoothing::kSpare;
     m.attr("BESIDE") = kBeside;
     nb::class_<PathWeights>(m, "PathWeights")
         .def(nb::init<double, double, double, double, double>(), nb::arg("com_margin"), nb::arg("clearance"),

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
-import resource
+
+from stairwright.resources import resident_memory
 
 AMPLE = 512 << 20  # bytes of a worker that keeps memory between plans
 
@@ -25,6 +26,5 @@ def keep_no_more_than(most: int) -> None:
     A refusal of a large robot on high stairs takes up to 1 GB, of which threads' shares of the heap
     keep most: a worker of a cluster grew to 2.2 GB. Where there is no /proc, nothing happens.
     """
-    with contextlib.suppress(OSError), open("/proc/self/statm", encoding="ascii") as file:  # noqa: PTH123
-        if int(file.read().split()[1]) * resource.getpagesize() > most:
-            give_memory_back()
+    if resident_memory() > most:
+        give_memory_back()

@@ -18,6 +18,8 @@ import traceback
 from dataclasses import dataclass
 from typing import Any
 
+from stairwright.resources import address_space
+
 from .memory import give_memory_back
 
 LENGTH = struct.Struct("!Q")  # before each message: its length without this
@@ -97,7 +99,7 @@ def _initialise(limits: Limits) -> None:
     if limits.nice:
         os.nice(limits.nice)
     if limits.memory:
-        _limit(resource.RLIMIT_AS, _address_space() + limits.memory * 2**20)
+        _limit(resource.RLIMIT_AS, address_space() + limits.memory * 2**20)
     if limits.sealed:
         _seal()
 
@@ -130,15 +132,6 @@ def _first_free_descriptor() -> int:
     descriptor = os.open(os.devnull, os.O_RDONLY)
     os.close(descriptor)
     return descriptor
-
-
-def _address_space() -> int:
-    """Bytes of address space in use now."""
-    try:
-        with open("/proc/self/statm", encoding="ascii") as file:  # noqa: PTH123
-            return int(file.read().split()[0]) * resource.getpagesize()
-    except OSError:
-        return 2 * 2**30  # no Linux: a guess on the high side
 
 
 def _limit(what: int, value: int) -> None:

@@ -86,7 +86,7 @@ Residuals residuals(const SmoothingProblem& problem, std::size_t node, const Bod
     const double x = geometry.posture.com.x;
     Residuals r;
     com_residuals(x, interval.full, o.com, o.hard, &r[kComLow],
-                  least_com_margins(problem.robot, problem.tipping[node], interval.full, geometry.posture.com.z));
+                  least_com_margins(problem.robot, problem.tipping[node], geometry.posture.com.z));
     com_residuals(x, interval.reserve, o.reserve, 0.0, &r[kReserveLow]);
     com_residuals(x, interval.lagged, o.lagged, 0.0, &r[kLaggedLow]);
     r[kTrunk] = hinge(geometry.trunk, o.trunk, o.hard);

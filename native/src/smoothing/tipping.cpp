@@ -9,7 +9,6 @@ namespace {
 
 constexpr double kInside = 0.008;  // m inside the end of an interval; there friction holds whatever it holds at all
 constexpr double kMostInside = 0.25;  // of the interval
-constexpr double kSpare = 5e-4;  // m of CoM margin beyond what must be
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -20,7 +19,8 @@ std::vector<TippingBounds> tipping_bounds(const RefineProblem& problem, std::spa
     for (std::size_t k = 0; k < nodes.size(); ++k) {
         const Interval& com = intervals[k].full;
         const WheelPlaces& s = nodes[k].s;
-        out[k] = {strayed_interval(problem.path, s, problem.friction, kLeastStray), {kNever, kNever}};
+        const Interval strayed = strayed_interval(problem.path, s, problem.friction, kLeastStray);
+        out[k] = {{strayed.lower - com.lower, com.upper - strayed.upper}, {kNever, kNever}};
         std::array<WheelContacts, 2> contacts;
         std::array<Faces, 2> faces;
         for (const int pair : {kFront, kRear}) {
@@ -40,10 +40,10 @@ std::vector<TippingBounds> tipping_bounds(const RefineProblem& problem, std::spa
     return out;
 }
 
-std::array<double, 2> least_com_margins(const RobotModel& robot, const TippingBounds& bounds, const Interval& com, double com_z) {
+std::array<double, 2> least_com_margins(const RobotModel& robot, const TippingBounds& bounds, double com_z) {
     const Leg& leg = robot.legs[kFront].leg;
     const double low = kLow * (leg.thigh.length + leg.calf.length);
-    std::array<double, 2> out = {bounds.strayed.lower - com.lower, com.upper - bounds.strayed.upper};
+    std::array<double, 2> out = bounds.strayed;
     for (const std::size_t end : {0, 1}) {
         out[end] = std::max(out[end], kLean * (com_z - bounds.heights[end] - low));
         if (out[end] > 0.0) out[end] += kSpare;

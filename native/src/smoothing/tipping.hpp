@@ -10,6 +10,6 @@ std::vector<TippingBounds> tipping_bounds(const RefineProblem& problem, std::spa
                                           std::span<const NodeIntervals> intervals);
 
 // Least margins at the lower and at the upper end of a node's CoM interval [m].
-std::array<double, 2> least_com_margins(const RobotModel& robot, const TippingBounds& bounds, const Interval& com, double com_z);
+std::array<double, 2> least_com_margins(const RobotModel& robot, const TippingBounds& bounds, double com_z);
 
 }  // namespace stairwright::smoothing

@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from stairwright._core import LEAN, LEGS_GAP, LIGHT, LOW
+from stairwright._core import LEAN, LEGS_GAP, LIGHT, LOW, SPARE
 from stairwright.arrays import Floats, Ints
 
 Motor = Literal["leg", "wheel"]
@@ -28,7 +28,6 @@ THIN_COM, FIRM_GRIP = 0.006, 0.08
 STANDING_GRIP = 0.12
 FIRM_TORQUE = 0.9  # of the motors' torques that standing may take: the rest moves and corrects
 BEYOND_REPAIR = 0.15  # of a motor's torque; where more is lacking somewhere another path is needed
-_SPARE = 5e-4  # m
 JOINTS: dict[Motor, slice] = {"leg": slice(0, 2), "wheel": slice(2, 3)}
 
 
@@ -149,7 +148,7 @@ class NodeMargins:
     @property
     def bad(self) -> Ints:
         """Nodes where a bound is violated, or kept with next to nothing to spare."""
-        return np.flatnonzero(self.least_slack < _SPARE)
+        return np.flatnonzero(self.least_slack < SPARE)
 
 
 _OF_NODES = [one.name for one in fields(NodeMargins)][3:]

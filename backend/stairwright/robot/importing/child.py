@@ -9,6 +9,7 @@ import resource
 import sys
 
 from stairwright.errors import InputError
+from stairwright.resources import address_space
 from stairwright.robot.description import Robot
 
 from .rehearsal import rehearse
@@ -43,15 +44,10 @@ def main() -> None:
 
 def _seal() -> None:
     """From here on it opens no file, writes to none and starts nothing."""
-    try:
-        with open("/proc/self/statm", encoding="ascii") as file:  # noqa: PTH123
-            used = int(file.read().split()[0]) * resource.getpagesize()
-    except OSError:
-        used = 2 * 2**30  # no Linux: a guess on the high side
     free = os.open(os.devnull, os.O_RDONLY)
     os.close(free)
     for what, value in (
-        (resource.RLIMIT_AS, used + _MEMORY),
+        (resource.RLIMIT_AS, address_space() + _MEMORY),
         (resource.RLIMIT_CPU, _CPU),
         (resource.RLIMIT_FSIZE, 0),
         (resource.RLIMIT_NPROC, 0),

@@ -12,6 +12,8 @@ namespace stairwright::smoothing {
 // Where a pair of wheels carries less than this share of the weight, the robot stands on the other one. There it may lean by so
 // much from what is planned [rad] without tipping over, about a height of that share of its legs: a robot that is low tips slowly.
 inline constexpr double kLight = 0.15, kLean = 0.05, kLow = 0.75;
+// What is kept with less than that beyond its bound is kept with next to nothing to spare [m].
+inline constexpr double kSpare = 5e-4;
 
 struct Node {
     WheelPlaces s;

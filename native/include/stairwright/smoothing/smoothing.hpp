@@ -51,10 +51,10 @@ struct Surprise {
 
 // When a robot tips over.
 struct TippingBounds {
-    Interval strayed;               // of a CoM that is held also where a wheel on an edge is kLeastStray from its place
-    // Heights of the contacts over which the robot would tip at the lower and the upper end of its CoM interval; infinite where
-    // both pairs carry it there, so that it cannot.
-    std::array<double, 2> heights;
+    // At the lower and at the upper end of its CoM interval: the margin with which it is held also where a wheel on an edge is
+    // kLeastStray from its place [m], and the height of the contact over which it would tip; infinite where both pairs carry it
+    // there, so that it cannot.
+    std::array<double, 2> strayed, heights;
 };
 
 struct SmoothingProblem {
