@@ -166,6 +166,16 @@ def test_a_tap_is_a_graze_and_a_push_is_a_load() -> None:
     assert push.where[0] == "trunk"
 
 
+def test_parts_that_touch_each_other_are_named_with_the_time() -> None:
+    loads = LinkLoads(0.002)
+    for k in range(4):
+        loads.add(0.1 * k, {}, ("RL_wheel", "FL_calf") if k % 2 else ())
+    verdict, reason = judge(Ending("arrived", 9.0, (1.0, 1.0), 0.001), loads, WEIGHT)
+    assert loads.self_contacts == 2
+    assert verdict == "collided"
+    assert reason == "The front left calf and the rear left wheel touched each other at 0.1 s."
+
+
 def test_falling_and_being_stuck() -> None:
     assert "backward" in fallen(-1.2, 0.0, 0.3, 0.0)
     assert "sideways" in fallen(0.0, 1.2, 0.3, 0.0)

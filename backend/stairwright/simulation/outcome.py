@@ -38,6 +38,7 @@ class LinkLoads:
         where: That link, and the time [s].
         contacts: Control steps with a link on the terrain.
         self_contacts: Control steps with legs touching each other.
+        touched: The parts that did so first, and the time [s].
     """
 
     dt: float
@@ -46,9 +47,19 @@ class LinkLoads:
     where: tuple[str, float] = ("", 0.0)
     contacts: int = 0
     self_contacts: int = 0
+    touched: tuple[tuple[str, ...], float] = ((), 0.0)
 
-    def add(self, time: float, forces: dict[str, float]) -> None:
-        """One control step's `forces` [N] of the terrain by link name; empty when none touches."""
+    def add(self, time: float, forces: dict[str, float], own: tuple[str, ...] = ()) -> None:
+        """Book one control step.
+
+        Args:
+            time: [s].
+            forces: Of the terrain by link name [N]; empty when none touches.
+            own: Two parts of the robot that touch each other, if any.
+        """
+        if own:
+            self.touched = self.touched if self.self_contacts else (own, time)
+            self.self_contacts += 1
         share = self.dt / LOAD_TIME
         if forces:
             self.contacts += 1
@@ -110,18 +121,20 @@ def judge(ending: Ending, loads: LinkLoads, weight: float) -> tuple[Outcome, str
     """The outcome and one sentence about it."""
     done, total = ending.progress
     where = f"at {ending.time:.1f} s, {done:.2f} m of {total:.2f} m along the plan"
+    rest = "" if ending.cause == "arrived" else f" The run ended {where}."
     if ending.cause == "diverged":
         return "diverged", f"The simulation left finite numbers {where}."
     if ending.cause == "fell":
         return "fell", f"The robot {ending.detail} {where}."
     if loads.peak > GRAZE_SHARE * weight:
         link, time = loads.where
-        rest = "" if ending.cause == "arrived" else f" The run ended {where}."
         return "collided", f"{_words(link)} carried {loads.peak:.0f} N at {time:.1f} s.{rest}"
     if ending.cause == "stopped":
         return "stopped", f"The robot stopped {where}, and stands: {ending.detail}."
     if loads.self_contacts:
-        return "collided", f"Its legs touched each other. The run ended {where}."
+        parts, time = loads.touched
+        first, second = map(_words, sorted(parts))
+        return "collided", f"{first} and {second.lower()} touched each other at {time:.1f} s.{rest}"
     if ending.cause == "arrived" and ending.error <= ARRIVED:
         grazes = f"; a link grazed for {loads.contacts} control steps" if loads.contacts else ""
         return "success", f"Arrived after {ending.time:.1f} s{grazes}."

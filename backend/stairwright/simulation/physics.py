@@ -16,7 +16,8 @@ from stairwright.terrain.profile import Terrain
 from .disturbance import Disturbance
 from .world import build_world, real_terrain
 
-Touches = tuple[bool, dict[str, float]]  # own parts touch; forces of the terrain on links [N]
+# Two parts of the robot that touch, if any; forces of the terrain on links [N].
+Touches = tuple[tuple[str, ...], dict[str, float]]
 
 CONTROL_STEPS = 2  # physics steps per control step: 500 Hz
 _PIECE = re.compile(r"(?<=trunk|thigh|_calf)_\d+$")  # of a part that is several shapes
@@ -114,14 +115,14 @@ def touches(model: Any, data: Any, parts: list[str]) -> Touches:
     loads: dict[str, float] = {}
     wheels = int(data.sensordata[0:16:4].sum())
     if data.sensordata[16] == wheels:
-        return False, loads
-    force, own = np.zeros(6), False
+        return (), loads
+    force, own = np.zeros(6), tuple[str, ...]()
     for i, (a, b) in enumerate(data.contact.geom[: data.ncon]):
         first, second = parts[a], parts[b]
         if second.startswith("terrain"):
             first, second = second, first
         if not first.startswith("terrain"):
-            own = True
+            own = (first, second)
         elif not second.endswith("wheel"):
             mujoco.mj_contactForce(model, data, i, force)
             loads[second] = loads.get(second, 0.0) + float(np.hypot(*force[:2]))

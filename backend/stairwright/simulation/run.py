@@ -231,8 +231,7 @@ class Run:
     def touch(self, time: float) -> None:
         """Book contacts that are not a wheel on the terrain, at `time` [s]."""
         own, loads = self.physics.touches()
-        self.loads.self_contacts += own
-        self.loads.add(time, loads)
+        self.loads.add(time, loads, own)
 
     def _at_rest(self) -> bool:
         return bool(np.abs(self.data.qvel[:3]).max() < 0.02)

@@ -11,7 +11,7 @@ from stairwright.errors import InputError
 from stairwright.planning import path_planner
 from stairwright.planning.plan import Plan
 from stairwright.planning.timing import fast as timing
-from stairwright.planning.timing.fast import hastened
+from stairwright.planning.timing.fast import TimingProblem, fastest, hastened, slow_down
 from stairwright.planning.timing.limits import Pace
 from stairwright.planning.timing.path_position import evened
 from stairwright.terrain.stairs import stair
@@ -94,14 +94,43 @@ def test_speeds_of_poses_far_apart_rise_evenly() -> None:
     assert ripple < 0.05 < 0.15 < bursts
 
 
-def test_however_hard_it_is_driven_the_certificate_holds(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def reckless(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
+    """Plans driven far harder than what the certificate allows."""
+    pace = Pace(0.9, 30.0, 300.0, 2000.0, 90.0, 30.0, 9.0)
+    monkeypatch.setattr(Pace, "of", lambda _: pace)
+    return monkeypatch
+
+
+def test_however_hard_it_is_driven_the_certificate_holds(reckless: pytest.MonkeyPatch) -> None:
     """Also where it takes many rounds of slowing down: here each one hardly slows."""
-    reckless = Pace(0.9, 30.0, 300.0, 2000.0, 90.0, 30.0, 9.0)
-    monkeypatch.setattr(Pace, "of", lambda _: reckless)
-    monkeypatch.setattr(timing, "_SLOWER", 0.985)
+    reckless.setattr(timing, "_SLOWER", 0.985)
     plan = sw.plan("three-stairs-up", "a1_wheeled_x", timing="fast")
     assert plan.feasible
     assert plan.certificate.passed
+
+
+def test_where_places_are_not_enough_all_is_slowed_down(reckless: pytest.MonkeyPatch) -> None:
+    in_places = sw.plan("three-stairs-up", "a1_wheeled_x", timing="fast")
+    reckless.setattr(timing, "_LOCAL", 0)
+    everywhere = sw.plan("three-stairs-up", "a1_wheeled_x", timing="fast")
+    assert everywhere.certificate.passed
+    assert everywhere.timing.total > in_places.timing.total
+
+
+def test_slowing_down_reaches_the_poses_next_to_one(steady: Plan) -> None:
+    """The certificate takes straight lines from pose to pose, however far they are apart."""
+    problem = TimingProblem.of(steady, 1.0)
+    squares = fastest(problem)
+    times = problem.pose_times(squares)
+    longest = int(np.diff(times).argmax())
+    flags = np.arange(len(times)) == longest
+    slow_down(problem, {"balance": flags}, times, squares)
+    low, high = problem.poses[[longest, longest + 1]]
+    between = (problem.motion.position >= low) & (problem.motion.position <= high)
+    assert between.any()
+    assert np.allclose(problem.limits.caps["balance"][between], 0.64 * squares[between])
+    assert np.isinf(problem.limits.caps["balance"]).any()
 
 
 def test_inertia_tips_nothing(fast: Plan) -> None:

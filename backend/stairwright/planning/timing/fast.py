@@ -9,7 +9,7 @@ from typing import Self
 import numpy as np
 
 from stairwright import _core
-from stairwright.arrays import Floats
+from stairwright.arrays import Flags, Floats
 from stairwright.planning.certificate.dynamics import WINDOW, dynamics_of
 from stairwright.planning.plan import Plan, Timing, plan_id
 from stairwright.planning.poses.interpolation import reference
@@ -22,7 +22,8 @@ from .moving_robot import MovingRobot, moving_robot, reach_of
 from .path_position import path_positions
 
 SLOWEST = 0.01  # m/s along the path, where a plan starts and ends
-_ROUNDS = 40  # of slowing down where a plan would not be certified; few need more than 8
+_ROUNDS = 60  # of slowing down where a plan would not be certified; few need more than 8
+_LOCAL = 40  # of them around the places where it would not; then of all of it: at rest it holds
 _SLOWER = 0.8  # each time
 _CLEAR = 0.01  # m of clearance, for legs of 0.4 m or less, below which it is driven gently
 _LEAST_EASE = 0.3
@@ -95,15 +96,18 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
     problem = TimingProblem.of(plan, aggressiveness)
     squares = fastest(problem)
     most = 0.5 * (1.0 + np.maximum(problem.effort, _STRAINED))
-    for _ in range(_ROUNDS):
-        found = dynamics_of(plan, problem.pose_times(squares))
-        failures: dict[LimitName, Floats] = {
-            "balance": found.time[found.out_of_balance],
-            "torque": found.time[found.share > most],
+    for k in range(_ROUNDS):
+        times = problem.pose_times(squares)
+        found = dynamics_of(plan, times)
+        failures: dict[LimitName, Flags] = {
+            "balance": found.out_of_balance,
+            "torque": found.share > most,
         }
-        if not any(map(len, failures.values())):
+        if not any(flags.any() for flags in failures.values()):
             break
-        slow_down(problem, failures, squares)
+        if k >= _LOCAL:
+            failures = {"balance": np.ones(len(times), np.bool_)}
+        slow_down(problem, failures, times, squares)
         squares = fastest(problem)
     times = problem.pose_times(squares).tolist()
     names = binding(problem, squares)
@@ -120,18 +124,27 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
 
 
 def slow_down(
-    problem: TimingProblem, failures: Mapping[LimitName, Floats], squares: Floats
+    problem: TimingProblem, failures: Mapping[LimitName, Flags], times: Floats, squares: Floats
 ) -> None:
-    """Lower caps at the times [s] where the certificate's own dynamics find too much asked for.
+    """Lower caps around poses at which the certificate's own dynamics find too much asked for.
 
     Rows hold at samples of the path, with differences over a part of it; the certificate judges
-    poses, with differences over a time.
+    poses, with differences over a time and straight lines from pose to pose: its accelerations
+    depend on the way to the poses next to one, too, however long that takes.
+
+    Args:
+        problem: Whose caps are lowered.
+        failures: By limit, flags (p,) of poses where it is broken.
+        times: (p,) of the poses [s].
+        squares: (n,) squared speeds that `times` come from.
     """
     passed, caps = problem.times(squares), problem.limits.caps
-    for name, times in failures.items():
+    before = np.minimum(np.append(times[0], times[:-1]), times - WINDOW)
+    after = np.maximum(np.append(times[1:], times[-1]), times + WINDOW)
+    for name, failed in failures.items():
         near = np.zeros(len(passed), np.bool_)
-        for time in times:
-            near |= np.abs(passed - time) <= WINDOW
+        for begin, end in zip(before[failed], after[failed], strict=True):
+            near |= (passed >= begin) & (passed <= end)
         cap = caps.get(name, np.full(len(passed), np.inf))
         caps[name] = np.where(near, np.minimum(cap, _SLOWER**2 * squares), cap)
 
