@@ -44,7 +44,7 @@ def test_of_three_joints_in_the_side_view_the_user_says_which_is_rigid() -> None
     message = refused(text)
     assert message.startswith("file: 'FL_ankle_joint': one joint too many")
     assert "FL_thigh_joint, FL_calf_joint, FL_ankle_joint" in message
-    assert "hold one, for instance FL_ankle_joint=0.3" in message
+    assert "hold one in each leg, for instance FL_ankle_joint=0.3" in message
     bent = imported(text, dict.fromkeys(ANKLES, 0.5))
     length = math.hypot(straight - BELOW + BELOW * math.cos(0.5), BELOW * math.sin(0.5))
     assert bent.robot.calf.length == pytest.approx(length, abs=1e-4)
@@ -63,7 +63,7 @@ def test_a_hip_that_turns_like_the_thigh_can_be_held() -> None:
         urdf(Design()),
         flags=re.DOTALL,
     )
-    assert "hold one, for instance FL_hip_joint=0 [rad]" in refused(text)
+    assert "hold one in each leg, for instance FL_hip_joint=0 [rad]" in refused(text)
     assert imported(text, dict.fromkeys(hips, 0.0)).robot.held_joints == dict.fromkeys(hips, 0.0)
 
 

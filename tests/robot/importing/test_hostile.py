@@ -157,6 +157,11 @@ def test_zips() -> None:
             unpack(data, "a.zip")
 
 
+def test_xacro_by_its_name_is_told_what_to_do() -> None:
+    with pytest.raises(InputError, match="run xacro on it first"):
+        unpack(URDF.encode(), "a.urdf.xacro")
+
+
 def test_zip_bombs(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(InputError, match="unpacks to more than"):
         unpack(zipped(**{"a.urdf": bytes(65 * 2**20)}), "a.zip")

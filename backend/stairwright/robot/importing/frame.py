@@ -135,8 +135,8 @@ def _angle(source: Source, frame: Frame, leg: Chain, lean: float) -> float:
     if abs(along) > 0.9:
         raise InputError(
             f"{source.joint(leg.abduction)!r} turns about the axis of "
-            f"{source.joint(leg.thigh)!r}: one joint too many in the side view; hold one, for "
-            f"instance {source.joint(leg.abduction)}=0 [rad]",
+            f"{source.joint(leg.thigh)!r}: one joint too many in the side view; hold one "
+            f"in each leg, for instance {source.joint(leg.abduction)}=0 [rad]",
             ("file",),
         )
     # Turning about `axis` by a: thigh_y(a) = c + p cos a + q sin a, at its most where tan a = q/p.

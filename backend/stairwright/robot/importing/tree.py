@@ -221,8 +221,8 @@ def _too_many(source: Source, path: list[int], end: str) -> str:
     if len(planar) > 2:
         return (
             f"{planar[-1]!r}: one joint too many in the leg that ends in {end!r}, which bends in "
-            f"its plane at {listed(planar)}; there may be a thigh and a calf: hold one, for "
-            f"instance {planar[-1]}=0.3 [rad]"
+            f"its plane at {listed(planar)}; there may be a thigh and a calf: hold one in "
+            f"each leg, for instance {planar[-1]}=0.3 [rad]"
         )
     names = [source.joint(joint) for joint in path]
     return (

@@ -16,6 +16,7 @@ MOST_BYTES = 64 * 2**20  # of everything, unpacked
 MOST_XML = 4 * 2**20
 _MOST_FILES = 2000
 XML_ENDINGS = (".urdf", ".xml", ".mjcf")
+XACRO = "this is xacro, not yet URDF: run xacro on it first"
 _MESHES = (".stl", ".obj", ".msh", ".dae", ".ply", ".off")
 
 
@@ -74,6 +75,8 @@ def unpack(data: bytes, file_name: str) -> Upload:
 def _check_ending(file_name: str, data: bytes) -> None:
     if file_name.lower().endswith(".zip"):
         raise InputError(f"{PurePosixPath(file_name).name!r} is not a zip", ("file",))
+    if file_name.lower().endswith(".xacro"):
+        raise InputError(XACRO, ("file",))
     if not file_name.lower().endswith(XML_ENDINGS):
         name = PurePosixPath(file_name).name or "the file"
         schema = schema_in(data)

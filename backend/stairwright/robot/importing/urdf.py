@@ -11,6 +11,7 @@ import numpy as np
 from stairwright.errors import InputError
 
 from .report import Notes, listed
+from .upload import XACRO
 
 _SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
 _JOINT_PARTS = ("origin", "parent", "child", "axis", "limit", "dynamics")
@@ -54,7 +55,7 @@ def clean(root: ET.Element, notes: Notes) -> Urdf:
         "xacro" in element.tag or any("${" in value for value in element.attrib.values())
         for element in root.iter()
     ):
-        raise InputError("this is xacro, not yet URDF: run xacro on it first", ("file",))
+        raise InputError(XACRO, ("file",))
     made = ET.Element("robot", name=root.get("name") or "robot")
     settings = root.find("mujoco/compiler")
     kept = (
