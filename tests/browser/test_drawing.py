@@ -131,6 +131,20 @@ def test_saving_over_a_terrain_can_be_undone_and_descriptions_can_be_edited(
     page.keyboard.press("Escape")
 
 
+def test_what_opens_has_the_focus_before_anybody_can_type(product: Product) -> None:
+    """Else what is typed into another field at once ends up in the first one."""
+    page = product.page
+    focused = page.get_by_role("button", name=TERRAIN).evaluate(
+        """async (button) => {
+            button.click();
+            for (let i = 0; i < 20; i++) await Promise.resolve();  // no frame is drawn meanwhile
+            return document.activeElement.matches(".panel input");
+        }"""
+    )
+    assert focused
+    page.keyboard.press("Escape")
+
+
 def test_what_another_window_saved_is_offered_and_not_replaced_in_silence(
     product: Product, server: Server
 ) -> None:

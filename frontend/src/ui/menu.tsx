@@ -1,7 +1,7 @@
 /** A button with a panel below it: arrows walk its items, Escape closes and gives the focus back. */
 
 import type { ComponentChildren } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useLayoutEffect, useRef, useState } from "preact/hooks";
 
 interface MenuProps {
   /** Names panel and button; with `named` the button's own text is its name. */
@@ -30,7 +30,8 @@ export function Menu(props: MenuProps) {
     trigger.current?.focus();
   };
 
-  useEffect(() => {
+  // Before anybody can type: a focus that came later would take the field from under the hand.
+  useLayoutEffect(() => {
     if (!isOpen) return;
     const first = root.current?.querySelector<HTMLElement>(
       kind === "menu" ? ITEMS : "input, select, textarea, .panel button",

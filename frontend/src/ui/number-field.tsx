@@ -1,6 +1,6 @@
 /** A number that can be typed, stepped with the arrows, and left unfinished while typing. */
 
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 
 interface NumberFieldProps {
   value: number;
@@ -46,7 +46,7 @@ export function NumberField(props: NumberFieldProps) {
     if (document.activeElement !== input.current) setText(null);
   }, [value]);
 
-  useEffect(() => {
+  useLayoutEffect(() => {
     if (!props.focus) return;
     input.current?.focus();
     input.current?.select();
