@@ -137,6 +137,26 @@ def plan() -> dict:
     return example_plan(count=40).model_dump(mode="json")
 
 
+def test_a_dark_page_never_flashes_light_while_its_scene_loads(site, visit, plan):
+    site.open("flash").show(plan=plan, theme="dark")
+    page = visit("about:blank")
+    page.add_init_script(
+        """window.frames_seen = [];
+        (function look() {
+          const root = document.documentElement;
+          if (root) window.frames_seen.push(
+            [root.dataset.mantineColorScheme, getComputedStyle(document.body ?? root).opacity]);
+          requestAnimationFrame(look);
+        })();"""
+    )
+    page.goto("/scene/flash/?embedded=1&theme=dark")
+    wait_until(page, lambda shot: shot[5:40, 5:40].mean() < 60 and seen(shot))
+    frames = page.evaluate("window.frames_seen")
+    assert ["light", "0"] in frames
+    assert ["light", "1"] not in frames
+    assert frames[-1] == ["dark", "1"]
+
+
 def test_embedded_scene_shows_the_robot_and_no_panel(site, visit, plan):
     site.open("a").show(plan=plan)
     page = visit("/scene/a/?embedded=1&websocket=ws://127.0.0.1:1&playbackPath=x")

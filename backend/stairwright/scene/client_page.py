@@ -14,7 +14,8 @@ import viser
 from stairwright.errors import StairwrightError
 
 # Dark and light backdrops of the design; the canvas itself is transparent. Embedded, viser's panel
-# and notices are hidden: the page around it has its own. The scene's own window keeps them.
+# and notices are hidden: the page around it has its own. The scene's own window keeps them. What
+# waits for its theme is see-through.
 _STYLE = """
 html, body { background: #0f1317; }
 html[data-mantine-color-scheme="light"], html[data-mantine-color-scheme="light"] body
@@ -23,6 +24,8 @@ canvas[data-engine]
   { background: radial-gradient(120% 90% at 50% 20%, #1a2128 0%, #12171c 55%, #0d1114 100%); }
 [data-mantine-color-scheme="light"] canvas[data-engine]
   { background: radial-gradient(120% 90% at 50% 15%, #ffffff 0%, #f4f7f9 55%, #e6ebef 100%); }
+html[data-awaits] { background: transparent; }
+html[data-awaits] body { opacity: 0; background: transparent; }
 html[data-embedded] [data-floating-window], html[data-embedded] [data-dock-group],
 /* in frames narrower than a phone the panel is a sheet of another kind */
 html[data-embedded] .mantine-Paper-root,
@@ -32,6 +35,8 @@ html[data-embedded] .mantine-Notifications-root { display: none !important; }
 # 1. `?embedded=1` marks the document. 2. `?websocket=` and `?playbackPath=` would make the client
 # trust another server, so they are removed, also where the client writes its own address back.
 # 3. A frame that never had the focus would never reconnect: being visible counts as focus.
+# 4. The client is drawn light until the server has told it the theme: a dark page would flash white.
+# With `?theme=` it is shown once it has that theme, or after some seconds in any.
 _SCRIPT = """
 (function () {
   var q = new URLSearchParams(location.search);
@@ -49,6 +54,16 @@ _SCRIPT = """
   document.addEventListener("visibilitychange", function () {
     window.dispatchEvent(new Event(document.hidden ? "blur" : "focus"));
   });
+  var root = document.documentElement, theme = q.get("theme");
+  if (theme !== "dark" && theme !== "light") return;
+  root.dataset.awaits = "";
+  function show() { watch.disconnect(); delete root.dataset.awaits; }
+  var watch = new MutationObserver(function () {
+    if (root.dataset.mantineColorScheme === theme && document.querySelector("canvas[data-engine]"))
+      show();
+  });
+  watch.observe(root, { attributes: true, childList: true, subtree: true });
+  setTimeout(show, 5000);
 })();
 """
 

@@ -1,7 +1,7 @@
 /** The 3-D scene: viser's page in a frame, with our header. */
 
 import { computed } from "@preact/signals";
-import { useRef } from "preact/hooks";
+import { useRef, useState } from "preact/hooks";
 import { hasFailed } from "../api/types";
 import { fixed } from "../geometry/format";
 import { PanelTools } from "../plan/panel-tools";
@@ -11,7 +11,7 @@ import { held, isEmpty } from "../state/drawing";
 import { livePlan } from "../state/live";
 import { plan } from "../state/planning";
 import { duration, shownRun, shownTime } from "../state/playback";
-import { legendOpen } from "../state/view";
+import { legendOpen, theme } from "../state/view";
 import { Icon } from "../ui/icon";
 import { IconButton } from "../ui/icon-button";
 import { Menu, MenuItem } from "../ui/menu";
@@ -105,20 +105,25 @@ export function Scene() {
         <PanelTools panel="scene" title="scene" />
       </div>
       <div class="v3">
-        {address && (
-          <iframe
-            key={session.value!.id}
-            src={`${address}?embedded=1&hideViserLogo`}
-            title="3-D scene"
-            allow="fullscreen"
-            onLoad={(event) => leaveTime(event.currentTarget.contentWindow!, handMoves)}
-          />
-        )}
+        {address && <SceneFrame key={session.value!.id} address={address} />}
         {!isEmpty.value && connected.value && <Tag />}
         {!isEmpty.value && connected.value && <SceneLegend />}
         {(!connected.value || isEmpty.value) && <SceneVeil />}
       </div>
     </>
+  );
+}
+
+function SceneFrame({ address }: { address: string }) {
+  // With the theme as it is now: another address later would load the scene anew.
+  const [source] = useState(() => `${address}?embedded=1&hideViserLogo&theme=${theme.peek()}`);
+  return (
+    <iframe
+      src={source}
+      title="3-D scene"
+      allow="fullscreen"
+      onLoad={(event) => leaveTime(event.currentTarget.contentWindow!, handMoves)}
+    />
   );
 }
 
