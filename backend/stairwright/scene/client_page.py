@@ -35,7 +35,7 @@ html[data-embedded] .mantine-Notifications-root { display: none !important; }
 # 1. `?embedded=1` marks the document. 2. `?websocket=` and `?playbackPath=` would make the client
 # trust another server, so they are removed, also where the client writes its own address back.
 # 3. A frame that never had the focus would never reconnect: being visible counts as focus.
-# 4. The client is drawn light until the server has told it the theme: a dark page would flash white.
+# 4. The client is drawn light until the server has told it the theme: dark pages would flash white.
 # With `?theme=` it is shown once it has that theme, or after some seconds in any.
 _SCRIPT = """
 (function () {
