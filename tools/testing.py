@@ -53,8 +53,8 @@ def test(arguments: Sequence[str]) -> int:
     setup()
     variables = {} if quick else {"STAIRWRIGHT_BROWSER": setup_browser()}
     if whole or quick:
-        # Slow tests wait for servers and browsers now and then: two processes more than cores.
-        processes = min((os.cpu_count() or 1) + 2 * (not quick), MOST_TEST_PROCESSES)
+        # Slow tests wait for servers and browsers now and then: one process more than cores.
+        processes = min((os.cpu_count() or 1) + (not quick), MOST_TEST_PROCESSES)
         shared = ["-n", str(processes)]
         arguments = shared + (["-m", "not slow and not browser"] if quick else [])
     failed: list[str] = []
