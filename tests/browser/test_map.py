@@ -270,13 +270,25 @@ def test_a_deleted_map_is_back_after_undo_and_gone_without(room: Product) -> Non
     page.get_by_role("heading", name="How far can it go?").wait_for()
     page.get_by_role("button", name="Undo").last.click()
     page.get_by_role("button", name="Go on").wait_for()
+    earlier, maps = page.get_by_role("button", name="Earlier"), page.get_by_role("menuitem")
+    earlier.click()
+    count = maps.count()
+    page.keyboard.press("Escape")
+    lists: list[Route] = []
+    page.route("**/studies?*", lambda route: lists.append(route))
     with page.expect_response(
         lambda answer: answer.request.method == "DELETE" and "/studies/" in answer.url
     ) as answer:
         delete.click()
     assert answer.value.status == 204
-    page.get_by_role("button", name="Earlier").click()
-    page.get_by_role("menuitem").first.click()
+    # Also while the list without it is still on its way.
+    earlier.click()
+    maps.first.wait_for()
+    assert maps.count() == count - 1
+    page.unroute("**/studies?*")
+    for each in lists:
+        each.continue_()
+    maps.first.click()
     page.get_by_role("button", name="Table").wait_for()
 
 

@@ -34,7 +34,7 @@ export const title = (each: Summary) =>
 const removed = removal<Summary>({
   path: ({ id }) => path(id),
   title: (each) => `The search “${title(each)}”`,
-  gone: () => void readList().catch(report),
+  gone: () => readList().catch(report),
 });
 export const summaries = computed(() =>
   listed.value.filter((each) => !removed.doomed.value.has(each.id)),

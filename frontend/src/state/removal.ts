@@ -13,8 +13,8 @@ interface Removable<T> {
   path: (item: T) => string;
   /** What a sentence calls it. */
   title: (item: T) => string;
-  /** The service has it no longer. */
-  gone: (item: T) => void;
+  /** The service has it no longer; when this is done, no list has it any more. */
+  gone: (item: T) => void | Promise<void>;
 }
 
 export interface Removal<T> {
@@ -41,7 +41,7 @@ export function removal<T extends { id: string }>(of: Removable<T>): Removal<T> 
     try {
       const answer = await tell(item);
       if (!answer.ok && answer.status !== 404) throw new Error(`the service said ${answer.status}`);
-      of.gone(item);
+      await of.gone(item);
     } catch (error) {
       report(error);
       toast.value = { text: `${of.title(item)} could not be deleted.` };
