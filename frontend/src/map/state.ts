@@ -34,7 +34,7 @@ export const title = (each: StudyState) =>
 const removed = removal<StudyState>({
   path: ({ id }) => `studies/${encodeURIComponent(id)}`,
   title: (each) => `The map “${title(each)}”`,
-  gone: () => readList(),
+  gone: readList,
 });
 export const earlier = computed(() =>
   listed.value.filter((each) => !removed.doomed.value.has(each.id)),

@@ -125,7 +125,7 @@ def test_slowing_down_reaches_the_poses_next_to_one(steady: Plan) -> None:
     times = problem.pose_times(squares)
     longest = int(np.diff(times).argmax())
     flags = np.arange(len(times)) == longest
-    slow_down(problem, {"balance": flags}, times, squares)
+    slow_down(problem, {"balance": flags}, squares)
     low, high = problem.poses[[longest, longest + 1]]
     between = (problem.motion.position >= low) & (problem.motion.position <= high)
     assert between.any()

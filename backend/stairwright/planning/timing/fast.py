@@ -97,8 +97,7 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
     squares = fastest(problem)
     most = 0.5 * (1.0 + np.maximum(problem.effort, _STRAINED))
     for k in range(_ROUNDS):
-        times = problem.pose_times(squares)
-        found = dynamics_of(plan, times)
+        found = dynamics_of(plan, problem.pose_times(squares))
         failures: dict[LimitName, Flags] = {
             "balance": found.out_of_balance,
             "torque": found.share > most,
@@ -106,8 +105,8 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
         if not any(flags.any() for flags in failures.values()):
             break
         if k >= _LOCAL:
-            failures = {"balance": np.ones(len(times), np.bool_)}
-        slow_down(problem, failures, times, squares)
+            failures = {name: np.full_like(flags, flags.any()) for name, flags in failures.items()}
+        slow_down(problem, failures, squares)
         squares = fastest(problem)
     times = problem.pose_times(squares).tolist()
     names = binding(problem, squares)
@@ -123,9 +122,7 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
     return plan.model_copy(update={"id": plan_id(*asked), "poses": timed, "timing": timing})
 
 
-def slow_down(
-    problem: TimingProblem, failures: Mapping[LimitName, Flags], times: Floats, squares: Floats
-) -> None:
+def slow_down(problem: TimingProblem, failures: Mapping[LimitName, Flags], squares: Floats) -> None:
     """Lower caps around poses at which the certificate's own dynamics find too much asked for.
 
     Rows hold at samples of the path, with differences over a part of it; the certificate judges
@@ -135,10 +132,10 @@ def slow_down(
     Args:
         problem: Whose caps are lowered.
         failures: By limit, flags (p,) of poses where it is broken.
-        times: (p,) of the poses [s].
-        squares: (n,) squared speeds that `times` come from.
+        squares: (n,) squared speeds at which they are.
     """
     passed, caps = problem.times(squares), problem.limits.caps
+    times = problem.pose_times(squares)
     before = np.minimum(np.append(times[0], times[:-1]), times - WINDOW)
     after = np.maximum(np.append(times[1:], times[-1]), times + WINDOW)
     for name, failed in failures.items():
