@@ -137,24 +137,48 @@ def plan() -> dict:
     return example_plan(count=40).model_dump(mode="json")
 
 
+# What of its theme each frame of the document showed.
+RECORD_FRAMES = """
+window.shown = [];
+(function look() {
+  const root = document.documentElement;
+  if (root) window.shown.push(
+    [root.dataset.mantineColorScheme, getComputedStyle(document.body ?? root).opacity]);
+  requestAnimationFrame(look);
+})();
+"""
+
+
 def test_a_dark_page_never_flashes_light_while_its_scene_loads(site, visit, plan):
     site.open("flash").show(plan=plan, theme="dark")
     page = visit("about:blank")
-    page.add_init_script(
-        """window.frames_seen = [];
-        (function look() {
-          const root = document.documentElement;
-          if (root) window.frames_seen.push(
-            [root.dataset.mantineColorScheme, getComputedStyle(document.body ?? root).opacity]);
-          requestAnimationFrame(look);
-        })();"""
-    )
+    page.add_init_script(RECORD_FRAMES)
     page.goto("/scene/flash/?embedded=1&theme=dark")
     wait_until(page, lambda shot: shot[5:40, 5:40].mean() < 60 and seen(shot))
-    frames = page.evaluate("window.frames_seen")
-    assert ["light", "0"] in frames
-    assert ["light", "1"] not in frames
-    assert frames[-1] == ["dark", "1"]
+    shown = page.evaluate("shown")
+    assert ["light", "0"] in shown
+    assert ["light", "1"] not in shown
+    assert shown[-1] == ["dark", "1"]
+
+
+def test_nor_where_it_is_only_displayed_later(site, visit, plan):
+    """A phone has the scene behind a tab."""
+    site.open("later").show(plan=plan, theme="dark")
+    page = visit("about:blank")
+    page.add_init_script(RECORD_FRAMES)
+    page.clock.install()
+    page.goto("/frame/later")
+    address = "/scene/later/?embedded=1&theme=dark"
+    page.set_content(f'<iframe hidden width="400" height="280" src="{address}"></iframe>')
+    frame = page.frames[1]
+    frame.wait_for_load_state()
+    page.clock.fast_forward(20_000)
+    assert frame.evaluate("document.querySelector('canvas[data-engine]')") is None
+    page.locator("iframe").evaluate("frame => { frame.hidden = false; }")
+    wait_until(page, seen)
+    shown = frame.evaluate("shown")
+    assert ["light", "1"] not in shown
+    assert shown[-1] == ["dark", "1"]
 
 
 def test_embedded_scene_shows_the_robot_and_no_panel(site, visit, plan):

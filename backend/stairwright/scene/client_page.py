@@ -36,7 +36,8 @@ html[data-embedded] .mantine-Notifications-root { display: none !important; }
 # trust another server, so they are removed, also where the client writes its own address back.
 # 3. A frame that never had the focus would never reconnect: being visible counts as focus.
 # 4. The client is drawn light until the server has told it the theme: dark pages would flash white.
-# With `?theme=` it is shown once it has that theme, or after some seconds in any.
+# With `?theme=` it is shown once it has that theme, or in any after some seconds on the screen: a
+# frame that is not displayed draws nothing yet.
 _SCRIPT = """
 (function () {
   var q = new URLSearchParams(location.search);
@@ -63,7 +64,12 @@ _SCRIPT = """
       show();
   });
   watch.observe(root, { attributes: true, childList: true, subtree: true });
-  setTimeout(show, 5000);
+  var displayed = new ResizeObserver(function () {
+    if (!innerWidth) return;
+    displayed.disconnect();
+    setTimeout(show, 5000);
+  });
+  displayed.observe(root);
 })();
 """
 

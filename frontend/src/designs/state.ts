@@ -2,6 +2,7 @@
 
 import { batch, computed, effect, signal } from "@preact/signals";
 import { ApiError, BASE, call, callJson, reasonOf } from "../api/client";
+import { inOrder } from "../api/in-order";
 import type { components } from "../api/schema";
 import { report } from "../state/connection";
 import { readFlag, kept as remembered } from "../state/kept";
@@ -158,9 +159,12 @@ export async function pause(): Promise<void> {
   }
 }
 
-async function readList(): Promise<void> {
-  listed.value = await callJson<Summary[]>("GET", "designs");
-}
+const readList = inOrder(
+  () => callJson<Summary[]>("GET", "designs"),
+  (list) => {
+    listed.value = list;
+  },
+);
 
 /** Between looks at the list [ms]. */
 const EVERY = 3000;

@@ -2,6 +2,7 @@
 
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { ApiError, reasonOf } from "../api/client";
+import { inOrder } from "../api/in-order";
 import { report } from "../state/connection";
 import { removal } from "../state/removal";
 import { decode, encode, given, kept } from "../state/share";
@@ -34,7 +35,7 @@ export const title = (each: StudyState) =>
 const removed = removal<StudyState>({
   path: ({ id }) => `studies/${encodeURIComponent(id)}`,
   title: (each) => `The map “${title(each)}”`,
-  gone: readList,
+  gone: () => readList(),
 });
 export const earlier = computed(() =>
   listed.value.filter((each) => !removed.doomed.value.has(each.id)),
@@ -192,13 +193,11 @@ export function remove(): void {
   removed.remove(shown, () => void openStudy(shown.id));
 }
 
-export async function readList(): Promise<void> {
-  try {
-    listed.value = await listStudies();
-  } catch (error) {
-    report(error);
-  }
-}
+const newestList = inOrder(listStudies, (list) => {
+  listed.value = list;
+});
+
+export const readList = (): Promise<void> => newestList().catch(report);
 
 interface Kept {
   i?: string;
