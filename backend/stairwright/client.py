@@ -56,7 +56,7 @@ class Client(Connection):
     def import_robot(
         self, path: str | Path, *, hold: Mapping[str, float] | None = None, **fields: Any
     ) -> Imported:
-        """The robot in a URDF or MJCF file, or in a zip of one with its meshes."""
+        """The robot in a URDF or MJCF file, in a zip of one with its meshes, or in our YAML."""
         file = Path(path)
         files = {"file": (file.name, file.read_bytes())}
         fields["hold"] = [f"{joint}={position}" for joint, position in (hold or {}).items()]

@@ -22,13 +22,13 @@ def import_robot(
     wheel_radius: float | None = None,
     hold: Mapping[str, float] | None = None,
 ) -> Imported:
-    """The robot in a URDF or MJCF file, or in a zip that holds one with its meshes.
+    """The robot in a URDF or MJCF file, in a zip that holds one with its meshes, or in our YAML.
 
     The file is read in a process of its own with little time and memory; meshes are looked for in
     the file's own folder and below, or in the zip, and nowhere else.
 
     Args:
-        path: The file; its ending is .urdf, .xml, .mjcf or .zip.
+        path: The file; its ending is .urdf, .xml, .mjcf, .zip, .yaml or .json.
         abduction: Angle at which the legs are locked, outward from upright [rad].
         wheel_radius: Where the file shows none, or another one [m].
         hold: Joints that count as rigid, by the file's names, and where [rad or m, the file's].

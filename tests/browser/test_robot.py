@@ -11,11 +11,12 @@ import pytest
 
 import stairwright as sw
 from stairwright.export.formats import save
+from stairwright.export.table import ROBOT_FORMATS
 from tests.robot.importing.written import ANKLES, with_ankles
 
 from .axe import violations
 from .conftest import DESK, PHONE, Product
-from .robot_room import LAPTOP, choose, choose_file, enter, robot_room, state
+from .robot_room import LAPTOP, choose, choose_file, enter, field, robot_room, state
 
 if TYPE_CHECKING:
     from playwright.sync_api import ViewportSize
@@ -114,6 +115,23 @@ def test_an_edited_robot_is_downloaded(product: Product, tmp_path: Path) -> None
         download.value.save_as(path)
         found = sw.load_robot(str(path)) if name == "YAML" else sw.import_robot(path).robot
         assert found.calf.length == pytest.approx(0.215, abs=1e-6), name
+
+
+def test_a_downloaded_robot_comes_back(product: Product) -> None:
+    """Dropped in another room, or pasted: what it is stands in it."""
+    page = product.page
+    mine = sw.load_robot("d1").model_copy(update={"name": "my own"})
+    text = ROBOT_FORMATS["yaml"].write(mine).decode()
+    for bring in (lambda: product.drop("mine.yaml", text), lambda: product.paste(text)):
+        page.keyboard.press("1")
+        bring()
+        report = page.get_by_role("region", name="File")
+        report.get_by_text("read: my own").wait_for()
+        report.get_by_role("button", name="Open my own").click()
+        assert product.planned().status == "feasible"
+        assert state(product) == "not saved"
+        assert float(field(product, "wheel.radius").input_value()) == mine.wheel.radius
+        page.get_by_role("button", name="Close my own").click()
 
 
 def test_a_file_is_read_reported_and_opened(product: Product, tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ def import_robot(
     """The robot in a file, as a `report.Imported` document.
 
     Args:
-        data: The file: URDF, MJCF, or a zip that holds one with its meshes.
+        data: The file: URDF, MJCF, a zip that holds one with its meshes, or a document of ours.
         file_name: Its name.
         options: ``abduction`` [rad], ``wheel_radius`` [m], ``hold`` [rad or m by joint].
         known: Documents of the presets, to compare with.
@@ -27,11 +27,10 @@ def import_robot(
     Raises:
         InputError: If it is no robot of four legs with wheels; names the link or joint.
     """
-    from stairwright.robot.importing.read import read
-    from stairwright.robot.importing.upload import unpack
+    from stairwright.robot.importing.read import read_file
 
     robots = [parse(Robot, dict(document)) for document in known]
-    return read(unpack(data, file_name), options, robots).model_dump(mode="json")
+    return read_file(data, file_name, options, robots).model_dump(mode="json")
 
 
 def rehearse() -> None:

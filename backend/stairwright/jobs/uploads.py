@@ -6,18 +6,15 @@ from collections.abc import Callable, Mapping
 from pathlib import PurePath
 from typing import Any
 
-from stairwright.complaints import schema_in, wrong_kind
-from stairwright.documents import parse, parse_mapping
+from stairwright.documents import parse
 from stairwright.errors import InputError
+from stairwright.sent import sent_mapping, sent_text
 from stairwright.terrain.mesh import FILE_TYPES, slice_mesh
 from stairwright.terrain.mesh_heights import mesh_heights
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.tables import parse_table
 
 Options = Mapping[str, Any]
-MAX_TEXT = 4 * 2**20  # bytes of a JSON or CSV file
-MAX_YAML = 2**18  # characters; read by plain Python
-MAX_DEPTH = 20  # of brackets in YAML
 
 
 def import_terrain(data: bytes, file_name: str, options: Options) -> dict[str, Any]:
@@ -67,45 +64,13 @@ def _mesh(data: bytes, suffix: str, options: Options) -> Terrain:
 
 
 def _table(data: bytes, _: str, options: Options) -> Terrain:
-    return parse_table(_text(data), options.get("name", "imported"), options.get("friction", 0.6))
+    name, friction = options.get("name", "imported"), options.get("friction", 0.6)
+    return parse_table(sent_text(data), name, friction)
 
 
 def _document(data: bytes, suffix: str, options: Options) -> Terrain:
-    wrong = wrong_kind(schema_in(data), "stairwright/terrain/1")
-    if wrong:
-        raise InputError(f"the file is {wrong}", ("file",))
-    text = _text(data)
-    if suffix == "json":
-        if not text.lstrip().startswith("{"):
-            raise InputError("the file must hold a JSON object", ("file",))
-    else:
-        _refuse_deep_yaml(text)
-    try:
-        mapping = parse_mapping(text, "the file")
-    except InputError as error:
-        raise error.within("file") from None
     given = {key: options[key] for key in ("name", "friction") if key in options}
-    return parse(Terrain, {**mapping, **given})
-
-
-def _refuse_deep_yaml(text: str) -> None:
-    """YAML takes its reader time that grows with the square of the nesting."""
-    if len(text) > MAX_YAML:
-        raise InputError(f"a YAML file may have at most {MAX_YAML >> 10} KiB", ("file",))
-    depth = 0
-    for character in text:
-        depth += (character in "[{") - (character in "]}")
-        if depth > MAX_DEPTH:
-            raise InputError(f"the file nests deeper than {MAX_DEPTH} levels", ("file",))
-
-
-def _text(data: bytes) -> str:
-    if len(data) > MAX_TEXT:
-        raise InputError(f"a text file may have at most {MAX_TEXT >> 20} MiB", ("file",))
-    try:
-        return data.decode("utf-8")
-    except UnicodeDecodeError:
-        raise InputError("the file is not UTF-8 text", ("file",)) from None
+    return parse(Terrain, {**sent_mapping(data, suffix, "stairwright/terrain/1"), **given})
 
 
 READERS: dict[str, Callable[[bytes, str, Options], Terrain]] = {

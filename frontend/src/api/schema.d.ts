@@ -171,7 +171,7 @@ export interface components {
         Body_import_robot: {
             /**
              * Format: binary
-             * @description URDF, MJCF, or a zip with the meshes
+             * @description URDF, MJCF, a zip with the meshes, or our YAML or JSON
              */
             file: string;
             /**

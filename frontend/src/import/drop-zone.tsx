@@ -5,16 +5,15 @@ import { useEffect } from "preact/hooks";
 import { droppedRobot } from "../state/dropped";
 import { workspace } from "../state/workspace";
 import { Icon } from "../ui/icon";
-import { takeFile, takeText } from "./take";
+import { holdsRobot, pastedFile } from "./kind";
+import { takeFile } from "./take";
 
 const hovering = signal(false);
 
-const ROBOT = /\.(urdf|mjcf|xml|zip)$/i;
-
 /** A robot's file goes to its room, everything else is a profile. */
-function take(file: File): void {
-  if (!ROBOT.test(file.name)) {
-    void takeFile(file, "page");
+async function take(file: File): Promise<void> {
+  if (!(await holdsRobot(file))) {
+    await takeFile(file, "page");
     return;
   }
   droppedRobot.value = file;
@@ -40,14 +39,14 @@ export function DropZone() {
       const file = event.dataTransfer?.files[0];
       if (!file) return;
       event.preventDefault();
-      take(file);
+      void take(file);
     };
     const paste = (event: ClipboardEvent) => {
       if (isField(event.target)) return;
       const file = event.clipboardData?.files[0];
       const text = event.clipboardData?.getData("text/plain") ?? "";
-      if (file) take(file);
-      else if (text.trim()) takeText(text, "page");
+      if (file) void take(file);
+      else if (text.trim()) void take(pastedFile(text));
     };
     addEventListener("dragover", over);
     addEventListener("dragleave", leave);
@@ -66,7 +65,7 @@ export function DropZone() {
       <div>
         <Icon name="upload" />
         <b>Drop a profile or a robot</b>
-        CSV, JSON or YAML points, an STL or OBJ mesh; URDF, MJCF or zip
+        Points in CSV, JSON or YAML, an STL or OBJ mesh; a robot in URDF, MJCF, zip or YAML
       </div>
     </div>
   );

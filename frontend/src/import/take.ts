@@ -50,14 +50,3 @@ async function terrainIn(file: File): Promise<File> {
     return file;
   }
 }
-
-/** Pasted text becomes a file whose ending says what it looks like. */
-export function takeText(text: string, place: Place): void {
-  const trimmed = text.trim();
-  const ending = /^[{[]/.test(trimmed)
-    ? "json"
-    : /(^|\n)\s*points\s*:/.test(trimmed)
-      ? "yaml"
-      : "csv";
-  void takeFile(new File([trimmed], `pasted.${ending}`, { type: "text/plain" }), place);
-}

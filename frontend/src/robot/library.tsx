@@ -46,7 +46,7 @@ export function Library() {
         ))}
       </div>
       <div class="drop-here">
-        <b>Drop URDF, MJCF or zip</b>
+        <b>Drop URDF, MJCF, zip or YAML</b>
         <span>
           or{" "}
           <button type="button" onClick={() => file.current?.click()}>
@@ -58,7 +58,7 @@ export function Library() {
           type="file"
           hidden
           aria-label="Robot file"
-          accept=".urdf,.xml,.mjcf,.zip"
+          accept=".urdf,.xml,.mjcf,.zip,.yaml,.yml,.json"
           onChange={(event) => {
             const chosen = event.currentTarget.files?.[0];
             event.currentTarget.value = "";

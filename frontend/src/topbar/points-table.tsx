@@ -3,7 +3,8 @@
 import { useEffect, useRef } from "preact/hooks";
 import { fixed } from "../geometry/format";
 import { ImportProblem } from "../import/import-problem";
-import { importProblem, takeText } from "../import/take";
+import { pastedFile } from "../import/kind";
+import { importProblem, takeFile } from "../import/take";
 import { addVertex, moveVertices, removeVertices } from "../profile-editor/edits";
 import { names } from "../profile-editor/vertices";
 import { commit, draft, drawing } from "../state/drawing";
@@ -43,7 +44,7 @@ export function PointsTable() {
     if (!/[\s,;]/.test(text.trim())) return;
     event.preventDefault();
     event.stopPropagation();
-    takeText(text, "table");
+    void takeFile(pastedFile(text), "table");
   };
   return (
     <dialog

@@ -20,8 +20,7 @@ _MEMORY = 2 * 2**30  # bytes beyond what it has at the start
 
 def main() -> None:
     """Read a task from standard input, write the answer to standard output."""
-    from .read import read
-    from .upload import Upload, unpack
+    from .read import read_file
 
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what libraries print is no answer
@@ -30,10 +29,7 @@ def main() -> None:
     rehearse(meshes=content[:4] == b"PK\x03\x04" or bool(files))
     _seal()
     try:
-        upload = unpack(content, name)
-        if files:
-            upload = Upload(upload.name, upload.content, files)
-        answer = read(upload, options, known).model_dump(mode="json")
+        answer = read_file(content, name, options, known, files).model_dump(mode="json")
     except InputError as error:
         answer = {"error": error.message, "field": list(error.field)}
     except MemoryError:

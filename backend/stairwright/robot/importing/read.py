@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import Any
 
 from stairwright.robot.description import Robot
 
 from .assemble import Reading, assemble
+from .own import OWN_ENDINGS, read_own
 from .report import Imported, Notes
 from .source import compile_source
 from .traps import note_traps
@@ -62,8 +64,16 @@ def read_closely(
     return reading, notes
 
 
-def read_bytes(
-    data: bytes, file_name: str, options: Mapping[str, Any], known: Sequence[Robot] = ()
-) -> dict[str, Any]:
-    """`read` from and to plain data, for another process."""
-    return read(unpack(data, file_name), options, known).model_dump(mode="json")
+def read_file(
+    data: bytes,
+    file_name: str,
+    options: Mapping[str, Any],
+    known: Sequence[Robot] = (),
+    files: Mapping[str, bytes] | None = None,
+) -> Imported:
+    """The robot in a file of another tool's, or of ours; `files` are those beside it, if any."""
+    suffix = PurePosixPath(file_name).suffix.lower()
+    if suffix in OWN_ENDINGS:
+        return read_own(data, suffix, options)
+    upload = unpack(data, file_name)
+    return read(replace(upload, files=files) if files else upload, options, known)

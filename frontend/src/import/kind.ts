@@ -1,0 +1,24 @@
+/** What a file from outside holds: a robot, or a profile. */
+
+const OTHER_TOOLS = /\.(urdf|mjcf|xml|zip)$/i;
+const DOCUMENT = /\.(json|ya?ml)$/i;
+/** Documents name their kind near their beginning. */
+const NAMED = /schema["']?\s*:\s*["']?stairwright\/robot\//;
+const HEAD = 4096;
+
+export async function holdsRobot(file: File): Promise<boolean> {
+  if (OTHER_TOOLS.test(file.name)) return true;
+  return DOCUMENT.test(file.name) && NAMED.test(await file.slice(0, HEAD).text());
+}
+
+/** Pasted text as a file whose ending says what it looks like. */
+export function pastedFile(text: string): File {
+  const trimmed = text.trim();
+  return new File([trimmed], `pasted.${endingOf(trimmed)}`, { type: "text/plain" });
+}
+
+function endingOf(text: string): string {
+  if (/^[{[]/.test(text)) return "json";
+  if (text.startsWith("<")) return "xml";
+  return /(^|\n)\s*(points|schema)\s*:/.test(text) ? "yaml" : "csv";
+}
