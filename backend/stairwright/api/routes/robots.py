@@ -47,7 +47,9 @@ def list_robots(
 @router.post("/import", responses=describe(503))
 async def import_robot(
     services: Service,
-    file: Annotated[UploadFile, File(description="URDF, MJCF, a zip with the meshes, or our YAML or JSON")],
+    file: Annotated[
+        UploadFile, File(description="URDF, MJCF, a zip with the meshes, or our YAML or JSON")
+    ],
     abduction: Annotated[
         float, Form(ge=-1.6, le=1.6, description="lock the legs outward from upright by [rad]")
     ] = 0.0,
