@@ -28,6 +28,19 @@ def api(server: Server) -> Iterator[httpx.Client]:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("facing", ["forward", "backward"])
+def test_the_robot_of_a_plan_is_told_as_its_file_has_it(api: httpx.Client, facing: str) -> None:
+    robot = api.get("/robots/go2w").json()
+    del robot["readonly"], robot["version"]
+    robot["calf"]["length"] += 0.01
+    question = {"terrain": CURB, "robot": robot, "facing": facing}
+    plan = api.post("/plans", json=question).json()
+    assert plan["facing"] == facing
+    assert api.get(f"/plans/{plan['id']}/robot").json() == robot
+    assert api.get("/plans/p-none/robot").status_code == 404
+
+
+@pytest.mark.slow
 def test_a_backward_plan_is_that_of_python(server: Server, api: httpx.Client) -> None:
     own = sw.plan(CURB, facing="backward")
     with sw.Client(server.url) as service:

@@ -16,6 +16,7 @@ from tests.conftest import TAB, Server, serve
 
 from .axe import violations
 from .conftest import PATIENCE, Product
+from .robot_room import state
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Page, Route
@@ -152,6 +153,8 @@ def test_a_cell_opens_as_a_plan(room: Product) -> None:
     assert room.corners() == 4  # one step
     title = page.get_by_role("button", name=re.compile(r"^Terrain\s")).inner_text()
     assert re.search(r"tread 0\.(26|32) m rise 0\.15 m", title)
+    page.keyboard.press("2")
+    assert state(room) == "preset"  # the stored one, and no copy of it
     page.keyboard.press("3")
     _canvas(page).wait_for()
 

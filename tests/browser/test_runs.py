@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 import stairwright as sw
 from stairwright.robot import kinematics
@@ -16,6 +17,7 @@ from tests.conftest import TAB, Server, serve
 
 from .axe import violations
 from .conftest import DESK, PATIENCE, PHONE, Product
+from .robot_room import choose, enter, field, state
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Route
@@ -228,3 +230,24 @@ def test_a_fast_run_opens_with_the_end_that_led(runs: Product, server: Server) -
     page.get_by_role("radio", name="Backward", checked=True).wait_for()
     assert page.locator(".pill").get_by_text("backward").count() == 1
     assert "seed 0" in page.locator(".card h2").inner_text()
+
+
+def test_a_run_opens_with_the_robot_that_it_was_of(runs: Product) -> None:
+    """Whatever has become of the robot of that name since."""
+    page = runs.page
+    page.keyboard.press("2")
+    choose(runs, "go2w")
+    enter(runs, "front.calf.length", "0.24")
+    page.keyboard.press("1")
+    assert runs.run() == "success"
+    page.keyboard.press("2")
+    page.get_by_role("button", name="Reset robot").click()
+    runs.planned()
+    page.keyboard.press("4")
+    page.locator(".run").filter(has_text="go2w").locator(".run-open").click()
+    page.locator(".app[data-workspace=plan][data-run=success]").wait_for()
+    page.keyboard.press("2")
+    expect(field(runs, "front.calf.length")).to_have_value("0.240")
+    assert state(runs) == "edited, 1 number"
+    page.get_by_role("button", name="Reset robot").click()
+    assert state(runs) == "preset"

@@ -78,6 +78,7 @@ export const getTerrains = () => callJson<TerrainDocument[]>("GET", "terrains");
 export const getRobots = () => callJson<RobotDocument[]>("GET", "robots");
 export const getSettings = () => callJson<Settings>("GET", "settings");
 export const getPlan = (id: string) => callJson<Plan>("GET", `plans/${id}`);
+export const getPlanRobot = (id: string) => callJson<SentRobot>("GET", `plans/${id}/robot`);
 export const getRollout = (id: string) => callJson<Rollout>("GET", `rollouts/${id}`);
 export const getJob = (id: string) => callJson<Job>("GET", `jobs/${id}`);
 export const postPlan = (request: PlanRequest, signal?: AbortSignal) =>

@@ -1,28 +1,20 @@
 /** A cell as a plan in the editor: all that it was asked with. */
 
 import { batch } from "@preact/signals";
-import { callJson, reasonOf } from "../api/client";
+import { reasonOf } from "../api/client";
 import type {
   FacingChoice,
   Method,
   PlanTiming,
-  RobotDocument,
+  SentRobot,
   SettingValues,
   TerrainDocument,
 } from "../api/types";
 import { fit } from "../profile-editor/viewport";
 import { report } from "../state/connection";
 import { open } from "../state/drawing";
-import {
-  chosenFacing,
-  method,
-  robotName,
-  robots,
-  settings,
-  timing,
-  tolerance,
-  weights,
-} from "../state/setup";
+import { chosenFacing, method, settings, timing, tolerance, weights } from "../state/setup";
+import { takeRobot } from "../state/taken-robot";
 import { toast } from "../state/toast";
 import { workspace } from "../state/workspace";
 import { factsAt } from "./cell";
@@ -33,7 +25,7 @@ import { type CellAnswer, getCell } from "./studies";
 
 interface Question {
   terrain: TerrainDocument;
-  robot: RobotDocument;
+  robot: SentRobot;
   friction: number;
   method: Method;
   weights: SettingValues;
@@ -53,12 +45,12 @@ export async function openCell(place: Place): Promise<void> {
       return;
     }
     const question = plan as unknown as Question;
-    const robot = await known(question.robot, measures(values, ofRobot));
+    const changes = measures(values, ofRobot);
     const ground = measures(values, (kind) => Boolean(kind.group));
     batch(() => {
       const name = ground || question.terrain.name;
       open({ ...question.terrain, name, friction: question.friction }, null);
-      robotName.value = robot;
+      takeRobot({ ...question.robot, name: called(question.robot.name, changes) });
       method.value = question.method;
       weights.value = {
         ...weights.peek(),
@@ -77,6 +69,9 @@ export async function openCell(place: Place): Promise<void> {
 }
 
 const LONGEST = 60;
+
+/** What a map has changed is another robot, whose name says how. */
+const called = (name: string, changes: string) => `${name} ${changes}`.trim().slice(0, LONGEST);
 
 const ofRobot = (kind: AxisKind) => kind.name === "payload" || kind.name.startsWith("robot.");
 
@@ -99,30 +94,4 @@ function changed(by: Method, values: SettingValues): SettingValues {
   return Object.fromEntries(
     Object.entries(values).filter(([name, value]) => value !== schema[name]?.default),
   );
-}
-
-/** The robot's name; one that a map has changed is stored first, under a name that says how. */
-async function known(robot: RobotDocument, changed: string): Promise<string> {
-  const same = robots.peek().find((each) => each.name === robot.name);
-  if (same && alike(same, robot)) return robot.name;
-  const name = `${robot.name} ${changed}`.slice(0, LONGEST);
-  const { readonly: _, ...file } = { ...robot, name } as RobotDocument & { readonly?: boolean };
-  const stored = await callJson<RobotDocument>("PUT", `robots/${encodeURIComponent(name)}`, file);
-  robots.value = [...robots.peek().filter((each) => each.name !== name), stored];
-  toast.value = { text: `The robot is kept as ${name}.` };
-  return name;
-}
-
-/** Whether two files say the same, in whatever order; what a service adds does not count. */
-function alike(a: RobotDocument, b: RobotDocument): boolean {
-  const plain = (robot: RobotDocument) =>
-    JSON.stringify(robot, (key, value) => {
-      if (key === "readonly" || key === "schema") return undefined;
-      if (value && typeof value === "object" && !Array.isArray(value)) {
-        const entries = Object.entries(value).filter(([, v]) => v !== null);
-        return Object.fromEntries(entries.sort(([x], [y]) => (x < y ? -1 : 1)));
-      }
-      return value;
-    });
-  return plain(a) === plain(b);
 }

@@ -4,7 +4,7 @@ import { batch, computed, signal } from "@preact/signals";
 import type { ImportedRobot, RobotDocument } from "../api/types";
 import { commitChoices } from "../state/drawing";
 import { stir } from "../state/planner";
-import { robotDocument, robotEdits, robotName, robots } from "../state/setup";
+import { robotDocument, robotEdits, robotName, robots, storedRobot } from "../state/setup";
 import { clamped, QUANTITIES, quantityOf } from "./quantities";
 
 /** What files held that were read in this visit, by the name of their robot. */
@@ -34,6 +34,13 @@ export const changed = computed<ReadonlySet<string>>(() => {
   if (!now || !before || now === before) return new Set();
   return new Set(QUANTITIES.filter((q) => q.read(now) !== q.read(before)).map((q) => q.id));
 });
+
+/** Whether there is a way back to what it was. */
+export const edited = computed(
+  () =>
+    changed.value.size > 0 ||
+    (storedRobot.value !== null && robotDocument.value !== storedRobot.value),
+);
 
 const same = (a: number | null, b: number | null) => a === b;
 

@@ -7,18 +7,16 @@ import { robotShape, skeleton } from "../geometry/robot";
 import { stance } from "../geometry/stance";
 import { Figure } from "../profile-editor/figure";
 import type { Projection } from "../profile-editor/viewport";
-import { robotEdits, robotName, robots } from "../state/setup";
+import { robotEdits, robotName, robots, unsavedRobots } from "../state/setup";
 import { Icon } from "../ui/icon";
-import { asDocument, choose, imports } from "./edit";
+import { choose } from "./edit";
 import { totalMass } from "./quantities";
 import { ReadReport } from "./read-report";
 import { dismiss, readFile, remove } from "./shelf";
 
 export function Library() {
   const file = useRef<HTMLInputElement>(null);
-  const read = Object.values(imports.value).filter(
-    ({ robot }) => !robots.value.some((r) => r.name === robot.name),
-  );
+  const unsaved = unsavedRobots.value;
   const own = robots.value.filter((r) => !r.readonly);
   return (
     <aside class="library" aria-label="Robots">
@@ -35,14 +33,9 @@ export function Library() {
         {own.map((r) => (
           <Entry key={r.name} robot={r} onRemove={() => void remove(r)} verb="Delete" />
         ))}
-        {read.length > 0 && <h3>Not saved</h3>}
-        {read.map(({ robot }) => (
-          <Entry
-            key={robot.name}
-            robot={asDocument(robot)}
-            onRemove={() => dismiss(robot.name)}
-            verb="Close"
-          />
+        {unsaved.length > 0 && <h3>Not saved</h3>}
+        {unsaved.map((robot) => (
+          <Entry key={robot.name} robot={robot} onRemove={() => dismiss(robot.name)} verb="Close" />
         ))}
       </div>
       <div class="drop-here">
@@ -79,7 +72,7 @@ interface EntryProps {
 
 function Entry({ robot, onRemove, verb }: EntryProps) {
   const shown = robotEdits.value[robot.name] ?? robot;
-  const edited = shown !== robot && !imports.value[robot.name];
+  const edited = shown !== robot;
   const current = robot.name === robotName.value;
   return (
     <div class={`entry${current ? " on" : ""}`}>

@@ -5,9 +5,9 @@ import { deleteRobot, getRobots, importRobot, putRobot, reasonOf, robotFile } fr
 import type { ImportedRobot, RobotDocument } from "../api/types";
 import { report } from "../state/connection";
 import { commitChoices } from "../state/drawing";
-import { robotDocument, robotEdits, robotName, robots, sentRobot } from "../state/setup";
+import { allRobots, robotDocument, robotEdits, robotName, robots, sentRobot } from "../state/setup";
 import { toast } from "../state/toast";
-import { asDocument, baseOf, choose, imports } from "./edit";
+import { asDocument, choose, imports } from "./edit";
 
 /** What went wrong with a name or a file, where it happened. */
 export const shelfError = signal<string | null>(null);
@@ -114,7 +114,7 @@ export function stopReading(): void {
 /** A name that no robot has yet. */
 function free(name: string): string {
   let tried = name;
-  for (let i = 2; baseOf(tried); i++) tried = `${name} ${i}`;
+  for (let i = 2; allRobots.peek().some((r) => r.name === tried); i++) tried = `${name} ${i}`;
   return tried;
 }
 

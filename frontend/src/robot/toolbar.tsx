@@ -2,21 +2,22 @@
 
 import { useState } from "preact/hooks";
 import { canRedo, canUndo, redo, undo } from "../state/drawing";
-import { robotDocument, robotEdits, robotName, robots, settings } from "../state/setup";
+import { robotDocument, robotName, robots, settings, storedRobot } from "../state/setup";
 import { Icon } from "../ui/icon";
 import { IconButton } from "../ui/icon-button";
 import { Menu, MenuItem } from "../ui/menu";
 import { NameField } from "../ui/name-field";
-import { changed, imports, posture, resetRobot } from "./edit";
+import { changed, edited, posture, resetRobot } from "./edit";
 import { download, saveAs, shelfError } from "./shelf";
 import { LAYERS, type Layer, shown, toggle } from "./view";
 
 function state(): string {
   const count = changed.value.size;
   if (count > 0) return `edited, ${count} ${count === 1 ? "number" : "numbers"}`;
-  if (imports.value[robotName.value] && robotEdits.value[robotName.value]) return "not saved";
-  const stored = robots.value.find((r) => r.name === robotName.value);
-  return stored?.readonly ? "preset" : "yours";
+  const stored = storedRobot.value;
+  if (!stored) return "not saved";
+  if (edited.value) return "edited";
+  return stored.readonly ? "preset" : "yours";
 }
 
 export function Toolbar() {
@@ -45,7 +46,7 @@ export function Toolbar() {
         class="t ico"
         aria-label="Reset robot"
         title="Reset all its numbers"
-        disabled={changed.value.size === 0 && !posture.value}
+        disabled={!edited.value && !posture.value}
         onClick={resetRobot}
       >
         <Icon name="reset" />

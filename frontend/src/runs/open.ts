@@ -1,9 +1,9 @@
 /** A stored result back in Plan: its terrain, robot and settings as they were. */
 
 import { batch } from "@preact/signals";
-import { getPlan, getRollout, reasonOf } from "../api/client";
+import { getPlan, getPlanRobot, getRollout, reasonOf } from "../api/client";
 import type { Entry } from "../api/stored";
-import type { Plan, SettingSchema, SettingValues } from "../api/types";
+import type { Plan, SentRobot, SettingSchema, SettingValues } from "../api/types";
 import { fit } from "../profile-editor/viewport";
 import { report } from "../state/connection";
 import { open } from "../state/drawing";
@@ -12,8 +12,6 @@ import {
   controller,
   disturbance,
   method,
-  robotName,
-  robots,
   seed,
   setFacing,
   settings,
@@ -23,6 +21,7 @@ import {
   toleranceSchema,
   weights,
 } from "../state/setup";
+import { takeRobot } from "../state/taken-robot";
 import { toast } from "../state/toast";
 import { workspace } from "../state/workspace";
 import { title } from "./store";
@@ -38,12 +37,12 @@ function differing(
   return Object.fromEntries(kept) as SettingValues;
 }
 
-function showPlan(plan: Plan): void {
+function showPlan(plan: Plan, robot: SentRobot): void {
   const { terrain } = plan;
   const stored = terrains.peek().find((each) => each.name === terrain.name) ?? null;
   forgetRollout();
   open({ ...terrain, friction: plan.friction }, stored);
-  robotName.value = plan.robot;
+  takeRobot(robot);
   method.value = plan.method;
   timing.value = plan.timing.rule === "fast" ? "fast" : "steady";
   setFacing(plan.facing ?? "forward");
@@ -59,13 +58,11 @@ export async function openInPlan(entry: Entry): Promise<void> {
     const stored =
       entry.kind === "rollouts" ? ((await getRollout(entry.id)) as { plan?: Plan | null }) : null;
     const plan = stored?.plan ?? (await getPlan(planId ?? ""));
-    if (!robots.peek().some((each) => each.name === plan.robot)) {
-      toast.value = { text: `${plan.robot} is no longer among the robots, so it cannot be shown.` };
-      return;
-    }
+    // Where its rear led, the plan describes it turned about.
+    const robot = plan.facing === "backward" ? await getPlanRobot(plan.id) : plan.robot_description;
     const { summary: s } = entry;
     batch(() => {
-      showPlan(plan);
+      showPlan(plan, robot as SentRobot);
       if (entry.kind !== "plans") {
         controller.value = s.controller ?? {};
         seed.value = s.seed ?? 0;

@@ -44,13 +44,16 @@ export const disturbance = signal<SettingValues>({});
 
 /** Robots that were changed or imported and are not saved as they are now, by name. */
 export const robotEdits = signal<Readonly<Record<string, RobotDocument>>>({});
-/** Stored robots as they are now, then those that were only read from files. */
-export const allRobots = computed<RobotDocument[]>(() => {
-  const edits = robotEdits.value;
+/** Robots of names that are not stored: read from files, of links and of results. */
+export const unsavedRobots = computed<RobotDocument[]>(() => {
   const names = new Set(robots.value.map((r) => r.name));
-  const unsaved = Object.values(edits).filter((r) => !names.has(r.name));
-  return [...robots.value.map((r) => edits[r.name] ?? r), ...unsaved];
+  return Object.values(robotEdits.value).filter((r) => !names.has(r.name));
 });
+/** Stored robots as they are now, then those that are not. */
+export const allRobots = computed<RobotDocument[]>(() => [
+  ...robots.value.map((r) => robotEdits.value[r.name] ?? r),
+  ...unsavedRobots.value,
+]);
 /** The robot as it is stored; null for one that never was. */
 export const storedRobot = computed(
   () => robots.value.find((r) => r.name === robotName.value) ?? null,

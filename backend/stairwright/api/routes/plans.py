@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import gzip
 from typing import TYPE_CHECKING, Annotated, Literal
 
+import orjson
 from fastapi import APIRouter, Path, Query, Request, Response
 
 from stairwright.api.bodies import PlanRequest
@@ -24,6 +26,8 @@ from stairwright.export.table import LEAST_RATE, MOST_RATE, PLAN_FORMATS, USUAL_
 from stairwright.jobs.planning import Answer
 from stairwright.jobs.questions import PlanQuestion
 from stairwright.planning.plan import Plan
+from stairwright.robot.description import Robot
+from stairwright.robot.turning import turned
 from stairwright.terrain.profile import Terrain
 
 from . import stored
@@ -107,6 +111,15 @@ stored.serve(
     delete="Remove a plan. Its rollouts stay, those that wait go on; asked again, it is planned "
     "anew.",
 )
+
+
+@router.get("/{plan_id}/robot", responses=describe(404))
+async def get_plan_robot(services: Service, plan_id: PlanId) -> Robot:
+    """The robot of a plan as its own file has it, also where its rear leads."""
+    _, packed = await stored.load(services, "plan", plan_id)
+    plan = orjson.loads(await asyncio.to_thread(gzip.decompress, packed))
+    robot = Robot.model_validate(plan["robot_description"])
+    return turned(robot) if plan.get("facing") == "backward" else robot
 
 
 @router.get(
