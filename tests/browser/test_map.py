@@ -16,7 +16,7 @@ from tests.conftest import TAB, Server, serve
 
 from .axe import violations
 from .conftest import PATIENCE, Product
-from .robot_room import state
+from .robot_room import enter, state
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Page, Route
@@ -251,6 +251,27 @@ def test_two_robots_share_a_scale_and_a_pointer(room: Product) -> None:
     page.keyboard.press("Escape")
     page.get_by_role("button", name="Table").click()
     page.locator("caption", has_text="go2w minus").wait_for()
+
+
+def test_an_edited_robot_beside_another_and_beside_itself(room: Product, service: Server) -> None:
+    page = room.page
+    page.keyboard.press("2")
+    enter(room, "front.calf.length", "0.25")
+    page.keyboard.press("3")
+    own = page.locator("#map-second option", has_text="as stored").get_attribute("value")
+    for second, pair in (("go2w", f"{own} and go2w"), (own, f"{own} edited and {own}")):
+        page.locator("#map-second").select_option(second)
+        page.get_by_role("button", name="Run", exact=True).click()
+        page.get_by_text(f"{pair}, μ").wait_for()
+        page.get_by_text("8 of 8 cells; done").wait_for(timeout=PATIENCE)
+        asked = _get(service, _newest(service)["links"]["self"] + "/document").json()
+        lengths = {name: robot["calf"]["length"] for name, robot in asked["robots"].items()}
+        assert lengths[pair.split(" and ")[0]] == 0.25
+        assert all(length != 0.25 for name, length in lengths.items() if name == second)
+    page.keyboard.press("2")
+    page.get_by_role("button", name="Reset robot").click()
+    page.keyboard.press("3")
+    assert page.locator("#map-second").input_value() == ""
 
 
 def test_paused_and_gone_on_with(room: Product) -> None:

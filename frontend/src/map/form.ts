@@ -1,9 +1,10 @@
 /** What a map is asked for: its axes and what is done about friction; and the study that asks it. */
 
 import { signal } from "@preact/signals";
-import type { FacingChoice } from "../api/types";
+import type { FacingChoice, SentRobot } from "../api/types";
 import { drawing } from "../state/drawing";
 import { request } from "../state/question";
+import { robotEdits, sourceOf } from "../state/setup";
 import { axisKind } from "./quantities";
 import type { StudyDocument } from "./studies";
 
@@ -128,6 +129,20 @@ export function manner(): string {
     .join("");
 }
 
+/** Two robots by their names, and the documents of those that are not stored as they are. */
+function pairOf(first: string | SentRobot, second: string): [string[], Record<string, SentRobot>] {
+  const own = typeof first === "string" ? first : first.name;
+  // Beside itself it is the robot as it was before it was changed.
+  const itself = own === second;
+  const name = itself ? `${own} edited` : own;
+  const sources = [
+    [name, first],
+    [second, itself ? second : sourceOf(second, robotEdits.peek())],
+  ] as const;
+  const documents = sources.filter(([, source]) => typeof source !== "string");
+  return [[name, second], Object.fromEntries(documents) as Record<string, SentRobot>];
+}
+
 /** The study; null while the page has nothing to plan with. */
 export function documentOf(now: Form): StudyDocument | null {
   const page = request.peek();
@@ -138,9 +153,12 @@ export function documentOf(now: Form): StudyDocument | null {
     to,
     count,
   }));
-  if (now.second && now.second !== page.robot)
-    axes.push({ name: "robot", values: [page.robot, now.second] });
   const rest: StudyDocument = { friction: page.friction };
+  if (now.second && now.second !== page.robot) {
+    const [values, robots] = pairOf(page.robot, now.second);
+    axes.push({ name: "robot", values });
+    if (Object.keys(robots).length > 0) rest.robots = robots;
+  }
   if (hasFriction(now)) delete rest.friction;
   else if (now.friction === "slices") {
     axes.push({ name: "friction", values: [...now.slices] });

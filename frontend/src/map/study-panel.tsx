@@ -2,8 +2,9 @@
 
 import { RoomTabs } from "../designs/room-tabs";
 import { fixed } from "../geometry/format";
+import { edited } from "../robot/edit";
 import { drawing } from "../state/drawing";
-import { robotName, robots } from "../state/setup";
+import { allRobots, robotName } from "../state/setup";
 import { CountField } from "../ui/count-field";
 import { Icon } from "../ui/icon";
 import { Menu, MenuItem } from "../ui/menu";
@@ -210,22 +211,24 @@ function Steps() {
 }
 
 function Second() {
+  const others = allRobots.value
+    .map(({ name }) => name)
+    .filter((name) => name !== robotName.value || edited.value);
+  const { second } = form.value;
   return (
     <div class="pick">
       <label for="map-second">vs</label>
       <select
         id="map-second"
-        value={form.value.second ?? ""}
+        value={second && others.includes(second) ? second : ""}
         onChange={(event) => change({ second: event.currentTarget.value || null })}
       >
         <option value="">no other robot</option>
-        {robots.value
-          .filter((each) => each.name !== robotName.value)
-          .map((each) => (
-            <option key={each.name} value={each.name}>
-              {each.name}
-            </option>
-          ))}
+        {others.map((name) => (
+          <option key={name} value={name}>
+            {name === robotName.value ? `${name} as stored` : name}
+          </option>
+        ))}
       </select>
     </div>
   );
