@@ -254,6 +254,15 @@ def test_a_robot_that_stopped_and_its_disturbances_have_no_overlaps(product: Pro
     page.evaluate(DRAWN)
     assert results.evaluate("e => e.scrollWidth <= e.clientWidth")
     page.set_viewport_size(DESK)
+    # A place that it never reached stands for where it stopped.
+    page.get_by_role("button", name="Place", exact=True).click()
+    rows = page.locator(".rows-scrub").bounding_box()
+    assert rows is not None
+    page.mouse.click(rows["x"] + rows["width"] - 3, rows["y"] + 3)
+    clock = page.get_by_role("slider", name="Time")
+    now, end = (float(clock.get_attribute(f"aria-value{at}") or "nan") for at in ("now", "max"))
+    assert 0 <= now <= end
+    page.get_by_role("button", name="Time", exact=True).click()
     switch.click()
     page.get_by_role("radio", name="Trials").click()
     page.get_by_role("button", name="Clear", exact=True).click()

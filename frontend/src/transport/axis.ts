@@ -76,17 +76,20 @@ export const cursor = computed(() => {
   return frame.value ? shareOf(frame.value.x) : 0;
 });
 
-/** The time that a share of the axis stands for [s]. */
+/** The time that a share of the axis stands for [s]; of a place, when what was nearest to it was reached. */
 export function timeAt(share: number): number {
   const [from, to] = ends.peek();
   const at = from + Math.min(1, Math.max(0, share)) * (to - from);
   if (axisKind.peek() === "time") return at;
-  const poses = plan.peek()?.poses ?? [];
+  const times = passes.peek();
   let best = 0;
-  poses.forEach((pose, i) => {
-    if (Math.abs(pose.x_c - at) < Math.abs(poses[best]!.x_c - at)) best = i;
+  let least = Number.POSITIVE_INFINITY;
+  plan.peek()?.poses.forEach((pose, i) => {
+    const off = Math.abs(pose.x_c - at);
+    if (off >= least || Number.isNaN(times[i])) return;
+    [best, least] = [i, off];
   });
-  return passes.peek()[best] ?? 0;
+  return times[best] || 0;
 }
 
 /** Steps that people count in, wide enough apart for about eight of them. */
