@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import json
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -98,10 +100,28 @@ def test_an_own_robot_is_saved_listed_and_deleted(product: Product) -> None:
     assert state(product) == "yours"
     got = page.request.get("/api/v1/robots/my a1").json()
     assert got["wheel"]["radius"] == pytest.approx(0.06)
+    address = product.linked('"r":"my a1","rd":')
     page.get_by_role("button", name="Delete my a1").click()
     page.get_by_text("my a1 is deleted.").wait_for()
     assert page.request.get("/api/v1/robots/my a1").status == 404
     page.get_by_role("button", name="Dismiss").click()
+    # A link outlives the robot, and is read where it never was.
+    other = Product(page.context.new_page())
+    assert other.open(address).status == "feasible"
+    assert field(other, "wheel.radius").input_value() == "0.060"
+    assert state(other) == "not saved"
+    other.page.get_by_role("button", name="Close my a1").wait_for()
+    other.page.close()
+
+
+def test_a_link_of_a_robot_that_is_not_here_says_so(product: Product) -> None:
+    page = product.page.context.new_page()
+    shared = {"t": {"name": "x", "points": [[-1, 0], [0, 0], [0, 0.1], [1, 0.1]], "friction": 0.6}}
+    text = json.dumps(shared | {"r": "nobody", "m": "path"}).encode()
+    opened = Product(page).open("/#s=" + base64.urlsafe_b64encode(text).decode().rstrip("="))
+    page.get_by_text("The robot nobody of this link is not here; a1_wheeled_x is shown").wait_for()
+    assert opened.status == "feasible"
+    page.close()
 
 
 def test_an_edited_robot_is_downloaded(product: Product, tmp_path: Path) -> None:

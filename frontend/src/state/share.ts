@@ -5,7 +5,6 @@ import { effect, signal } from "@preact/signals";
 import type {
   FacingChoice,
   Method,
-  RobotDocument,
   SentRobot,
   SettingValues,
   TerrainDocument,
@@ -14,20 +13,23 @@ import type {
 import { committed, isEmpty, open, origin, terrainDocument } from "./drawing";
 import { run, runB, runStale } from "./rollouts";
 import {
+  allRobots,
   chosenFacing,
   compare,
   controller,
   disturbance,
   method,
-  robotEdits,
   robotName,
   robotSource,
   seed,
+  sentRobot,
+  storedRobot,
   terrains,
   timing,
   tolerance,
   weights,
 } from "./setup";
+import { takeRobot } from "./taken-robot";
 import { toast } from "./toast";
 import { workspace } from "./workspace";
 
@@ -35,7 +37,7 @@ import { workspace } from "./workspace";
 interface Shared {
   t: Omit<TerrainDocument, "schema">;
   r: string;
-  /** The robot itself, where it is not a stored one. */
+  /** The robot itself, where it is no preset. */
   rd?: SentRobot;
   m: Method;
   /** Fast timing. */
@@ -79,18 +81,26 @@ export function decode(text: string): unknown {
 
 const filled = (values: object | undefined) => values && Object.keys(values).length > 0;
 
+/** What no name stands for elsewhere and later: a robot that is no preset. */
+function carriedRobot(): SentRobot | null {
+  const source = robotSource.value;
+  if (typeof source !== "string") return source;
+  const stored = storedRobot.value;
+  return stored && !stored.readonly ? sentRobot(stored) : null;
+}
+
 function currentState(): Shared {
   const { schema: _, ...terrain } = terrainDocument(committed.value);
   const changed = Object.fromEntries(
     Object.entries(weights.value).filter(([, values]) => filled(values)),
   );
-  const source = robotSource.value;
+  const carried = carriedRobot();
   const result = runStale.value ? null : run.value;
   const end = chosenFacing.value;
   return {
     t: terrain,
     r: robotName.value,
-    ...(typeof source === "string" ? {} : { rd: source }),
+    ...(carried ? { rd: carried } : {}),
     m: method.value,
     ...(timing.value === "fast" ? { f: 1 as const } : {}),
     ...(end ? { b: end === "backward" ? (1 as const) : end } : {}),
@@ -132,11 +142,8 @@ export function restoreFromAddress(instead = "the sample is shown instead"): Res
   );
   const stored = terrains.peek().find((t) => t.name === state.t.name) ?? null;
   open({ ...state.t, points, schema: "stairwright/terrain/1" }, stored);
-  robotName.value = state.r;
-  if (state.rd) {
-    const robot = { ...state.rd, readonly: false, version: "" } satisfies RobotDocument;
-    robotEdits.value = { [state.r]: robot };
-  }
+  if (state.rd) takeRobot(state.rd);
+  else takeNamed(state.r);
   method.value = state.m;
   timing.value = state.f ? "fast" : "steady";
   chosenFacing.value = state.b === 1 ? "backward" : (state.b ?? null);
@@ -147,6 +154,14 @@ export function restoreFromAddress(instead = "the sample is shown instead"): Res
   disturbance.value = state.d ?? {};
   compare.value = state.ab === 1;
   return { rollout: state.ro ?? null, rolloutB: state.rb ?? null };
+}
+
+function takeNamed(name: string): void {
+  if (allRobots.peek().some((each) => each.name === name)) robotName.value = name;
+  else
+    toast.value = {
+      text: `The robot ${name} of this link is not here; ${robotName.peek()} is shown instead.`,
+    };
 }
 
 /** Browsers refuse an address that changes at every move of a slider [ms]. */
