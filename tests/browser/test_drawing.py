@@ -196,6 +196,28 @@ def test_a_profile_and_a_plan_that_were_downloaded_open_again(product: Product) 
     assert saved.value.suggested_filename == "curb-015.json"
 
 
+def test_a_plan_that_was_made_elsewhere_opens_with_all_that_it_was_asked_with(
+    product: Product,
+) -> None:
+    robot = sw.load_robot("go2w").model_copy(update={"name": "theirs"})
+    weights = {"clearance": 3.0}
+    plan = sw.plan("curb-015", robot, 0.7, weights=weights, timing="fast", facing="forward")
+    product.drop("theirs.json", plan.model_dump_json()).has_corners(4).planned()
+    page = product.page
+    page.get_by_role("button", name=re.compile(r"^Robot\s+theirs")).wait_for()
+    assert page.get_by_label("Friction coefficient").input_value() == "0.70"
+    page.get_by_role("radio", name="Fast", checked=True).wait_for()
+    assert page.get_by_label("Clearance, value").input_value() == "3.00"
+    assert product.status == "feasible"
+    page.keyboard.press("Control+z")  # one step
+    page.get_by_role("button", name=re.compile(r"^Robot\s+a1_wheeled_x")).wait_for()
+    assert page.get_by_label("Clearance, value").input_value() == "1.00"
+    product.has_corners(8).planned()
+    # Where the service cannot tell the robot, the ground is opened alone.
+    product.drop("turned.json", plan.model_copy(update={"facing": "backward"}).model_dump_json())
+    page.get_by_role("button", name=re.compile(r"^Terrain\s+curb-015")).wait_for()
+
+
 def test_thousands_of_corners_are_thinned_and_all_in_reach(product: Product) -> None:
     # The drawing is looked at, not the plan.
     product.page.route(

@@ -2,13 +2,14 @@
 
 const OTHER_TOOLS = /\.(urdf|mjcf|xml|zip)$/i;
 const DOCUMENT = /\.(json|ya?ml)$/i;
-/** Documents name their kind near their beginning. */
-const NAMED = /schema["']?\s*:\s*["']?stairwright\/robot\//;
+/** Documents name their kind near their beginning, and before those that they hold. */
+const KIND = /schema["']?\s*:\s*["']?stairwright\/([a-z]+)\//;
 const HEAD = 4096;
 
 export async function holdsRobot(file: File): Promise<boolean> {
   if (OTHER_TOOLS.test(file.name)) return true;
-  return DOCUMENT.test(file.name) && NAMED.test(await file.slice(0, HEAD).text());
+  if (!DOCUMENT.test(file.name)) return false;
+  return KIND.exec(await file.slice(0, HEAD).text())?.[1] === "robot";
 }
 
 /** Pasted text as a file whose ending says what it looks like. */

@@ -1,9 +1,13 @@
-/** Profiles from outside: files dropped or chosen, text pasted. What is wrong is said where it was. */
+/** Profiles and plans from outside: files dropped or chosen. What is wrong is said where it was. */
 
 import { signal } from "@preact/signals";
-import { importTerrain } from "../api/client";
+import { importRobot, importTerrain } from "../api/client";
+import type { Method, Plan, SentRobot } from "../api/types";
 import { capital } from "../geometry/format";
+import { fit } from "../profile-editor/viewport";
 import { report } from "../state/connection";
+import { settings } from "../state/setup";
+import { robotOf, showPlan } from "../state/shown-plan";
 import { show } from "../topbar/terrain-actions";
 import { startCut } from "./cut";
 import { wrongWith } from "./wrong";
@@ -24,7 +28,9 @@ export async function takeFile(file: File, place: Place): Promise<boolean> {
     return true;
   }
   try {
-    show(await importTerrain(await terrainIn(file), {}), null);
+    const made = await madeWith(file);
+    if (made) await takeMade(made, file.name);
+    else show(await importTerrain(file, {}), null);
     return true;
   } catch (error) {
     report(error);
@@ -38,15 +44,40 @@ function sentence(text: string): string {
   return `${capital(text)}${text.endsWith(".") ? "" : "."}`;
 }
 
-/** Plans and rollouts hold the terrain that they are for; any other file is taken as it is. */
-async function terrainIn(file: File): Promise<File> {
-  if (!/\.json$/i.test(file.name)) return file;
+const jsonFile = (document: unknown, name: string) =>
+  new File([JSON.stringify(document)], name, { type: "application/json" });
+
+/** What a plan or rollout of ours was made with; null for any other file. */
+async function madeWith(file: File): Promise<Made | null> {
+  if (!/\.json$/i.test(file.name)) return null;
   try {
     const document = JSON.parse(await file.text());
-    if (!/^stairwright\/(plan|rollout)\//.test(document.schema) || !document.terrain) return file;
-    return new File([JSON.stringify(document.terrain)], file.name, { type: file.type });
+    if (!/^stairwright\/(plan|rollout)\//.test(document.schema) || !document.terrain) return null;
+    const plan = document.plan ?? document;
+    const whole =
+      settings.peek()?.weights[plan.method as Method] && plan.robot_description && plan.timing;
+    return { terrain: document.terrain, plan: whole ? plan : null };
   } catch {
     // What is wrong with it is for the service to say.
-    return file;
+    return null;
   }
+}
+
+interface Made {
+  terrain: unknown;
+  /** Null where too little is told of it. */
+  plan: Plan | null;
+}
+
+/** The service reads both parts, as it reads such files of their own. */
+async function takeMade({ terrain, plan }: Made, name: string): Promise<void> {
+  const ground = await importTerrain(jsonFile(terrain, name), {});
+  const robot = plan && (await robotOf(plan).catch(() => null));
+  if (!plan || !robot) {
+    show(ground, null);
+    return;
+  }
+  const read = await importRobot(jsonFile(robot, name), []);
+  showPlan({ ...plan, terrain: ground }, read.robot as SentRobot);
+  fit(ground.points);
 }

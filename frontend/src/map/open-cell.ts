@@ -49,16 +49,17 @@ export async function openCell(place: Place): Promise<void> {
     const ground = measures(values, (kind) => Boolean(kind.group));
     batch(() => {
       const name = ground || question.terrain.name;
-      open({ ...question.terrain, name, friction: question.friction }, null);
-      takeRobot({ ...question.robot, name: called(question.robot.name, changes) });
-      method.value = question.method;
-      weights.value = {
-        ...weights.peek(),
-        [question.method]: changed(question.method, question.weights),
-      };
-      timing.value = question.timing ?? "steady";
-      chosenFacing.value = question.facing ?? null;
-      tolerance.value = question.tolerance ?? {};
+      open({ ...question.terrain, name, friction: question.friction }, null, () => {
+        takeRobot({ ...question.robot, name: called(question.robot.name, changes) });
+        method.value = question.method;
+        weights.value = {
+          ...weights.peek(),
+          [question.method]: changed(question.method, question.weights),
+        };
+        timing.value = question.timing ?? "steady";
+        chosenFacing.value = question.facing ?? null;
+        tolerance.value = question.tolerance ?? {};
+      });
       workspace.value = "plan";
     });
     fit(question.terrain.points);

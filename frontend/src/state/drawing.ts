@@ -140,8 +140,15 @@ function restore(step: Step): void {
   choose(chosen);
 }
 
-/** Open another terrain: undo leads back to the one before. */
-export function open(terrain: TerrainDocument, stored: TerrainDocument | null): void {
+/**
+ * Open another terrain: undo leads back to the one before.
+ * @param settle changes the settings that belong to it, in the same step
+ */
+export function open(
+  terrain: TerrainDocument,
+  stored: TerrainDocument | null,
+  settle?: () => void,
+): void {
   const next: Drawing = {
     name: terrain.name,
     description: terrain.description ?? "",
@@ -159,6 +166,9 @@ export function open(terrain: TerrainDocument, stored: TerrainDocument | null): 
   selection.value = [];
   drawing.value = next;
   committed.value = next;
+  if (!settle) return;
+  settle();
+  chosen = choices.peek();
 }
 
 export function clear(): void {

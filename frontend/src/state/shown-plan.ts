@@ -1,0 +1,55 @@
+/** A plan that was made before, in the editor: what it was asked with. */
+
+import { batch } from "@preact/signals";
+import { getPlanRobot } from "../api/client";
+import type { Plan, SentRobot, SettingSchema, SettingValues } from "../api/types";
+import { open } from "./drawing";
+import { forgetRollout } from "./rollouts";
+import {
+  method,
+  setFacing,
+  settings,
+  terrains,
+  timing,
+  tolerance,
+  toleranceSchema,
+  weights,
+} from "./setup";
+import { takeRobot } from "./taken-robot";
+
+/** As its own file has it: where its rear led, the plan describes it turned about. */
+export const robotOf = async (plan: Plan): Promise<SentRobot> =>
+  plan.facing === "backward" ? await getPlanRobot(plan.id) : (plan.robot_description as SentRobot);
+
+/** Those that differ from their defaults: all that the inspector holds. */
+function differing(
+  values: Record<string, unknown>,
+  schema: Record<string, SettingSchema> = {},
+): SettingValues {
+  const kept = Object.entries(values).filter(
+    ([name, value]) => value !== null && name in schema && schema[name]!.default !== value,
+  );
+  return Object.fromEntries(kept) as SettingValues;
+}
+
+/**
+ * Terrain, robot and settings as a plan was asked with: one step, which undo takes back.
+ * @param settle changes further settings in that step
+ */
+export function showPlan(plan: Plan, robot: SentRobot, settle?: () => void): void {
+  const { terrain } = plan;
+  const stored = terrains.peek().find((each) => each.name === terrain.name) ?? null;
+  const schema = settings.peek()?.weights[plan.method]?.properties;
+  batch(() => {
+    forgetRollout();
+    open({ ...terrain, friction: plan.friction }, stored, () => {
+      takeRobot(robot);
+      method.value = plan.method;
+      timing.value = plan.timing.rule === "fast" ? "fast" : "steady";
+      setFacing(plan.facing ?? "forward");
+      weights.value = { ...weights.peek(), [plan.method]: differing(plan.weights ?? {}, schema) };
+      tolerance.value = differing({ ...plan.tolerance }, toleranceSchema.peek());
+      settle?.();
+    });
+  });
+}
