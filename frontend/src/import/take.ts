@@ -8,6 +8,7 @@ import { fit } from "../profile-editor/viewport";
 import { report } from "../state/connection";
 import { settings } from "../state/setup";
 import { robotOf, showPlan } from "../state/shown-plan";
+import { toast } from "../state/toast";
 import { show } from "../topbar/terrain-actions";
 import { startCut } from "./cut";
 import { wrongWith } from "./wrong";
@@ -75,6 +76,10 @@ async function takeMade({ terrain, plan }: Made, name: string): Promise<void> {
   const robot = plan && (await robotOf(plan).catch(() => null));
   if (!plan || !robot) {
     show(ground, null);
+    if (plan)
+      toast.value = {
+        text: `Only the terrain of ${name} is opened: its robot went backward, and this service does not have the plan.`,
+      };
     return;
   }
   const read = await importRobot(jsonFile(robot, name), []);
