@@ -2,12 +2,13 @@
 
 import { effect } from "@preact/signals";
 import { render } from "preact";
-import { getRobots, getSettings, getTerrains } from "./api/client";
+import { getSettings } from "./api/client";
 import { App } from "./app";
 import { LATER } from "./parts";
 import { fit } from "./profile-editor/viewport";
 import { renewSession, startScene } from "./scene/drive";
 import { startAnnouncing } from "./state/announce";
+import { readRobots, readTerrains } from "./state/catalogue";
 import { report, watchConnection } from "./state/connection";
 import { drawing, open, startHistory } from "./state/drawing";
 import { startEffect } from "./state/effect";
@@ -15,7 +16,7 @@ import { startPlanning } from "./state/planner";
 import { plan, settled } from "./state/planning";
 import { duration, seek, startClock } from "./state/playback";
 import { restoreRollout, resumeRollout } from "./state/rollouts";
-import { robotEdits, robotName, robots, settings, terrains } from "./state/setup";
+import { allRobots, robotName, robots, settings, terrains } from "./state/setup";
 import { type Restored, restoreFromAddress, startSharing } from "./state/share";
 import { resumeTrials } from "./state/trials";
 import { fetchWhileIdle } from "./ui/part";
@@ -25,18 +26,12 @@ import "./styles/index.css";
 const SAMPLE = "three-stairs-up";
 
 async function readCatalogue(): Promise<void> {
-  const [allTerrains, allRobots, allSettings] = await Promise.all([
-    getTerrains(),
-    getRobots(),
-    getSettings(),
-  ]);
-  terrains.value = allTerrains;
-  robots.value = allRobots;
-  settings.value = allSettings;
+  const [known] = await Promise.all([getSettings(), readTerrains(), readRobots()]);
+  settings.value = known;
   const name = robotName.peek();
   // One that was read from a file or came in a link is in no catalogue.
-  if (!robotEdits.peek()[name] && !allRobots.some((r) => r.name === name))
-    robotName.value = allRobots[0]?.name ?? "";
+  if (!allRobots.peek().some((r) => r.name === name))
+    robotName.value = robots.peek()[0]?.name ?? "";
 }
 
 /** A robot half-way up says more than one that waits at the foot. */

@@ -114,6 +114,22 @@ def test_an_own_robot_is_saved_listed_and_deleted(product: Product) -> None:
     other.page.close()
 
 
+def test_robots_that_another_window_saves_and_deletes(product: Product) -> None:
+    page = product.page
+    robot = sw.load_robot("go2w").model_copy(update={"name": "ours"}).model_dump(mode="json")
+    page.request.put("/api/v1/robots/ours", data=robot)
+    page.get_by_title("Robot", exact=True).click()
+    page.get_by_role("menuitemradio", name="ours").click()
+    product.planned()
+    page.request.delete("/api/v1/robots/ours")
+    page.keyboard.press("1")
+    page.keyboard.press("2")
+    page.get_by_role("button", name="Close ours").wait_for()
+    assert state(product) == "not saved"  # what is in hand stays there
+    assert product.planned().status == "feasible"
+    page.get_by_role("button", name="Close ours").click()
+
+
 def test_a_link_of_a_robot_that_is_not_here_says_so(product: Product) -> None:
     page = product.page.context.new_page()
     shared = {"t": {"name": "x", "points": [[-1, 0], [0, 0], [0, 0.1], [1, 0.1]], "friction": 0.6}}

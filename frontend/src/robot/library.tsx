@@ -1,12 +1,14 @@
 /** The robots there are: presets, one's own, those just read from files; and the door for files. */
 
-import { useMemo, useRef } from "preact/hooks";
+import { useEffect, useMemo, useRef } from "preact/hooks";
 import type { RobotDocument } from "../api/types";
 import { fixed } from "../geometry/format";
 import { robotShape, skeleton } from "../geometry/robot";
 import { stance } from "../geometry/stance";
 import { Figure } from "../profile-editor/figure";
 import type { Projection } from "../profile-editor/viewport";
+import { readRobots } from "../state/catalogue";
+import { report } from "../state/connection";
 import { robotEdits, robotName, robots, unsavedRobots } from "../state/setup";
 import { Icon } from "../ui/icon";
 import { choose } from "./edit";
@@ -15,6 +17,7 @@ import { ReadReport } from "./read-report";
 import { dismiss, readFile, remove } from "./shelf";
 
 export function Library() {
+  useEffect(() => void readRobots().catch(report), []);
   const file = useRef<HTMLInputElement>(null);
   const unsaved = unsavedRobots.value;
   const own = robots.value.filter((r) => !r.readonly);

@@ -1,8 +1,9 @@
 /** Saving, deleting, reading and writing robots. */
 
 import { batch, signal } from "@preact/signals";
-import { deleteRobot, getRobots, importRobot, putRobot, reasonOf, robotFile } from "../api/client";
+import { deleteRobot, importRobot, putRobot, reasonOf, robotFile } from "../api/client";
 import type { ImportedRobot, RobotDocument } from "../api/types";
+import { readRobots } from "../state/catalogue";
 import { report } from "../state/connection";
 import { commitChoices } from "../state/drawing";
 import { allRobots, robotDocument, robotEdits, robotName, robots, sentRobot } from "../state/setup";
@@ -40,9 +41,8 @@ export async function saveAs(name: string): Promise<boolean> {
   const before = robotName.peek();
   try {
     await putRobot({ ...sentRobot(now), name });
-    const all = await getRobots();
+    await readRobots();
     batch(() => {
-      robots.value = all;
       robotEdits.value = without(before);
       choose(name);
       shelfError.value = null;
@@ -58,8 +58,11 @@ export async function saveAs(name: string): Promise<boolean> {
 export async function remove(robot: RobotDocument): Promise<void> {
   try {
     await deleteRobot(robot.name);
-    robots.value = await getRobots();
-    if (robotName.peek() === robot.name) choose(robots.peek()[0]?.name ?? "");
+    batch(() => {
+      robotEdits.value = without(robot.name);
+      if (robotName.peek() === robot.name) choose(robots.peek()[0]?.name ?? "");
+    });
+    await readRobots();
     toast.value = { text: `${robot.name} is deleted.`, undo: () => void putBack(robot) };
   } catch (error) {
     fail(error);
@@ -69,7 +72,7 @@ export async function remove(robot: RobotDocument): Promise<void> {
 async function putBack(robot: RobotDocument): Promise<void> {
   try {
     await putRobot(sentRobot(robot));
-    robots.value = await getRobots();
+    await readRobots();
     choose(robot.name);
   } catch (error) {
     fail(error);

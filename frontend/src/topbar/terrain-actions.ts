@@ -4,6 +4,7 @@ import { signal } from "@preact/signals";
 import { deleteTerrain, generateTerrain, getTerrains, putTerrain, reasonOf } from "../api/client";
 import type { TerrainDocument } from "../api/types";
 import { fit } from "../profile-editor/viewport";
+import { readTerrains } from "../state/catalogue";
 import { report } from "../state/connection";
 import { committed, drawing, open, origin, terrainDocument } from "../state/drawing";
 import { forgetRollout } from "../state/rollouts";
@@ -28,22 +29,13 @@ export function openStored(terrain: TerrainDocument): void {
   show(terrain, terrain);
 }
 
-/** The list as it is by now. */
-export async function readTerrains(): Promise<void> {
-  try {
-    terrains.value = await getTerrains();
-  } catch (error) {
-    report(error);
-  }
-}
-
 /** Save the drawing; what it replaces can be brought back. */
 export async function saveAs(name: string, description: string): Promise<boolean> {
   try {
     // Another window may have saved it meanwhile.
     const before = (await getTerrains()).find((t) => t.name === name && !t.readonly);
     const saved = await putTerrain({ ...terrainDocument(committed.peek()), name, description });
-    terrains.value = await getTerrains();
+    await readTerrains();
     origin.value = terrains.peek().find((t) => t.name === saved.name) ?? saved;
     drawing.value = { ...drawing.peek(), name: saved.name, description };
     committed.value = drawing.peek();
@@ -81,7 +73,7 @@ export async function removeStored(terrain: TerrainDocument): Promise<void> {
   const { name } = terrain;
   try {
     await deleteTerrain(name);
-    terrains.value = await getTerrains();
+    await readTerrains();
     const opened = origin.peek()?.name === name;
     if (opened) origin.value = null;
     toast.value = { text: `${name} is deleted.`, undo: () => void putBack(terrain, opened) };
@@ -94,7 +86,7 @@ export async function removeStored(terrain: TerrainDocument): Promise<void> {
 async function putBack(terrain: TerrainDocument, opened: boolean): Promise<void> {
   try {
     await putTerrain(terrain);
-    terrains.value = await getTerrains();
+    await readTerrains();
     if (opened && drawing.peek().name === terrain.name) origin.value = terrain;
   } catch (error) {
     report(error);

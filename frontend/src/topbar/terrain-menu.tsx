@@ -4,6 +4,8 @@ import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { ImportProblem } from "../import/import-problem";
 import { importProblem, takeFile } from "../import/take";
+import { readTerrains } from "../state/catalogue";
+import { report } from "../state/connection";
 import { clear, drawing, isEmpty } from "../state/drawing";
 import { terrains } from "../state/setup";
 import { pointsOpen } from "../state/view";
@@ -13,7 +15,6 @@ import { NameField } from "../ui/name-field";
 import { GenerateForm } from "./generate-form";
 import {
   openStored,
-  readTerrains,
   removeStored,
   saveAs,
   saveError,
@@ -39,7 +40,7 @@ export function TerrainMenu({ button }: { button: ComponentChildren }) {
 function TerrainPanel({ close }: { close: () => void }) {
   const file = useRef<HTMLInputElement>(null);
   // Other windows and people save terrains, too.
-  useEffect(() => void readTerrains(), []);
+  useEffect(() => void readTerrains().catch(report), []);
   const [generating, setGenerating] = useState(false);
   const presets = terrains.value.filter((t) => t.readonly);
   const saved = terrains.value.filter((t) => !t.readonly);

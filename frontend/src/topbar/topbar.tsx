@@ -1,8 +1,10 @@
 /** The top bar: what is planned, what came of it, and what to do with it. */
 
-import { useState } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import type { RobotDocument } from "../api/types";
 import { fixed } from "../geometry/format";
+import { readRobots } from "../state/catalogue";
+import { report } from "../state/connection";
 import { drawnName, isEdited } from "../state/drawing";
 import { allRobots, robotEdits, robotName } from "../state/setup";
 import { theme, toggleTheme } from "../state/view";
@@ -64,25 +66,32 @@ function RobotMenu() {
   );
   return (
     <Menu label="Robot" named button={button} buttonClass="fld" panelClass="robots">
-      {(close) =>
-        allRobots.value.map((robot) => (
-          <MenuItem
-            key={robot.name}
-            checked={robot.name === robotName.value}
-            onChoose={() => {
-              robotName.value = robot.name;
-              close();
-            }}
-          >
-            <span class="two">
-              {robot.name}
-              <small>{robot.description}</small>
-              <small class="facts">{facts(robot)}</small>
-            </span>
-          </MenuItem>
-        ))
-      }
+      {(close) => <RobotItems close={close} />}
     </Menu>
+  );
+}
+
+function RobotItems({ close }: { close: () => void }) {
+  useEffect(() => void readRobots().catch(report), []);
+  return (
+    <>
+      {allRobots.value.map((robot) => (
+        <MenuItem
+          key={robot.name}
+          checked={robot.name === robotName.value}
+          onChoose={() => {
+            robotName.value = robot.name;
+            close();
+          }}
+        >
+          <span class="two">
+            {robot.name}
+            <small>{robot.description}</small>
+            <small class="facts">{facts(robot)}</small>
+          </span>
+        </MenuItem>
+      ))}
+    </>
   );
 }
 
