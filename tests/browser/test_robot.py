@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from playwright.sync_api import expect
 
 import stairwright as sw
 from stairwright.export.formats import save
@@ -100,6 +101,14 @@ def test_an_own_robot_is_saved_listed_and_deleted(product: Product) -> None:
     assert state(product) == "yours"
     got = page.request.get("/api/v1/robots/my a1").json()
     assert got["wheel"]["radius"] == pytest.approx(0.06)
+    enter(product, "wheel.radius", "0.07")
+    page.get_by_role("button", name="Delete my a1").click()
+    page.get_by_text("my a1 is deleted.").wait_for()
+    page.get_by_text("Undo", exact=True).click()
+    page.get_by_role("button", name="Delete my a1").wait_for()
+    expect(field(product, "wheel.radius")).to_have_value("0.070")
+    page.get_by_role("button", name="Reset robot").click()
+    expect(field(product, "wheel.radius")).to_have_value("0.060")
     address = product.linked('"r":"my a1","rd":')
     page.get_by_role("button", name="Delete my a1").click()
     page.get_by_text("my a1 is deleted.").wait_for()

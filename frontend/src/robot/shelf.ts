@@ -56,6 +56,7 @@ export async function saveAs(name: string): Promise<boolean> {
 }
 
 export async function remove(robot: RobotDocument): Promise<void> {
+  const edited = robotEdits.peek()[robot.name];
   try {
     await deleteRobot(robot.name);
     batch(() => {
@@ -63,16 +64,17 @@ export async function remove(robot: RobotDocument): Promise<void> {
       if (robotName.peek() === robot.name) choose(robots.peek()[0]?.name ?? "");
     });
     await readRobots();
-    toast.value = { text: `${robot.name} is deleted.`, undo: () => void putBack(robot) };
+    toast.value = { text: `${robot.name} is deleted.`, undo: () => void putBack(robot, edited) };
   } catch (error) {
     fail(error);
   }
 }
 
-async function putBack(robot: RobotDocument): Promise<void> {
+async function putBack(robot: RobotDocument, edited: RobotDocument | undefined): Promise<void> {
   try {
     await putRobot(sentRobot(robot));
     await readRobots();
+    if (edited) robotEdits.value = { ...robotEdits.peek(), [robot.name]: edited };
     choose(robot.name);
   } catch (error) {
     fail(error);
