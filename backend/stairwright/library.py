@@ -17,6 +17,7 @@ from .robot.description import Robot
 from .terrain.profile import Terrain
 
 D = TypeVar("D", bound=BaseModel)
+_OTHER_TOOLS = (".urdf", ".mjcf", ".xml", ".zip")
 
 
 def load_terrain(source: str | os.PathLike[str] | Mapping[str, Any] | Terrain) -> Terrain:
@@ -34,6 +35,11 @@ def load_robot(source: str | os.PathLike[str] | Mapping[str, Any] | Robot) -> Ro
     Raises:
         InputError: If there is no such robot or file, or a value is bad.
     """
+    if isinstance(source, (str, os.PathLike)) and Path(source).suffix.lower() in _OTHER_TOOLS:
+        raise InputError(
+            f"{os.fspath(source)!r} is another tool's: `stairwright robot import` makes a robot "
+            "of it, in Python sw.import_robot"
+        )
     return _load(Robot, "robots", source)
 
 

@@ -245,6 +245,7 @@ def test_a_file_of_another_kind_is_told_what_it_is(
         f"plan flat --robot {plan}": "is a plan (stairwright/plan/1), not a robot",
         f"certify {study}": "is a study (stairwright/study/1), not a plan",
         f"robot import {study}": "is a study (stairwright/study/1), not a robot",
+        "plan flat --robot go2w.urdf": "makes a robot of it, in Python sw.import_robot",
     }.items():
         assert main(arguments.split()) == 2
         assert f"{told}\n" in capsys.readouterr().err, arguments
