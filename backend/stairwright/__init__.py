@@ -9,7 +9,7 @@ from .mujoco_library import load_mujoco_library
 
 if TYPE_CHECKING:
     from .client import Client, ServiceError
-    from .importing import import_robot
+    from .importing import import_robot, import_terrain
     from .library import load_robot, load_terrain, robots, terrains
     from .planning.certificate.certify import certify
     from .planning.plan import Plan
@@ -42,6 +42,7 @@ __all__ = [
     "certify",
     "design",
     "import_robot",
+    "import_terrain",
     "load_robot",
     "load_terrain",
     "plan",
@@ -69,6 +70,7 @@ _HOMES = {
     "Trials": "simulation.trials_result",
     "certify": "planning.certificate.certify",
     "import_robot": "importing",
+    "import_terrain": "importing",
     "design": "studies.design",
     "load_robot": "library",
     "load_terrain": "library",

@@ -8,11 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .errors import InputError
-from .library import load_terrain, terrains
+from .library import load_terrain
 
 if TYPE_CHECKING:
     from .planning.plan import Method, Plan
-    from .terrain.profile import Terrain
 
 Arguments = argparse.Namespace
 _OF_PLANS = ("robot", "method", "solver", "weight", "timing", "facing", "tolerance")
@@ -24,7 +23,7 @@ def planned(source: str, given: Arguments) -> Plan:
 
     method: Method = given.method or "path"
     return plan(
-        terrain_of(source),
+        load_terrain(source),
         given.robot or "a1_wheeled",
         friction=given.friction,
         method=method,
@@ -63,24 +62,6 @@ def _schema(path: Path) -> str:
     schema = str(data.get("schema", ""))
     is_terrain = schema == "stairwright/terrain/1" or (not schema and "points" in data)
     return "terrain" if is_terrain else schema
-
-
-def terrain_of(source: str) -> Terrain:
-    """A preset, or a file of any kind that can be imported."""
-    path = Path(source)
-    suffix = path.suffix.lower().removeprefix(".")
-    if source in terrains() or suffix in ("", "yaml", "yml", "json"):
-        return load_terrain(source)
-    from .jobs.uploads import READERS, import_terrain
-    from .terrain.profile import Terrain
-
-    if suffix not in READERS:
-        return load_terrain(source)  # says what there is
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}") from None
-    return Terrain.model_validate(import_terrain(content, path.name, {}))
 
 
 def settings_of(pairs: Sequence[str], field: str) -> dict[str, Any]:

@@ -1,18 +1,21 @@
-"""`import_robot`: a robot from a URDF or MJCF file, with the presets to compare it with."""
+"""Robots and terrains from files of other tools."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from typing import Any
+from pathlib import Path
+from typing import Any, get_args
 
-from .arguments import as_number
+from .arguments import as_friction, as_number
 from .errors import InputError
 from .library import load_robot, robots
 from .robot.importing.bounded import import_bounded
 from .robot.importing.holding import checked_hold
 from .robot.importing.local import gather
 from .robot.importing.report import Imported
+from .terrain.mesh import Up
+from .terrain.profile import Terrain
 
 
 def import_robot(
@@ -48,3 +51,52 @@ def import_robot(
     options["hold"] = checked_hold(hold or {})
     name, content, files = gather(path)
     return import_bounded(name, content, files, options, [load_robot(each) for each in robots()])
+
+
+def import_terrain(
+    path: str | os.PathLike[str],
+    *,
+    name: str | None = None,
+    friction: float | None = None,
+    x: float = 0.0,
+    y: float | None = None,
+    heading: float = 0.0,
+    scale: float = 1.0,
+    up: Up = "z",
+) -> Terrain:
+    """The profile in a CSV, JSON or YAML file; of a mesh, the upper edge of a vertical cut.
+
+    Args:
+        path: The file; its ending is .csv, .txt, .json, .yaml, .stl, .obj, .ply or .off.
+        name: Of the terrain; the file's by default.
+        friction: Coulomb friction, wheel on terrain; what a document says, or 0.6.
+        x: Of a mesh that becomes 0 [m, after scaling].
+        y: Of the cut [m]; by default the middle of the mesh.
+        heading: Direction of travel through a mesh, counter-clockwise from +x [rad].
+        scale: Metres per unit of a mesh (0.001 for millimetres).
+        up: The axis of a mesh that points up.
+
+    Raises:
+        InputError: If the file cannot be read or holds no profile.
+    """
+    from .jobs.uploads import file_options, import_terrain
+
+    if up not in get_args(Up):
+        raise InputError(f"must be one of {', '.join(get_args(Up))}", ("up",))
+    options: dict[str, Any] = {
+        "origin": (as_number(x, "x"), None if y is None else as_number(y, "y")),
+        "heading": as_number(heading, "heading"),
+        "scale": as_number(scale, "scale"),
+        "up": up,
+    }
+    if not 0.0 < options["scale"] <= 1e3:
+        raise InputError("must be above 0 and at most 1000", ("scale",))
+    if friction is not None:
+        options["friction"] = as_friction(friction)
+    file = Path(path)
+    try:
+        content = file.read_bytes()
+    except (OSError, ValueError) as error:  # or a name that no file can have
+        raise InputError(f"cannot read {file}: {getattr(error, 'strerror', error)}") from None
+    given = options | file_options(file.name, name)
+    return Terrain.model_validate(import_terrain(content, file.name, given))

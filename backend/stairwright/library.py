@@ -18,14 +18,21 @@ from .terrain.profile import Terrain
 
 D = TypeVar("D", bound=BaseModel)
 _OTHER_TOOLS = (".urdf", ".mjcf", ".xml", ".zip")
+_IMPORTED = (".csv", ".txt", ".stl", ".obj", ".ply", ".off")
 
 
 def load_terrain(source: str | os.PathLike[str] | Mapping[str, Any] | Terrain) -> Terrain:
-    """A terrain from a preset's name, a YAML or JSON file, or a mapping.
+    """A terrain from a preset's name, a file, or a mapping.
+
+    Files are YAML, JSON or CSV, or meshes, see `import_terrain`.
 
     Raises:
         InputError: If there is no such preset or file, or a value is bad.
     """
+    if isinstance(source, (str, os.PathLike)) and Path(source).suffix.lower() in _IMPORTED:
+        from .importing import import_terrain
+
+        return import_terrain(source)
     return _load(Terrain, "terrains", source)
 
 

@@ -40,6 +40,17 @@ def import_terrain(data: bytes, file_name: str, options: Options) -> dict[str, A
     return terrain.model_dump(mode="json")
 
 
+def file_options(file_name: str, name: str | None) -> dict[str, Any]:
+    """How a terrain is called: as was said, as its document says, or as its file is called."""
+    if name is not None:
+        return {"name": name}
+    file = PurePath(file_name)
+    if file.suffix.lower() in (".json", ".yaml", ".yml"):
+        return {}
+    kept = "".join(c if c.isalnum() or c in " .+-_" else "-" for c in file.stem).strip()
+    return {"name": kept[:100] or "imported"}
+
+
 def look_at_mesh(data: bytes, file_name: str, options: Options) -> dict[str, Any]:
     """Heights of the mesh in a file, with ``scale`` and ``up`` among the options.
 

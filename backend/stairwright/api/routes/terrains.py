@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import PurePath
 from typing import Annotated, Any
 
 from fastapi import APIRouter, File, Form, Path, Request, Response, UploadFile
@@ -75,11 +74,7 @@ async def import_terrain(
     options: dict[str, Any] = {"heading": heading, "scale": scale, "up": up, "origin": (x, y)}
     if friction is not None:
         options["friction"] = friction
-    file_name = PurePath(file.filename or "")
-    if name is not None:
-        options["name"] = name
-    elif file_name.suffix.lower() not in (".json", ".yaml", ".yml"):
-        options["name"] = _usable(file_name.stem)
+    options |= uploads.file_options(file.filename or "", name)
     document = await read_upload(services, uploads.import_terrain, file, options)
     return Terrain.model_validate(document)
 
@@ -92,12 +87,6 @@ async def get_mesh_heights(
     options = {"scale": scale, "up": up}
     document = await read_upload(services, uploads.look_at_mesh, file, options)
     return MeshHeights.model_validate(document)
-
-
-def _usable(stem: str) -> str:
-    """A terrain's name from a file's."""
-    kept = "".join(c if c.isalnum() or c in " .+-_" else "-" for c in stem).strip()
-    return kept[:100] or "imported"
 
 
 @router.get("/{name}", response_model=TerrainDocument, responses=describe(404))
