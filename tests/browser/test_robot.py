@@ -7,7 +7,7 @@ import json
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from playwright.sync_api import expect
@@ -109,7 +109,8 @@ def test_an_own_robot_is_saved_listed_and_deleted(product: Product) -> None:
     expect(field(product, "wheel.radius")).to_have_value("0.070")
     page.get_by_role("button", name="Reset robot").click()
     expect(field(product, "wheel.radius")).to_have_value("0.060")
-    address = product.linked('"r":"my a1","rd":')
+    product.linked('"r":"my a1"')
+    address = product.linked('"radius":0.06,')
     page.get_by_role("button", name="Delete my a1").click()
     page.get_by_text("my a1 is deleted.").wait_for()
     assert page.request.get("/api/v1/robots/my a1").status == 404
@@ -139,13 +140,23 @@ def test_robots_that_another_window_saves_and_deletes(product: Product) -> None:
     page.get_by_role("button", name="Close ours").click()
 
 
-def test_a_link_of_a_robot_that_is_not_here_says_so(product: Product) -> None:
+@pytest.mark.parametrize(
+    ("robot", "said"),
+    [
+        ({}, "The robot nobody of this link is not here; a1_wheeled_x is shown instead."),
+        ({"rd": {"name": "nobody"}}, "This link could not be read; the sample is shown instead."),
+    ],
+)
+def test_a_link_of_a_robot_that_cannot_be_had_says_so(
+    product: Product, robot: dict[str, Any], said: str
+) -> None:
     page = product.page.context.new_page()
     shared = {"t": {"name": "x", "points": [[-1, 0], [0, 0], [0, 0.1], [1, 0.1]], "friction": 0.6}}
-    text = json.dumps(shared | {"r": "nobody", "m": "path"}).encode()
+    text = json.dumps(shared | {"r": "nobody", "m": "path"} | robot).encode()
     opened = Product(page).open("/#s=" + base64.urlsafe_b64encode(text).decode().rstrip("="))
-    page.get_by_text("The robot nobody of this link is not here; a1_wheeled_x is shown").wait_for()
+    page.get_by_text(said).wait_for()
     assert opened.status == "feasible"
+    assert opened.errors == []
     page.close()
 
 

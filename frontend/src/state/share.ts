@@ -10,6 +10,7 @@ import type {
   TerrainDocument,
   Vec2,
 } from "../api/types";
+import { robotShape } from "../geometry/robot";
 import { committed, isEmpty, open, origin, terrainDocument } from "./drawing";
 import { run, runB, runStale } from "./rollouts";
 import {
@@ -132,7 +133,9 @@ export function restoreFromAddress(instead = "the sample is shown instead"): Res
   let state: Shared;
   try {
     state = decode(text) as Shared;
-    if (!Array.isArray(state.t.points)) throw new TypeError("no points");
+    if (!Array.isArray(state.t.points) || !Number.isFinite(state.t.friction))
+      throw new TypeError("no terrain");
+    if (state.rd) robotShape(state.rd); // which throws where it is no robot
   } catch {
     toast.value = { text: `This link could not be read; ${instead}.` };
     return null;
