@@ -79,7 +79,7 @@ def import_terrain(
     Raises:
         InputError: If the file cannot be read or holds no profile.
     """
-    from .jobs.uploads import file_options, import_terrain
+    from .jobs import uploads
 
     if up not in get_args(Up):
         raise InputError(f"must be one of {', '.join(get_args(Up))}", ("up",))
@@ -98,5 +98,5 @@ def import_terrain(
         content = file.read_bytes()
     except (OSError, ValueError) as error:  # or a name that no file can have
         raise InputError(f"cannot read {file}: {getattr(error, 'strerror', error)}") from None
-    given = options | file_options(file.name, name)
-    return Terrain.model_validate(import_terrain(content, file.name, given))
+    given = options | uploads.name_option(file.name, name)
+    return Terrain.model_validate(uploads.import_terrain(content, file.name, given))

@@ -14,11 +14,12 @@ from .documents import load_document, parse
 from .errors import InputError
 from .resources import data_folder
 from .robot.description import Robot
+from .robot.importing.upload import XML_ENDINGS
 from .terrain.profile import Terrain
 
 D = TypeVar("D", bound=BaseModel)
-_OTHER_TOOLS = (".urdf", ".mjcf", ".xml", ".zip")
-_IMPORTED = (".csv", ".txt", ".stl", ".obj", ".ply", ".off")
+_OWN = (".yaml", ".yml", ".json")
+_OTHER_TOOLS = (*XML_ENDINGS, ".zip")
 
 
 def load_terrain(source: str | os.PathLike[str] | Mapping[str, Any] | Terrain) -> Terrain:
@@ -29,7 +30,7 @@ def load_terrain(source: str | os.PathLike[str] | Mapping[str, Any] | Terrain) -
     Raises:
         InputError: If there is no such preset or file, or a value is bad.
     """
-    if isinstance(source, (str, os.PathLike)) and Path(source).suffix.lower() in _IMPORTED:
+    if isinstance(source, (str, os.PathLike)) and _is_table_or_mesh(Path(source).suffix):
         from .importing import import_terrain
 
         return import_terrain(source)
@@ -44,7 +45,7 @@ def load_robot(source: str | os.PathLike[str] | Mapping[str, Any] | Robot) -> Ro
     """
     if isinstance(source, (str, os.PathLike)) and Path(source).suffix.lower() in _OTHER_TOOLS:
         raise InputError(
-            f"{os.fspath(source)!r} is another tool's: `stairwright robot import` makes a robot "
+            f"{str(source)!r} is another tool's: `stairwright robot import` makes a robot "
             "of it, in Python sw.import_robot"
         )
     return _load(Robot, "robots", source)
@@ -58,6 +59,14 @@ def terrains() -> list[str]:
 def robots() -> list[str]:
     """Names of the robots."""
     return _names("robots")
+
+
+def _is_table_or_mesh(suffix: str) -> bool:
+    if suffix.lower() in ("", *_OWN):
+        return False  # without loading what reads the others
+    from .jobs.uploads import READERS
+
+    return suffix.lower().removeprefix(".") in READERS
 
 
 def _names(folder: str) -> list[str]:
@@ -81,7 +90,7 @@ def _load(model: type[D], folder: str, source: str | os.PathLike[str] | Mapping[
         loaded: D = _preset(model, preset, preset.stat().st_mtime_ns)
         return loaded
     path = Path(source)
-    if path.suffix.lower() in (".yaml", ".yml", ".json"):
+    if path.suffix.lower() in _OWN:
         return load_document(model, path)
     kind = folder.removesuffix("s")
     raise InputError(

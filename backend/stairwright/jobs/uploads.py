@@ -40,7 +40,7 @@ def import_terrain(data: bytes, file_name: str, options: Options) -> dict[str, A
     return terrain.model_dump(mode="json")
 
 
-def file_options(file_name: str, name: str | None) -> dict[str, Any]:
+def name_option(file_name: str, name: str | None) -> dict[str, Any]:
     """How a terrain is called: as was said, as its document says, or as its file is called."""
     if name is not None:
         return {"name": name}

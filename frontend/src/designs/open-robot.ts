@@ -1,9 +1,9 @@
 /** A design in the Robot workspace, as one that was read and is not saved yet. */
 
 import { batch } from "@preact/signals";
-import { asDocument, choose, imports } from "../robot/edit";
+import { choose, imports } from "../robot/edit";
 import { commitChoices } from "../state/drawing";
-import { robotEdits } from "../state/setup";
+import { asDocument, robotEdits } from "../state/setup";
 import { toast } from "../state/toast";
 import { workspace } from "../state/workspace";
 import { search } from "./state";

@@ -13,7 +13,15 @@ import type {
 import { fit } from "../profile-editor/viewport";
 import { report } from "../state/connection";
 import { open } from "../state/drawing";
-import { chosenFacing, method, settings, timing, tolerance, weights } from "../state/setup";
+import {
+  chosenFacing,
+  differing,
+  method,
+  settings,
+  timing,
+  tolerance,
+  weights,
+} from "../state/setup";
 import { takeRobot } from "../state/taken-robot";
 import { toast } from "../state/toast";
 import { workspace } from "../state/workspace";
@@ -47,6 +55,7 @@ export async function openCell(place: Place): Promise<void> {
     const question = plan as unknown as Question;
     const changes = measures(values, ofRobot);
     const ground = measures(values, (kind) => Boolean(kind.group));
+    const schema = settings.peek()?.weights[question.method]?.properties;
     batch(() => {
       const name = ground || question.terrain.name;
       open({ ...question.terrain, name, friction: question.friction }, null, () => {
@@ -54,7 +63,7 @@ export async function openCell(place: Place): Promise<void> {
         method.value = question.method;
         weights.value = {
           ...weights.peek(),
-          [question.method]: changed(question.method, question.weights),
+          [question.method]: differing(question.weights, schema),
         };
         timing.value = question.timing ?? "steady";
         chosenFacing.value = question.facing ?? null;
@@ -87,12 +96,4 @@ function measures(values: CellAnswer["values"], which: (kind: AxisKind) => boole
     })
     .join(" ")
     .replaceAll(/[^\w .+-]+/g, "");
-}
-
-/** The page keeps only what differs from the default. */
-function changed(by: Method, values: SettingValues): SettingValues {
-  const schema = settings.peek()?.weights[by]?.properties ?? {};
-  return Object.fromEntries(
-    Object.entries(values).filter(([name, value]) => value !== schema[name]?.default),
-  );
 }

@@ -4,7 +4,14 @@ import { batch, computed, signal } from "@preact/signals";
 import type { ImportedRobot, RobotDocument } from "../api/types";
 import { commitChoices } from "../state/drawing";
 import { stir } from "../state/planner";
-import { robotDocument, robotEdits, robotName, robots, storedRobot } from "../state/setup";
+import {
+  asDocument,
+  robotDocument,
+  robotEdits,
+  robotName,
+  robots,
+  storedRobot,
+} from "../state/setup";
 import { clamped, QUANTITIES, quantityOf } from "./quantities";
 
 /** What files held that were read in this visit, by the name of their robot. */
@@ -23,9 +30,6 @@ export function baseOf(name: string): RobotDocument | null {
   const read = imports.value[name];
   return read ? asDocument(read.robot) : null;
 }
-
-export const asDocument = (robot: ImportedRobot["robot"]): RobotDocument =>
-  ({ ...robot, readonly: false, version: "" }) as RobotDocument;
 
 /** Ids of the quantities that are not what they were. */
 export const changed = computed<ReadonlySet<string>>(() => {

@@ -6,9 +6,17 @@ import type { ImportedRobot, RobotDocument } from "../api/types";
 import { readRobots } from "../state/catalogue";
 import { report } from "../state/connection";
 import { commitChoices } from "../state/drawing";
-import { allRobots, robotDocument, robotEdits, robotName, robots, sentRobot } from "../state/setup";
+import {
+  allRobots,
+  asDocument,
+  robotDocument,
+  robotEdits,
+  robotName,
+  robots,
+  sentRobot,
+} from "../state/setup";
 import { toast } from "../state/toast";
-import { asDocument, choose, imports } from "./edit";
+import { choose, imports } from "./edit";
 
 /** What went wrong with a name or a file, where it happened. */
 export const shelfError = signal<string | null>(null);

@@ -4,6 +4,7 @@ import { batch, computed, signal } from "@preact/signals";
 import type {
   Facing,
   FacingChoice,
+  ImportedRobot,
   Method,
   PlanTiming,
   RobotDocument,
@@ -75,6 +76,10 @@ export function sentRobot(document: RobotDocument): SentRobot {
   return sent;
 }
 
+/** A robot that is not stored, as those are that are. */
+export const asDocument = (robot: ImportedRobot["robot"] | SentRobot): RobotDocument =>
+  ({ ...robot, readonly: false, version: "" }) as RobotDocument;
+
 /** As its file has it. */
 export const robotAsBuilt = computed<RobotShape | null>(() =>
   robotDocument.value ? robotShape(robotDocument.value) : null,
@@ -116,6 +121,17 @@ export const changedCount = computed(() =>
     0,
   ),
 );
+
+/** Those that differ from their defaults: all that the inspector holds. */
+export function differing(
+  values: Record<string, unknown>,
+  schema: Record<string, SettingSchema> = {},
+): SettingValues {
+  const kept = Object.entries(values).filter(
+    ([name, value]) => value !== null && name in schema && schema[name]!.default !== value,
+  );
+  return Object.fromEntries(kept) as SettingValues;
+}
 
 /** With one of them set, or taken out where it is the default. */
 export function withValue(

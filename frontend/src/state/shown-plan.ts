@@ -2,10 +2,11 @@
 
 import { batch } from "@preact/signals";
 import { getPlanRobot } from "../api/client";
-import type { Plan, SentRobot, SettingSchema, SettingValues } from "../api/types";
+import type { Plan, SentRobot } from "../api/types";
 import { open } from "./drawing";
 import { forgetRollout } from "./rollouts";
 import {
+  differing,
   method,
   setFacing,
   settings,
@@ -20,17 +21,6 @@ import { takeRobot } from "./taken-robot";
 /** As its own file has it: where its rear led, the plan describes it turned about. */
 export const robotOf = async (plan: Plan): Promise<SentRobot> =>
   plan.facing === "backward" ? await getPlanRobot(plan.id) : (plan.robot_description as SentRobot);
-
-/** Those that differ from their defaults: all that the inspector holds. */
-function differing(
-  values: Record<string, unknown>,
-  schema: Record<string, SettingSchema> = {},
-): SettingValues {
-  const kept = Object.entries(values).filter(
-    ([name, value]) => value !== null && name in schema && schema[name]!.default !== value,
-  );
-  return Object.fromEntries(kept) as SettingValues;
-}
 
 /**
  * Terrain, robot and settings as a plan was asked with: one step, which undo takes back.

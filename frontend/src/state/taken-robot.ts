@@ -1,14 +1,14 @@
 /** The robot of a result, taken into the hand as it was then. */
 
 import type { SentRobot } from "../api/types";
-import { robotEdits, robotName, robots } from "./setup";
+import { asDocument, robotEdits, robotName, robots } from "./setup";
 
 /** The stored robot where it is the same; else one of that name that is not saved. */
 export function takeRobot(robot: SentRobot): void {
   const { [robot.name]: _, ...others } = robotEdits.peek();
   const stored = robots.peek().find((each) => each.name === robot.name);
-  const taken = { ...robot, readonly: false, version: "" };
-  robotEdits.value = stored && alike(stored, robot) ? others : { ...others, [robot.name]: taken };
+  robotEdits.value =
+    stored && alike(stored, robot) ? others : { ...others, [robot.name]: asDocument(robot) };
   robotName.value = robot.name;
 }
 

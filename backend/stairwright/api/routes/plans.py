@@ -117,7 +117,7 @@ stored.serve(
 async def get_plan_robot(services: Service, plan_id: PlanId) -> Robot:
     """The robot of a plan as its own file has it, also where its rear leads."""
     _, packed = await stored.load(services, "plan", plan_id)
-    plan = orjson.loads(await asyncio.to_thread(gzip.decompress, packed))
+    plan = await asyncio.to_thread(lambda: orjson.loads(gzip.decompress(packed)))
     robot = Robot.model_validate(plan["robot_description"])
     return turned(robot) if plan.get("facing") == "backward" else robot
 

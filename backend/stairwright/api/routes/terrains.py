@@ -74,7 +74,7 @@ async def import_terrain(
     options: dict[str, Any] = {"heading": heading, "scale": scale, "up": up, "origin": (x, y)}
     if friction is not None:
         options["friction"] = friction
-    options |= uploads.file_options(file.filename or "", name)
+    options |= uploads.name_option(file.filename or "", name)
     document = await read_upload(services, uploads.import_terrain, file, options)
     return Terrain.model_validate(document)
 
