@@ -58,7 +58,7 @@ async function begin(): Promise<void> {
   const restored = restoreFromAddress();
   if (!restored) {
     const sample = terrains.peek().find((t) => t.name === SAMPLE) ?? terrains.peek()[0];
-    if (sample) open(sample, sample);
+    if (sample) open(sample, sample.name);
     showMiddle();
   }
   fit(drawing.peek().points);

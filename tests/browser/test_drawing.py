@@ -219,6 +219,33 @@ def test_a_plan_that_was_made_elsewhere_opens_with_all_that_it_was_asked_with(
     product.has_corners(4)
 
 
+def test_undo_leads_back_past_a_pasted_link_to_terrains_as_they_are_stored(
+    product: Product,
+) -> None:
+    page = product.page
+    edited = page.get_by_title("Edited, not saved")
+    clearance = page.get_by_label("Clearance, value")
+    product.choose_terrain("curb-015")
+    clearance.fill("3")
+    clearance.press("Enter")
+    address = product.planned().linked('"clearance":3')
+    product.choose_terrain("flat")
+    page.keyboard.press("Control+z")
+    product.has_corners(4)
+    assert edited.count() == 0
+    page.keyboard.press("Control+z")  # the weight
+    page.keyboard.press("Control+z")
+    product.has_corners(8).planned()
+    page.wait_for_function("then => location.href !== then", arg=address)
+    page.evaluate("address => { location.href = address; }", address)  # pasted into the open page
+    product.has_corners(4).planned()
+    assert clearance.input_value() == "3.00"
+    page.keyboard.press("Control+z")  # one step
+    product.has_corners(8).planned()
+    assert clearance.input_value() == "1.00"
+    assert edited.count() == 0
+
+
 def test_thousands_of_corners_are_thinned_and_all_in_reach(product: Product) -> None:
     # The drawing is looked at, not the plan.
     product.page.route(

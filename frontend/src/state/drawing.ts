@@ -1,9 +1,9 @@
 /** The document of the page: the drawn profile with its name and friction; and the history. */
 
-import { computed, effect, signal } from "@preact/signals";
+import { batch, computed, effect, signal } from "@preact/signals";
 import type { TerrainDocument, Vec2 } from "../api/types";
 import { type Points, samePoints } from "../geometry/profile";
-import { type Choices, choices, choose } from "./setup";
+import { type Choices, choices, choose, terrains } from "./setup";
 
 export interface Drawing {
   name: string;
@@ -29,14 +29,18 @@ const LONGEST_HISTORY = 200;
 export const drawing = signal<Drawing>(UNTITLED);
 /** What the last finished edit left; link and history follow this one. */
 export const committed = signal<Drawing>(UNTITLED);
+const originName = signal<string | null>(null);
 /** The stored terrain that the drawing started from. */
-export const origin = signal<TerrainDocument | null>(null);
+export const origin = computed(
+  () => terrains.value.find((terrain) => terrain.name === originName.value) ?? null,
+);
 /** Selected vertices, ascending. */
 export const selection = signal<readonly number[]>([]);
 
 /** Where undo leads: a drawing and what was set beside it. */
 interface Step {
   drawing: Drawing;
+  originName: string | null;
   choices: Choices;
 }
 
@@ -78,7 +82,11 @@ export function commit(change: Partial<Drawing> = {}): void {
   committed.value = next;
 }
 
-const now = (): Step => ({ drawing: committed.peek(), choices: chosen });
+const now = (): Step => ({
+  drawing: committed.peek(),
+  originName: originName.peek(),
+  choices: chosen,
+});
 
 function remember(): void {
   past.value = [...past.value.slice(-LONGEST_HISTORY), now()];
@@ -133,22 +141,22 @@ export function redo(): void {
 
 function restore(step: Step): void {
   const state = step.drawing;
-  drawing.value = state;
-  committed.value = state;
-  selection.value = selection.peek().filter((i) => i < state.points.length);
-  chosen = step.choices;
-  choose(chosen);
+  batch(() => {
+    drawing.value = state;
+    committed.value = state;
+    originName.value = step.originName;
+    selection.value = selection.peek().filter((i) => i < state.points.length);
+    chosen = step.choices;
+    choose(chosen);
+  });
 }
 
 /**
  * Open another terrain: undo leads back to the one before.
+ * @param from the name of the stored one that it is, if it is one
  * @param settle changes the settings that belong to it, in the same step
  */
-export function open(
-  terrain: TerrainDocument,
-  stored: TerrainDocument | null,
-  settle?: () => void,
-): void {
+export function open(terrain: TerrainDocument, from: string | null, settle?: () => void): void {
   const next: Drawing = {
     name: terrain.name,
     description: terrain.description ?? "",
@@ -157,18 +165,26 @@ export function open(
     start: terrain.start ?? null,
     goal: terrain.goal ?? null,
   };
-  if (committed.peek().points.length > 0) {
-    commitChoices();
-    remember();
-  }
-  future.value = [];
-  origin.value = stored;
-  selection.value = [];
-  drawing.value = next;
-  committed.value = next;
-  if (!settle) return;
-  settle();
-  chosen = choices.peek();
+  batch(() => {
+    if (committed.peek().points.length > 0) {
+      commitChoices();
+      remember();
+    }
+    future.value = [];
+    originName.value = from;
+    selection.value = [];
+    drawing.value = next;
+    committed.value = next;
+    settle?.();
+    chosen = choices.peek();
+  });
+}
+
+/** What is drawn is stored under this name now. */
+export function storedAs(name: string, description: string): void {
+  originName.value = name;
+  drawing.value = { ...drawing.peek(), name, description };
+  committed.value = { ...committed.peek(), name, description };
 }
 
 export function clear(): void {

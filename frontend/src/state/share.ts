@@ -25,7 +25,6 @@ import {
   seed,
   sentRobot,
   storedRobot,
-  terrains,
   timing,
   tolerance,
   weights,
@@ -143,19 +142,19 @@ export function restoreFromAddress(instead = "the sample is shown instead"): Res
   const points = state.t.points.filter(
     (p): p is Vec2 => p.length === 2 && p.every(Number.isFinite),
   );
-  const stored = terrains.peek().find((t) => t.name === state.t.name) ?? null;
-  open({ ...state.t, points, schema: "stairwright/terrain/1" }, stored);
-  if (state.rd) takeRobot(state.rd);
-  else takeNamed(state.r);
-  method.value = state.m;
-  timing.value = state.f ? "fast" : "steady";
-  chosenFacing.value = state.b === 1 ? "backward" : (state.b ?? null);
-  weights.value = state.w ?? {};
-  tolerance.value = state.l ?? {};
-  controller.value = state.c ?? {};
-  seed.value = state.s ?? 0;
-  disturbance.value = state.d ?? {};
-  compare.value = state.ab === 1;
+  open({ ...state.t, points, schema: "stairwright/terrain/1" }, state.t.name, () => {
+    if (state.rd) takeRobot(state.rd);
+    else takeNamed(state.r);
+    method.value = state.m;
+    timing.value = state.f ? "fast" : "steady";
+    chosenFacing.value = state.b === 1 ? "backward" : (state.b ?? null);
+    weights.value = state.w ?? {};
+    tolerance.value = state.l ?? {};
+    controller.value = state.c ?? {};
+    seed.value = state.s ?? 0;
+    disturbance.value = state.d ?? {};
+    compare.value = state.ab === 1;
+  });
   return { rollout: state.ro ?? null, rolloutB: state.rb ?? null };
 }
 

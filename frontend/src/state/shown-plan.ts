@@ -1,6 +1,5 @@
 /** A plan that was made before, in the editor: what it was asked with. */
 
-import { batch } from "@preact/signals";
 import { getPlanRobot } from "../api/client";
 import type { Plan, SentRobot } from "../api/types";
 import { open } from "./drawing";
@@ -10,7 +9,6 @@ import {
   method,
   setFacing,
   settings,
-  terrains,
   timing,
   tolerance,
   toleranceSchema,
@@ -28,18 +26,15 @@ export const robotOf = async (plan: Plan): Promise<SentRobot> =>
  */
 export function showPlan(plan: Plan, robot: SentRobot, settle?: () => void): void {
   const { terrain } = plan;
-  const stored = terrains.peek().find((each) => each.name === terrain.name) ?? null;
   const schema = settings.peek()?.weights[plan.method]?.properties;
-  batch(() => {
-    forgetRollout();
-    open({ ...terrain, friction: plan.friction }, stored, () => {
-      takeRobot(robot);
-      method.value = plan.method;
-      timing.value = plan.timing.rule === "fast" ? "fast" : "steady";
-      setFacing(plan.facing ?? "forward");
-      weights.value = { ...weights.peek(), [plan.method]: differing(plan.weights ?? {}, schema) };
-      tolerance.value = differing({ ...plan.tolerance }, toleranceSchema.peek());
-      settle?.();
-    });
+  forgetRollout();
+  open({ ...terrain, friction: plan.friction }, terrain.name, () => {
+    takeRobot(robot);
+    method.value = plan.method;
+    timing.value = plan.timing.rule === "fast" ? "fast" : "steady";
+    setFacing(plan.facing ?? "forward");
+    weights.value = { ...weights.peek(), [plan.method]: differing(plan.weights ?? {}, schema) };
+    tolerance.value = differing({ ...plan.tolerance }, toleranceSchema.peek());
+    settle?.();
   });
 }

@@ -6,7 +6,7 @@ import type { TerrainDocument } from "../api/types";
 import { fit } from "../profile-editor/viewport";
 import { readTerrains } from "../state/catalogue";
 import { report } from "../state/connection";
-import { committed, drawing, open, origin, terrainDocument } from "../state/drawing";
+import { committed, drawing, open, origin, storedAs, terrainDocument } from "../state/drawing";
 import { forgetRollout } from "../state/rollouts";
 import { terrains } from "../state/setup";
 import { toast } from "../state/toast";
@@ -17,16 +17,16 @@ export const generateError = signal<string | null>(null);
 /** Why a terrain was not saved; the menu shows it below the name. */
 export const saveError = signal<string | null>(null);
 
-/** Draw a terrain; `stored` is what it is saved as. */
-export function show(terrain: TerrainDocument, stored: TerrainDocument | null): void {
+/** Draw a terrain, which may be the stored one of that name. */
+export function show(terrain: TerrainDocument, from: string | null): void {
   forgetRollout();
-  open(terrain, stored);
+  open(terrain, from);
   tool.value = "select";
   fit(terrain.points);
 }
 
 export function openStored(terrain: TerrainDocument): void {
-  show(terrain, terrain);
+  show(terrain, terrain.name);
 }
 
 /** Save the drawing; what it replaces can be brought back. */
@@ -36,12 +36,10 @@ export async function saveAs(name: string, description: string): Promise<boolean
     const before = (await getTerrains()).find((t) => t.name === name && !t.readonly);
     const saved = await putTerrain({ ...terrainDocument(committed.peek()), name, description });
     await readTerrains();
-    origin.value = terrains.peek().find((t) => t.name === saved.name) ?? saved;
-    drawing.value = { ...drawing.peek(), name: saved.name, description };
-    committed.value = drawing.peek();
+    storedAs(saved.name, description);
     saveError.value = null;
     toast.value = before
-      ? { text: `${name} is replaced.`, undo: () => void putBack(before, false) }
+      ? { text: `${name} is replaced.`, undo: () => void putBack(before) }
       : { text: `Saved as ${name}.` };
     return true;
   } catch (error) {
@@ -74,20 +72,17 @@ export async function removeStored(terrain: TerrainDocument): Promise<void> {
   try {
     await deleteTerrain(name);
     await readTerrains();
-    const opened = origin.peek()?.name === name;
-    if (opened) origin.value = null;
-    toast.value = { text: `${name} is deleted.`, undo: () => void putBack(terrain, opened) };
+    toast.value = { text: `${name} is deleted.`, undo: () => void putBack(terrain) };
   } catch (error) {
     report(error);
     toast.value = { text: `${name} is not deleted: ${reasonOf(error)}` };
   }
 }
 
-async function putBack(terrain: TerrainDocument, opened: boolean): Promise<void> {
+async function putBack(terrain: TerrainDocument): Promise<void> {
   try {
     await putTerrain(terrain);
     await readTerrains();
-    if (opened && drawing.peek().name === terrain.name) origin.value = terrain;
   } catch (error) {
     report(error);
     toast.value = { text: `${terrain.name} is not back: ${reasonOf(error)}` };
