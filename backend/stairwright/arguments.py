@@ -51,7 +51,10 @@ def as_number(value: Any, field: str) -> float:
     """
     if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
         raise InputError("must be a number", (field,))
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:
+        raise InputError("is too large", (field,)) from None
 
 
 def as_whole(value: Any, low: int, high: int, field: str) -> int:

@@ -59,6 +59,7 @@ def test_a_mesh_is_scaled_turned_up_and_cut(mesh: Path) -> None:
         ({"heading": "north"}, "heading"),
         ({"y": True}, "y"),
         ({"friction": -1}, "friction"),
+        ({"friction": 10**400}, "friction"),
     ],
 )
 def test_a_bad_option_is_named(table: Path, options: dict[str, Any], field: str) -> None:
