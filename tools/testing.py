@@ -51,7 +51,9 @@ def test(arguments: Sequence[str]) -> int:
     quick = list(arguments) in (["--quick"], ["-q"])
     whole = not arguments
     setup()
-    variables = {} if quick else {"STAIRWRIGHT_BROWSER": setup_browser()}
+    variables = {"OPENBLAS_NUM_THREADS": "1"}  # as workers and the command have it
+    if not quick:
+        variables["STAIRWRIGHT_BROWSER"] = setup_browser()
     if whole or quick:
         # Slow tests wait for servers and browsers now and then: one process more than cores.
         processes = min((os.cpu_count() or 1) + (not quick), MOST_TEST_PROCESSES)

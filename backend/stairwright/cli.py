@@ -218,6 +218,7 @@ def _add_rate(command: argparse.ArgumentParser) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status."""
     chosen = parser().parse_args(arguments)
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # others would only spin: matrices are small
     try:
         if chosen.command == "serve":
             from .api.server import serve

@@ -26,6 +26,7 @@ Rollout::Rollout(const mjModel* model, mjData* data, control::Controller control
         model->nsensordata <= kAllContacts)
         throw std::invalid_argument("the model is not one of a robot with four wheeled legs");
     if (substeps < 1) throw std::invalid_argument("substeps must be at least 1");
+    mjcb_time = nullptr;  // MuJoCo for Python has every stage of every step timed, which is a twentieth of a rollout
     lag_ = motors.bandwidth > 0.0 ? 1.0 - std::exp(-2.0 * std::numbers::pi * motors.bandwidth * dt_) : 1.0;
 }
 
