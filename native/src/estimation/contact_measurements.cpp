@@ -139,7 +139,7 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
         double spread = deviation * deviation + reading * reading;
         for (std::size_t k = 0; k < kErrors; ++k) spread += h[k] * ph[k];
         if (residual * residual > kGate * spread) return false;
-        covariance_.update(h, residual, deviation * deviation * lasts + reading * reading, error);
+        covariance_.update(h, ph, residual, deviation * deviation * lasts + reading * reading, error);
         return true;
     };
     // Sideways; the axis turns with the trunk.

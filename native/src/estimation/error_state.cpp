@@ -26,7 +26,10 @@ Error Covariance::times(const Error& h) const {
 }
 
 void Covariance::update(const Error& h, double residual, double noise, Error& error) {
-    const Error ph = times(h);
+    update(h, times(h), residual, noise, error);
+}
+
+void Covariance::update(const Error& h, const Error& ph, double residual, double noise, Error& error) {
     const double spread = dot(h, ph) + noise;
     Error gain, rest;
     const double share = noise / spread;  // P h - K (h P h)
@@ -37,9 +40,8 @@ void Covariance::update(const Error& h, double residual, double noise, Error& er
         const double k = gain[i], b = noise * gain[i] - rest[i];
         error[i] += gain[i] * miss;
         for (std::size_t j = 0; j <= i; ++j) P_[i][j] = P_[i][j] - k * ph[j] + b * gain[j];
+        for (std::size_t j = 0; j < i; ++j) P_[j][i] = P_[i][j];  // symmetric, whatever rounding says
     }
-    for (std::size_t i = 0; i < kErrors; ++i)  // symmetric, whatever rounding says
-        for (std::size_t j = i + 1; j < kErrors; ++j) P_[i][j] = P_[j][i];
 }
 
 void Covariance::propagate(const std::array<std::array<double, 3>, 3>& R, const std::array<double, 3>& f, double dt) {

@@ -40,6 +40,8 @@ class Covariance {
     // Kalman update by one scalar measurement `h e = residual` of variance `noise`, with the Joseph form; adds
     // the correction to `error`, which holds that of the updates before since the state was last corrected.
     void update(const Error& h, double residual, double noise, Error& error);
+    // The same where `ph`, P h, is known already.
+    void update(const Error& h, const Error& ph, double residual, double noise, Error& error);
 
     // A step of time: attitude, velocity and place by the linearised strapdown equations. `R` is trunk to world,
     // `force` the specific force in the world frame.
