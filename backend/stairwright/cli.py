@@ -15,6 +15,7 @@ from .export.table import FORMATS, USUAL_RATE, names
 
 DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 METHODS = ("path", "critical", "nominal")
+TERRAIN = "a preset's name, a file, or measures, as stair:rise=0.18,run=0.28,count=5"
 
 
 class Parser(argparse.ArgumentParser):
@@ -48,7 +49,7 @@ def parser() -> argparse.ArgumentParser:
     serve.add_argument("--port", type=_port, help="port to serve on (8000)")
 
     plan = commands.add_parser("plan", help="plan the poses over a terrain")
-    plan.add_argument("terrain", metavar="TERRAIN", help="a preset's name, or a file")
+    plan.add_argument("terrain", metavar="TERRAIN", help=TERRAIN)
     _add_planning(plan)
     plan.add_argument("-o", "--output", metavar="FILE", help=names("plan"))
     _add_rate(plan)
@@ -179,7 +180,9 @@ def _add_planning(command: argparse.ArgumentParser) -> None:
 
 
 def _add_carrying_out(command: argparse.ArgumentParser) -> None:
-    command.add_argument("source", metavar="PLAN-or-TERRAIN", help="a plan's file, or a terrain")
+    command.add_argument(
+        "source", metavar="PLAN-or-TERRAIN", help="a plan's file, or a terrain as for plan"
+    )
     _add_planning(command)
     _add_seed(command)
     command.add_argument(

@@ -3,18 +3,30 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .errors import InputError
 from .library import load_terrain
+from .terrain.generation import GENERATORS, generated
 
 if TYPE_CHECKING:
     from .planning.plan import Method, Plan
+    from .terrain.profile import Terrain
 
 Arguments = argparse.Namespace
 _OF_PLANS = ("robot", "method", "solver", "weight", "timing", "facing", "tolerance")
+
+
+def terrain_of(source: str) -> Terrain:
+    """What `load_terrain` finds; or of a kind: ``stair:rise=0.18,run=0.28,count=5``."""
+    kind, colon, measures = source.partition(":")
+    if not (colon and kind in GENERATORS):
+        return load_terrain(source)
+    given = settings_of(filter(None, measures.split(",")), kind)
+    whole = {name: int(v) for name, v in given.items() if isinstance(v, float) and v.is_integer()}
+    return generated({"kind": kind, **given, **whole})
 
 
 def planned(source: str, given: Arguments) -> Plan:
@@ -23,7 +35,7 @@ def planned(source: str, given: Arguments) -> Plan:
 
     method: Method = given.method or "path"
     return plan(
-        load_terrain(source),
+        terrain_of(source),
         given.robot or "a1_wheeled",
         friction=given.friction,
         method=method,
@@ -60,11 +72,11 @@ def _schema(path: Path) -> str:
 
     data = load_mapping(path)
     schema = str(data.get("schema", ""))
-    is_terrain = schema == "stairwright/terrain/1" or (not schema and "points" in data)
-    return "terrain" if is_terrain else schema
+    bare = not schema and ("points" in data or "kind" in data)
+    return "terrain" if bare or schema == "stairwright/terrain/1" else schema
 
 
-def settings_of(pairs: Sequence[str], field: str) -> dict[str, Any]:
+def settings_of(pairs: Iterable[str], field: str) -> dict[str, Any]:
     """``name=value`` pairs; values are numbers, truth values or words."""
     settings: dict[str, Any] = {}
     for pair in pairs:

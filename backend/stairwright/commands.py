@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from . import summary
-from .command_arguments import Arguments, plan_or_file, planned, settings_of
+from .command_arguments import Arguments, plan_or_file, planned, settings_of, terrain_of
 from .errors import InputError
 from .library import load_robot, load_terrain, robots, terrains
 from .robot_commands import robot_command
@@ -161,7 +161,7 @@ def bench_command(given: Arguments) -> str | None:
 
     if given.repeat < 1:
         raise InputError("must be at least 1", ("repeat",))
-    grounds = [load_terrain(name) for name in given.terrains or terrains()]
+    grounds = [terrain_of(name) for name in given.terrains or terrains()]
     machines = [load_robot(name) for name in given.robot or robots()]
     print(summary.bench_head())
     for terrain in grounds:

@@ -161,10 +161,11 @@ def parse(model: type[M], data: Any) -> M:
     try:
         return model.model_validate(data)
     except ValidationError as error:
-        raise _first_error(error, model) from None
+        raise first_error(error, model) from None
 
 
-def _first_error(error: ValidationError, model: type[BaseModel]) -> InputError:
+def first_error(error: ValidationError, model: type[BaseModel]) -> InputError:
+    """What was wrong first, and where."""
     first = foremost(error.errors(include_url=False))[0]
     # A part that begins with ~ names an alternative of the model, nothing that the data has.
     where = tuple(part for part in first["loc"] if not str(part).startswith("~"))
@@ -180,7 +181,15 @@ def load_document(model: type[M], path: Path) -> M:
     Raises:
         InputError: If the file cannot be read, is of another kind, or for its first bad value.
     """
-    data = load_mapping(path)
+    return document_in(model, load_mapping(path), path)
+
+
+def document_in(model: type[M], data: Mapping[str, Any], path: Path) -> M:
+    """The document that a file's mapping is.
+
+    Raises:
+        InputError: If it is of another kind, or for its first bad value.
+    """
     expected = model.model_fields["schema_"].annotation
     wrong = wrong_kind(data.get("schema"), str(expected))
     if wrong:

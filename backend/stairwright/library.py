@@ -10,11 +10,12 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel
 
-from .documents import load_document, parse
+from .documents import document_in, load_document, load_mapping, parse
 from .errors import InputError
 from .resources import data_folder
 from .robot.description import Robot
 from .robot.importing.upload import XML_ENDINGS
+from .terrain.generation import generated
 from .terrain.profile import Terrain
 
 D = TypeVar("D", bound=BaseModel)
@@ -25,15 +26,24 @@ _OTHER_TOOLS = (*XML_ENDINGS, ".zip")
 def load_terrain(source: str | os.PathLike[str] | Mapping[str, Any] | Terrain) -> Terrain:
     """A terrain from a preset's name, a file, or a mapping.
 
-    Files are YAML, JSON or CSV, or meshes, see `import_terrain`.
+    Files are YAML, JSON or CSV, or meshes, see `import_terrain`. A mapping, also one in a file, is
+    a whole document or a `kind` with its measures (`stairwright.terrain.generation`):
+    ``{"kind": "stair", "rise": 0.18, "run": 0.28, "count": 5}``.
 
     Raises:
         InputError: If there is no such preset or file, or a value is bad.
     """
-    if isinstance(source, (str, os.PathLike)) and _is_table_or_mesh(Path(source).suffix):
-        from .importing import import_terrain
+    if isinstance(source, (str, os.PathLike)):
+        path = Path(source)
+        if _is_table_or_mesh(path.suffix):
+            from .importing import import_terrain
 
-        return import_terrain(source)
+            return import_terrain(source)
+        if path.suffix.lower() in _OWN:
+            data = load_mapping(path)
+            return generated(data) if "kind" in data else document_in(Terrain, data, path)
+    if isinstance(source, Mapping) and "kind" in source:
+        return generated(source)
     return _load(Terrain, "terrains", source)
 
 

@@ -53,6 +53,13 @@ def sent_mapping(data: bytes, suffix: str, schema: str) -> dict[str, Any]:
         raise error.within("file") from None
 
 
+def without_readonly(value: Any) -> Any:
+    """GET adds `readonly` to a document; what was got can be sent back as it is."""
+    if isinstance(value, dict) and isinstance(value.get("readonly"), bool):
+        return {key: each for key, each in value.items() if key not in ("readonly", "version")}
+    return value
+
+
 def _refuse_deep_yaml(text: str) -> None:
     """YAML takes its reader time that grows with the square of the nesting."""
     if len(text) > MAX_YAML:

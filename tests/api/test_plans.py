@@ -44,6 +44,14 @@ def test_plans_of_documents_that_differ_in_texts_are_kept_apart(api: httpx.Clien
         assert api.get(f"/plans/{plan['id']}").json() == plan
 
 
+def test_a_terrain_by_its_measures_is_the_generated_one(api: httpx.Client) -> None:
+    measures = {"kind": "stair", "rise": 0.05, "count": 2}
+    generated = api.post("/terrains/generate", json=measures).json()
+    plan = api.post("/plans", json={"terrain": measures}).json()
+    assert plan["terrain"] == generated
+    assert plan["id"] == api.post("/plans", json={"terrain": generated}).json()["id"]
+
+
 def test_robots_that_cannot_be_simulated_are_refused(api: httpx.Client) -> None:
     robot = sw.load_robot("a1_wheeled").model_dump(mode="json")
     robot["trunk"]["inertia"] = [1.0, 1.0, 100.0]
@@ -101,6 +109,9 @@ def test_every_method_with_every_robot(api: httpx.Client, method: str, robot: st
         ({"terrain": CURB, "weights": {"speed": 1e6}}, "weights.speed"),
         ({"terrain": CURB, "weights": {"speed": "slow"}}, "weights.speed"),
         ({"terrain": 5}, "terrain"),
+        ({"terrain": {"kind": ["hill"]}}, "terrain"),
+        ({"terrain": {"kind": "stair"}}, "terrain.rise"),
+        ({"terrain": {"kind": "stair", "rise": 1, "count": 200}}, "terrain.count"),
         ({"terrain": CURB, "wieghts": {}}, "wieghts"),
     ],
 )

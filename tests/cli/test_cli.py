@@ -54,6 +54,15 @@ def plan(curb: Path) -> Path:
     return path
 
 
+def test_a_terrain_by_its_measures() -> None:
+    said = run("plan", "stair:rise=0.05,run=0.4,count=2,direction=down")
+    assert "stair-0.05-0.4-x2-down" in said
+    assert "success" in run("rollout", "flat:length=2")
+    run("plan", "stair:", status=2)
+    run("plan", "stair:rise", status=2)
+    run("plan", "stair:rise=high", status=2)
+
+
 def test_lists() -> None:
     assert [line.split()[0] for line in run("terrains").splitlines()] == terrains()
     assert [line.split()[0] for line in run("robots").splitlines()] == robots()

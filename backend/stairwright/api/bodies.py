@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag
+from pydantic import Discriminator, Field, StrictBool, Tag
 
 from stairwright.arguments import MOST_SEED
 from stairwright.documents import Model
@@ -16,16 +16,11 @@ from stairwright.robot.description import Robot
 from stairwright.simulation.disturbance import Disturbance
 from stairwright.simulation.ranges import Ranges
 from stairwright.simulation.trials_result import MOST_TRIALS
+from stairwright.sources import RobotSource, TerrainSource
 from stairwright.studies.axes import Number
 from stairwright.studies.document import SettingName
-from stairwright.terrain.generation import Friction, Name
+from stairwright.terrain.generation import Friction
 from stairwright.terrain.profile import Terrain
-
-
-def _form(value: Any) -> str | None:
-    if isinstance(value, str):
-        return "~name"
-    return "~document" if isinstance(value, (dict, Model)) else None
 
 
 def _weight_form(value: Any) -> str:
@@ -36,26 +31,6 @@ def _setting_form(value: Any) -> str:
     return "~word" if isinstance(value, str) else _weight_form(value)
 
 
-def _without_readonly(value: Any) -> Any:
-    """GET adds `readonly` to a document; what was got can be sent back as it is."""
-    if isinstance(value, dict) and isinstance(value.get("readonly"), bool):
-        return {key: each for key, each in value.items() if key not in ("readonly", "version")}
-    return value
-
-
-SentTerrain = Annotated[Terrain, BeforeValidator(_without_readonly)]
-SentRobot = Annotated[Robot, BeforeValidator(_without_readonly)]
-_NameOrDocument = Discriminator(
-    _form,
-    custom_error_type="name_or_document",
-    custom_error_message="must be a name or a whole document",
-)
-TerrainSource = Annotated[
-    Annotated[Name, Tag("~name")] | Annotated[SentTerrain, Tag("~document")], _NameOrDocument
-]
-RobotSource = Annotated[
-    Annotated[Name, Tag("~name")] | Annotated[SentRobot, Tag("~document")], _NameOrDocument
-]
 # Tagged, or each bad value would be reported once for every type that it is not.
 Weight = Annotated[
     Annotated[StrictBool, Tag("~flag")] | Annotated[Number, Tag("~number")],
@@ -102,7 +77,9 @@ class PlanRequest(Model):
         }
     }
 
-    terrain: TerrainSource = Field(description="a terrain's name or a terrain document")
+    terrain: TerrainSource = Field(
+        description="a terrain's name, a terrain document, or a kind with its measures"
+    )
     robot: RobotSource = Field("a1_wheeled", description="a robot's name or a robot document")
     friction: Friction | None = Field(None, description="the terrain's own by default")
     method: Method = "path"

@@ -9,10 +9,12 @@ from typing import Annotated, TypeVar
 
 from fastapi import Depends, Header, Query, Request
 
+from stairwright.errors import InputError
 from stairwright.library import load_robot, load_terrain, robots, terrains
 from stairwright.robot.description import Robot
 from stairwright.storage.idempotency import Verdict
 from stairwright.storage.saved import Saved
+from stairwright.terrain.generation import Parameters, generate
 from stairwright.terrain.profile import Terrain
 
 from .middleware import owner_of
@@ -115,14 +117,20 @@ async def idempotency(
 Idempotent = Annotated[Idempotency, Depends(idempotency, scope="function")]
 
 
-def resolve_terrain(services: Services, source: str | Terrain) -> Terrain:
-    """A preset or saved terrain by name; a document as it is. Never a file.
+def resolve_terrain(services: Services, source: str | Parameters | Terrain) -> Terrain:
+    """A preset or saved terrain by name; one of these measures; a document as it is. Never a file.
 
     Raises:
         Problem: 422 if there is none of that name.
+        InputError: If the measures make none.
     """
     if isinstance(source, Terrain):
         return source
+    if not isinstance(source, str):
+        try:
+            return generate(source)
+        except InputError as error:
+            raise error.within("terrain") from None
     return _named("terrain", source, terrains(), load_terrain, services.store.terrains)
 
 

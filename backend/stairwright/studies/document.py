@@ -6,7 +6,7 @@ import math
 from functools import cached_property
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, model_validator
 
 from stairwright.arguments import MOST_SEED
 from stairwright.documents import Model, content_hash
@@ -15,15 +15,8 @@ from stairwright.planning.plan import FacingChoice, Method, PlanTiming, usual_fa
 from stairwright.planning.tolerance import Tolerance
 from stairwright.robot.description import Robot
 from stairwright.simulation.ranges import Ranges
-from stairwright.terrain.generation import (
-    GENERATORS,
-    FlatParameters,
-    Friction,
-    Name,
-    RampParameters,
-    StairParameters,
-)
-from stairwright.terrain.profile import Terrain
+from stairwright.sources import RobotSource, TerrainSource
+from stairwright.terrain.generation import Friction, Name
 
 from .axes import Axis
 
@@ -34,36 +27,6 @@ Compute = Literal["plan", "rollout", "trials"]
 Diagnose = Literal["all", "last", "none"]
 
 
-def _form(value: Any) -> str | None:
-    if isinstance(value, str):
-        return "~name"
-    kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
-    if kind is not None:
-        return f"~{kind}" if kind in GENERATORS else None
-    return "~document" if isinstance(value, (dict, Model)) else None
-
-
-TerrainChoice = Annotated[
-    Annotated[Name, Tag("~name")]
-    | Annotated[StairParameters, Tag("~stair")]
-    | Annotated[RampParameters, Tag("~ramp")]
-    | Annotated[FlatParameters, Tag("~flat")]
-    | Annotated[Terrain, Tag("~document")],
-    Discriminator(
-        _form,
-        custom_error_type="terrain",
-        custom_error_message="must be a name, a whole document, or a kind "
-        f"({', '.join(GENERATORS)}) with its measures",
-    ),
-]
-RobotChoice = Annotated[
-    Annotated[Name, Tag("~name")] | Annotated[Robot, Tag("~document")],
-    Discriminator(
-        _form,
-        custom_error_type="robot",
-        custom_error_message="must be a name or a whole document",
-    ),
-]
 SettingName = Annotated[str, Field(max_length=64, pattern=r"^[a-z0-9_]+$")]
 
 
@@ -82,10 +45,10 @@ class Study(Model):
     schema_: Literal["stairwright/study/1"] = Field("stairwright/study/1", alias="schema")
     name: str = Field("", max_length=100)
     description: str = Field("", max_length=2000)
-    terrain: TerrainChoice | None = Field(
+    terrain: TerrainSource | None = Field(
         None, description="a name, a document, or a kind with measures; by the axes if empty"
     )
-    robot: RobotChoice = "a1_wheeled"
+    robot: RobotSource = "a1_wheeled"
     robots: dict[Name, Robot] = Field(
         {}, max_length=64, description="documents of the robots that an axis `robot` names"
     )

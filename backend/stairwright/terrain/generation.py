@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import AliasChoices, Discriminator, Field, Tag
+from pydantic import AliasChoices, Discriminator, Field, Tag, ValidationError
 
 from stairwright.arguments import MOST_FRICTION
-from stairwright.documents import Model
+from stairwright.documents import Model, first_error, parse
 from stairwright.errors import InputError
 
 from . import stairs
@@ -79,12 +80,23 @@ class FlatParameters(Model):
     friction: Friction = 0.6
 
 
-GENERATORS = ("stair", "ramp", "flat")
+Parameters = StairParameters | RampParameters | FlatParameters
+GENERATORS: dict[str, type[Parameters]] = {
+    "stair": StairParameters,
+    "ramp": RampParameters,
+    "flat": FlatParameters,
+}
 
 
-def _generator(value: Any) -> str | None:
-    kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
-    return f"~{kind}" if kind in GENERATORS else None
+def kind_of(value: Any) -> Any:
+    """What a document says that it is a kind of; None if it is no such document."""
+    return value.get("kind") if isinstance(value, Mapping) else getattr(value, "kind", None)
+
+
+def kind_tag(value: Any) -> str | None:
+    """Pydantic's tag of it; None where there is no such kind."""
+    kind = kind_of(value)
+    return f"~{kind}" if isinstance(kind, str) and kind in GENERATORS else None
 
 
 Generation = Annotated[
@@ -92,7 +104,7 @@ Generation = Annotated[
     | Annotated[RampParameters, Tag("~ramp")]
     | Annotated[FlatParameters, Tag("~flat")],
     Discriminator(
-        _generator,
+        kind_tag,
         custom_error_type="generator",
         custom_error_message="kind must be stair, ramp or flat",
         custom_error_context={"error": InputError("must be stair, ramp or flat", ("kind",))},
@@ -100,13 +112,27 @@ Generation = Annotated[
 ]
 
 
-def generate(parameters: StairParameters | RampParameters | FlatParameters) -> Terrain:
+def generate(parameters: Parameters) -> Terrain:
     """The terrain of these measures.
 
     Raises:
-        InputError: If they do not fit each other.
-        ValidationError: If the terrain that they make is none.
+        InputError: If they do not fit each other, or the terrain that they make is none.
     """
     make: Any = {"stair": stairs.stair, "ramp": stairs.ramp, "flat": stairs.flat}[parameters.kind]
-    made: Terrain = make(**parameters.model_dump(exclude={"kind"}))
+    try:
+        made: Terrain = make(**parameters.model_dump(exclude={"kind"}))
+    except ValidationError as error:  # the measures are fine one by one, the terrain is not
+        raise first_error(error, Terrain) from None
     return made
+
+
+def generated(document: Mapping[str, Any]) -> Terrain:
+    """The terrain of a document with a `kind` and its measures.
+
+    Raises:
+        InputError: If there is no such kind, or for the first bad measure.
+    """
+    model = GENERATORS.get(str(kind_of(document)))
+    if model is None:
+        raise InputError(f"must be one of: {', '.join(GENERATORS)}", ("kind",))
+    return generate(parse(model, dict(document)))

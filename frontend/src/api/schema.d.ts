@@ -999,8 +999,8 @@ export interface components {
          *     }
          */
         PlanRequest: {
-            /** @description a terrain's name or a terrain document */
-            terrain: string | components["schemas"]["Terrain"];
+            /** @description a terrain's name, a terrain document, or a kind with its measures */
+            terrain: string | components["schemas"]["StairParameters"] | components["schemas"]["RampParameters"] | components["schemas"]["FlatParameters"] | components["schemas"]["Terrain"];
             /**
              * @description a robot's name or a robot document
              * @default a1_wheeled
@@ -1507,7 +1507,7 @@ export interface components {
             /** @description a whole plan document */
             plan?: components["schemas"]["Plan"] | null;
             /** @description what to plan over first */
-            terrain?: (string | components["schemas"]["Terrain"]) | null;
+            terrain?: (string | components["schemas"]["StairParameters"] | components["schemas"]["RampParameters"] | components["schemas"]["FlatParameters"] | components["schemas"]["Terrain"]) | null;
             /**
              * @description with `terrain`
              * @default a1_wheeled
@@ -1631,7 +1631,7 @@ export interface components {
             /** @description a whole plan document */
             plan?: components["schemas"]["Plan"] | null;
             /** @description what to plan over first */
-            terrain?: (string | components["schemas"]["Terrain"]) | null;
+            terrain?: (string | components["schemas"]["StairParameters"] | components["schemas"]["RampParameters"] | components["schemas"]["FlatParameters"] | components["schemas"]["Terrain"]) | null;
             /**
              * @description with `terrain`
              * @default a1_wheeled
@@ -1989,7 +1989,7 @@ export interface components {
             /** @description a whole plan document */
             plan?: components["schemas"]["Plan"] | null;
             /** @description what to plan over first */
-            terrain?: (string | components["schemas"]["Terrain"]) | null;
+            terrain?: (string | components["schemas"]["StairParameters"] | components["schemas"]["RampParameters"] | components["schemas"]["FlatParameters"] | components["schemas"]["Terrain"]) | null;
             /**
              * @description with `terrain`
              * @default a1_wheeled

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from fastapi import APIRouter, File, Form, Path, Query, Request, Response, UploadFile
 
-from stairwright.api.bodies import RobotDocument, SentRobot
+from stairwright.api.bodies import RobotDocument
 from stairwright.api.deps import JSON_BODY, Limit, Offset, Service
 from stairwright.api.problems import describe
 from stairwright.api.uploads import read_upload
@@ -17,6 +17,7 @@ from stairwright.library import load_robot, robots
 from stairwright.robot.description import MOST_HELD, Robot
 from stairwright.robot.importing.holding import written_hold
 from stairwright.robot.importing.report import Imported
+from stairwright.sources import SentRobot
 
 from . import stored
 from .named import Named

@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 from fastapi import APIRouter, File, Form, Path, Request, Response, UploadFile
-from pydantic import ValidationError
 
-from stairwright.api.bodies import SentTerrain, TerrainDocument
+from stairwright.api.bodies import TerrainDocument
 from stairwright.api.deps import JSON_BODY, Limit, Offset, Service
-from stairwright.api.problems import describe, from_validation
+from stairwright.api.problems import describe
 from stairwright.api.uploads import read_upload
 from stairwright.arguments import MOST_FRICTION
 from stairwright.jobs import uploads
 from stairwright.library import load_terrain, terrains
+from stairwright.sources import SentTerrain
 from stairwright.terrain.generation import Generation, Name
 from stairwright.terrain.generation import generate as make_terrain
 from stairwright.terrain.mesh import Up
@@ -45,10 +45,7 @@ def list_terrains(
 @router.post("/generate", dependencies=[JSON_BODY], responses=describe(415))
 def generate(body: Generation) -> Terrain:
     """A stair, a ramp or level ground from a few measures; it is not saved."""
-    try:
-        return make_terrain(body)
-    except ValidationError as error:  # the measures are fine one by one, the terrain is not
-        raise from_validation(error.errors()) from None
+    return make_terrain(body)
 
 
 MeshFile = Annotated[UploadFile, File(description="STL, OBJ, PLY or OFF")]

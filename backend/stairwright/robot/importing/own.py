@@ -9,7 +9,7 @@ from stairwright.documents import parse
 from stairwright.errors import InputError
 from stairwright.robot.conversion import LATEST, to_latest
 from stairwright.robot.description import Robot
-from stairwright.sent import sent_mapping
+from stairwright.sent import sent_mapping, without_readonly
 
 from .report import Imported
 
@@ -26,6 +26,5 @@ def read_own(data: bytes, suffix: str, options: Mapping[str, Any]) -> Imported:
         if value:
             raise InputError("is for URDF and MJCF: a document of ours says it itself", (option,))
     mapping = sent_mapping(data, suffix.removeprefix("."), LATEST)
-    told = {key: value for key, value in mapping.items() if key not in ("readonly", "version")}
-    robot = to_latest(parse(Robot, told))
+    robot = to_latest(parse(Robot, without_readonly(mapping)))
     return Imported(robot=robot, assumed=list(robot.assumed), warnings=[], joints={}, locked={})
