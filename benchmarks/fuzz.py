@@ -47,6 +47,7 @@ WORLD = {"friction": 0.5, "payload": {"mass": 0.5, "place": [0.0, 0.0, 0.1]}, "d
 ROUTES: list[tuple[str, str, Any]] = [
     ("POST", "/plans", QUESTION),
     ("POST", "/plans", {"terrain": FLAT, "method": "nominal"}),
+    ("POST", "/plans", {"terrain": {"kind": "stair", "rise": 0.05, "run": 0.3, "count": 2}}),
     ("POST", "/rollouts", {"terrain": FLAT, "method": "nominal", "seed": 1, "friction": 0.5,
                            "controller": {"form": "contact"}}),
     ("POST", "/rollouts", {"plan_id": "p-0123456789abcdef", "seed": 3}),
