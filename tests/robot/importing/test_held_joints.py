@@ -94,8 +94,8 @@ def test_an_arm_is_no_leg_that_steers() -> None:
 def test_the_original_is_simulated_as_it_was_read() -> None:
     text = with_ankles("0 1 0")
     made = imported(text, dict.fromkeys(ANKLES, 0.2))
-    plan = sw.plan("curb-015", made.robot)
-    run = sw.rollout(plan, model=text)
+    plan = sw.plan({"points": [(-0.5, 0), (0, 0), (0, 0.1), (0.5, 0.1)]}, made.robot)
+    run = sw.rollout(plan, controller={"speed": 1.0}, model=text)
     assert run.outcome == "success", run.reason
 
 
