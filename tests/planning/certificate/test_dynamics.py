@@ -11,6 +11,7 @@ import stairwright as sw
 from stairwright.planning.certificate.certify import certify
 from stairwright.planning.certificate.dynamics import WINDOW, _Motion, dynamics_of
 from stairwright.planning.plan import Plan
+from stairwright.planning.pose_arrays import PoseArrays
 from stairwright.robot.mujoco_model import build_spec
 
 Floats = NDArray[np.float64]
@@ -51,7 +52,8 @@ def test_its_inverse_dynamics_are_the_simulators(fast: Plan) -> None:
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_LIMIT)
     data = mujoco.MjData(model)
-    motion = _Motion.of(fast, np.array([pose.time for pose in fast.poses]))
+    poses = PoseArrays.of(fast)
+    motion = _Motion.of(fast.robot_description, poses, poses.time)
     for i in range(30, len(fast.poses) - 30, 29):
         now = fast.poses[i].time
         low, middle, high = (_pose(fast, now + side) for side in (-WINDOW, 0.0, WINDOW))

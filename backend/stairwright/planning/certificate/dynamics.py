@@ -17,6 +17,7 @@ from stairwright._core import GRAVITY
 from stairwright.arrays import Flags, Floats, Ints
 from stairwright.planning.certificate.equilibrium import TOUCH, WHEEL_GAP, touching
 from stairwright.planning.plan import Check, Plan
+from stairwright.planning.pose_arrays import PoseArrays
 from stairwright.robot import kinematics as kin
 from stairwright.robot.description import Robot
 
@@ -79,11 +80,11 @@ def dynamics_of(plan: Plan, time: Floats | None = None, at: Ints | None = None) 
         time: (n,) of its poses, rising [s]; those of the plan if not given.
         at: Numbers of the poses that are looked at; all if not given.
     """
-    progress, planned = np.array([(pose.progress, pose.time) for pose in plan.poses]).T
-    time = planned if time is None else time
+    poses = PoseArrays.of(plan)
+    time = poses.time if time is None else time
     at = np.arange(len(time)) if at is None else at
-    share, missed = _forces(plan, _Motion.of(plan, time).part(at))
-    return Dynamics(progress[at], time[at], share, missed)
+    share, missed = _forces(plan, _Motion.of(plan.robot_description, poses, time).part(at))
+    return Dynamics(poses.progress[at], time[at], share, missed)
 
 
 @dataclass(frozen=True)
@@ -153,11 +154,10 @@ class _Motion:
     highest: Floats
 
     @classmethod
-    def of(cls, plan: Plan, time: Floats) -> _Motion:
-        robot, poses, times = plan.robot_description, plan.poses, _Times(time)
-        x, z, pitch = np.array([(p.x_c, p.z_c, p.pitch) for p in poses]).T
-        joints = np.array([p.q for p in poses])
-        spins = np.array([p.wheel_progress for p in poses]) / robot.wheel.radius
+    def of(cls, robot: Robot, poses: PoseArrays, time: Floats) -> _Motion:
+        times, joints = _Times(time), poses.q
+        x, z, pitch = poses.body.T
+        spins = poses.s / robot.wheel.radius
         frames = kin.forward(robot, x, z, pitch, joints)
         com = kin.com(robot, x, z, pitch, frames)
 

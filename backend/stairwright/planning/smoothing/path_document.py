@@ -13,6 +13,7 @@ from stairwright.arrays import Floats
 from stairwright.documents import Deferred
 from stairwright.planning import binding
 from stairwright.planning.plan import Binding, Margins, Plan, Pose, Quantity, Timing, plan_id
+from stairwright.planning.pose_arrays import PoseArrays
 from stairwright.planning.problem import Problem
 from stairwright.planning.smoothing.path_timing import path_parameter, pose_times
 from stairwright.planning.smoothing.refine import Refined
@@ -63,6 +64,17 @@ class PathPoses:
         """Margins of the poses, as their documents tell them."""
         m = self.nodes.margins
         return binding.Margins(self.robot, m.friction, self._spare, m.q, m.forces[:, :, 0])
+
+    @property
+    def arrays(self) -> PoseArrays:
+        """The same numbers as in the documents."""
+        nodes = self.nodes
+        return PoseArrays(self.progress, self.time, nodes.body, nodes.margins.q, nodes.s)
+
+    @property
+    def deferred(self) -> Deferred:
+        """Stands for the documents until they are needed."""
+        return Deferred(self.documents, self)
 
     def binding(self) -> Binding:
         """The margin that binds, and where."""
@@ -150,7 +162,7 @@ def make_plan(
 ) -> Plan:
     """The document around poses or a problem."""
     chosen = weights.model_dump()
-    documents: Any = Deferred(poses.documents, poses) if poses else []
+    documents: Any = poses.deferred if poses else []
     return Plan.model_construct(
         schema_="stairwright/plan/1",
         id=plan_id(terrain, robot, friction, "path", chosen, tolerance=tolerance),

@@ -6,12 +6,18 @@ wheels press on opposite faces a small horizontal force takes much of it: there 
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 
 from stairwright.arrays import Floats
+from stairwright.documents import Deferred
 from stairwright.planning.certificate.dynamics import dynamics_of
 from stairwright.planning.firm_margins import firm_com_margins
 from stairwright.planning.plan import Plan
+from stairwright.planning.pose_arrays import PoseArrays
+from stairwright.planning.smoothing.path_document import PathPoses
 from stairwright.planning.smoothing.path_timing import (
     even_times,
     pose_times,
@@ -27,12 +33,10 @@ _ROUNDS = 3
 
 def retimed(plan: Plan, speed: float) -> Plan:
     """A path plan's poses at the times that it would have with another wished `speed` [m/s]."""
-    s = np.array([pose.wheel_progress for pose in plan.poses])
-    body = np.array([(pose.x_c, pose.z_c, pose.pitch) for pose in plan.poses])
-    q = np.array([pose.q for pose in plan.poses])
+    poses = PoseArrays.of(plan)
     effort = standing_effort(plan)
     margin = firm_com_margins(plan)
-    times = pose_times(plan.robot_description, s, body, q, margin, effort, speed)
+    times = pose_times(plan.robot_description, poses.s, poses.body, poses.q, margin, effort, speed)
     return slowed_where_strained(_timed(plan, times), effort)
 
 
@@ -48,7 +52,7 @@ def slowed_where_strained(plan: Plan, effort: Floats) -> Plan:
         return plan
     standing = effort[strained]
     spare = np.maximum(_MOST - standing, 1e-3)
-    times = np.array([pose.time for pose in plan.poses])
+    times = PoseArrays.of(plan).time
     for _ in range(_ROUNDS):
         found = dynamics_of(plan, times, strained)
         # What motion takes falls with the square of the speed.
@@ -65,9 +69,13 @@ def slowed_where_strained(plan: Plan, effort: Floats) -> Plan:
 
 def _timed(plan: Plan, times: Floats) -> Plan:
     """The plan with its poses at other times (n,) [s]."""
-    poses = [
-        pose.model_copy(update={"time": time})
-        for pose, time in zip(plan.poses, times.tolist(), strict=True)
-    ]
+    source = Deferred.source_of(plan, "poses")
+    if isinstance(source, PathPoses):  # documents of which are still to be made
+        poses: Any = replace(source, time=times).deferred
+    else:
+        poses = [
+            pose.model_copy(update={"time": time})
+            for pose, time in zip(plan.poses, times.tolist(), strict=True)
+        ]
     timing = plan.timing.model_copy(update={"total": float(times[-1])})
     return plan.model_copy(update={"poses": poses, "timing": timing})
