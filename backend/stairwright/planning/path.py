@@ -99,8 +99,9 @@ def plan_path(
         plan = plan.model_copy(update={"certificate": found.certificate})
         if timing == "steady":
             return slowed_where_strained(plan, found.nodes.margins.torque_shares("leg"))
-        moving = hastened(plan, weights.aggressiveness)
-        return moving.model_copy(update={"certificate": with_dynamics(found.certificate, moving)})
+        moving, dynamics = hastened(plan, weights.aggressiveness)
+        certificate = with_dynamics(found.certificate, moving, dynamics)
+        return moving.model_copy(update={"certificate": certificate})
     # They plan again, so they import us.
     from stairwright.planning.infeasibility.obstruction import explain, undiagnosed
 

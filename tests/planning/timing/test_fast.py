@@ -42,7 +42,8 @@ def test_it_is_sooner_and_says_what_binds(steady: Plan, fast: Plan) -> None:
 
 
 def test_a_path_searched_for_speed_is_faster_than_a_steady_one(steady: Plan, fast: Plan) -> None:
-    assert fast.timing.total < 0.9 * hastened(steady, fast.weights["aggressiveness"]).timing.total
+    alike, _ = hastened(steady, fast.weights["aggressiveness"])
+    assert fast.timing.total < 0.9 * alike.timing.total
 
 
 @pytest.mark.slow

@@ -18,7 +18,7 @@ from stairwright import _core
 from stairwright.arguments import as_model
 from stairwright.arrays import Floats
 from stairwright.errors import InputError
-from stairwright.planning.certificate.dynamics import dynamics_of
+from stairwright.planning.certificate.dynamics import Dynamics, dynamics_of
 from stairwright.planning.certificate.equilibrium import TOUCH, WHEEL_GAP, balanced, near_faces
 from stairwright.planning.certificate.motion import LEGS_GAP, Motion, Samples, sampled
 from stairwright.planning.certificate.tolerance.checks import tolerance_checks
@@ -57,14 +57,16 @@ def certify(plan: Plan | Mapping[str, Any], scope: Scope | None = None) -> Certi
     return with_dynamics(found, plan) if plan.timing.rule == "fast" else found
 
 
-def with_dynamics(certificate: Certificate, plan: Plan) -> Certificate:
-    """`certificate` with the checks of a plan that moves fast."""
+def with_dynamics(
+    certificate: Certificate, plan: Plan, known: Dynamics | None = None
+) -> Certificate:
+    """`certificate` with the checks of a plan that moves fast; its dynamics may be `known`."""
     least = float(np.diff([pose.time for pose in plan.poses]).min(initial=np.inf))
     checks = [
         Check(name="least step of time", value=least, bound=0.0, unit="s", passed=least > 0.0)
     ]
     if checks[0].passed:
-        checks += dynamics_of(plan).checks()
+        checks += (known or dynamics_of(plan)).checks()
     return certificate.model_copy(
         update={
             "checks": [*certificate.checks, *checks],

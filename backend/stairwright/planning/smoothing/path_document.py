@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time as clock
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Self
 
@@ -133,6 +133,17 @@ def _groups(points: Floats) -> list[list[tuple[float, ...]]]:
     n, m = points.shape[:2]
     flat = _tuples(points.reshape(n * m, 2))
     return [flat[k * m : (k + 1) * m] for k in range(n)]
+
+
+def poses_at(plan: Plan, times: Floats) -> Any:
+    """The poses of a plan at other times (n,) [s]; as documents if they are documents already."""
+    source = Deferred.source_of(plan, "poses")
+    if isinstance(source, PathPoses):
+        return replace(source, time=times).deferred
+    return [
+        pose.model_copy(update={"time": time})
+        for pose, time in zip(plan.poses, times.tolist(), strict=True)
+    ]
 
 
 def key_poses(path: WheelPath, s: Floats) -> list[int]:

@@ -10,9 +10,10 @@ import numpy as np
 
 from stairwright import _core
 from stairwright.arrays import Flags, Floats
-from stairwright.planning.certificate.dynamics import WINDOW, dynamics_of
+from stairwright.planning.certificate.dynamics import WINDOW, Dynamics, dynamics_of
 from stairwright.planning.plan import Plan, Timing, plan_id
 from stairwright.planning.poses.interpolation import reference
+from stairwright.planning.smoothing.path_document import poses_at
 from stairwright.planning.smoothing.path_timing import standing_effort
 from stairwright.planning.standing import enlargement
 from stairwright.terrain.wheel_path import wheel_path
@@ -86,8 +87,8 @@ def _ease(plan: Plan, large: float) -> Floats:
     return ease
 
 
-def hastened(plan: Plan, aggressiveness: float) -> Plan:
-    """A certified path at the times in which it is driven fastest.
+def hastened(plan: Plan, aggressiveness: float) -> tuple[Plan, Dynamics]:
+    """A certified path at the times in which it is driven fastest, and its dynamics then.
 
     Args:
         plan: A feasible plan of method ``path``; its poses stay.
@@ -108,18 +109,19 @@ def hastened(plan: Plan, aggressiveness: float) -> Plan:
             failures = {name: np.full_like(flags, flags.any()) for name, flags in failures.items()}
         slow_down(problem, failures, squares)
         squares = fastest(problem)
-    times = problem.pose_times(squares).tolist()
+    else:
+        found = dynamics_of(plan, problem.pose_times(squares))
     names = binding(problem, squares)
     places = np.searchsorted(problem.motion.position, problem.poses).clip(0, len(names) - 1)
-    timed = [
-        pose.model_copy(update={"time": time}) for pose, time in zip(plan.poses, times, strict=True)
-    ]
-    timing = Timing(total=times[-1], rule="fast", limits=[names[k] for k in places])
+    limits = [names[k] for k in places]
+    timing = Timing(total=float(found.time[-1]), rule="fast", limits=limits)
     robot = plan.robot_description
     asked = (
         plan.terrain, robot, plan.friction, plan.method, plan.weights, timing.rule, plan.tolerance,
     )  # fmt: skip
-    return plan.model_copy(update={"id": plan_id(*asked), "poses": timed, "timing": timing})
+    poses = poses_at(plan, found.time)
+    moving = plan.model_copy(update={"id": plan_id(*asked), "poses": poses, "timing": timing})
+    return moving, found
 
 
 def slow_down(problem: TimingProblem, failures: Mapping[LimitName, Flags], squares: Floats) -> None:

@@ -6,18 +6,14 @@ wheels press on opposite faces a small horizontal force takes much of it: there 
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any
-
 import numpy as np
 
 from stairwright.arrays import Floats
-from stairwright.documents import Deferred
 from stairwright.planning.certificate.dynamics import dynamics_of
 from stairwright.planning.firm_margins import firm_com_margins
 from stairwright.planning.plan import Plan
 from stairwright.planning.pose_arrays import PoseArrays
-from stairwright.planning.smoothing.path_document import PathPoses
+from stairwright.planning.smoothing.path_document import poses_at
 from stairwright.planning.smoothing.path_timing import (
     even_times,
     pose_times,
@@ -69,13 +65,5 @@ def slowed_where_strained(plan: Plan, effort: Floats) -> Plan:
 
 def _timed(plan: Plan, times: Floats) -> Plan:
     """The plan with its poses at other times (n,) [s]."""
-    source = Deferred.source_of(plan, "poses")
-    if isinstance(source, PathPoses):  # documents of which are still to be made
-        poses: Any = replace(source, time=times).deferred
-    else:
-        poses = [
-            pose.model_copy(update={"time": time})
-            for pose, time in zip(plan.poses, times.tolist(), strict=True)
-        ]
     timing = plan.timing.model_copy(update={"total": float(times[-1])})
-    return plan.model_copy(update={"poses": poses, "timing": timing})
+    return plan.model_copy(update={"poses": poses_at(plan, times), "timing": timing})
