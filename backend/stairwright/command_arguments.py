@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from .errors import InputError
 from .library import load_terrain
-from .terrain.generation import GENERATORS, generated
+from .terrain.generation import GENERATORS, terrain_in
 
 if TYPE_CHECKING:
     from .planning.plan import Method, Plan
@@ -26,7 +26,7 @@ def terrain_of(source: str) -> Terrain:
         return load_terrain(source)
     given = settings_of(filter(None, measures.split(",")), kind)
     whole = {name: int(v) for name, v in given.items() if isinstance(v, float) and v.is_integer()}
-    return generated({"kind": kind, **given, **whole})
+    return terrain_in({"kind": kind, **given, **whole})
 
 
 def planned(source: str, given: Arguments) -> Plan:

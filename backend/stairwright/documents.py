@@ -181,20 +181,21 @@ def load_document(model: type[M], path: Path) -> M:
     Raises:
         InputError: If the file cannot be read, is of another kind, or for its first bad value.
     """
-    return document_in(model, load_mapping(path), path)
+    return parse(model, mapping_of(model, path))
 
 
-def document_in(model: type[M], data: Mapping[str, Any], path: Path) -> M:
-    """The document that a file's mapping is.
+def mapping_of(model: type[BaseModel], path: Path) -> dict[str, Any]:
+    """What a file that may hold such a document holds, not yet validated.
 
     Raises:
-        InputError: If it is of another kind, or for its first bad value.
+        InputError: If the file cannot be read, or says that it is of another kind.
     """
+    data = load_mapping(path)
     expected = model.model_fields["schema_"].annotation
     wrong = wrong_kind(data.get("schema"), str(expected))
     if wrong:
         raise InputError(f"{path} is {wrong}")
-    return parse(model, data)
+    return data
 
 
 def load_mapping(path: Path) -> dict[str, Any]:

@@ -10,12 +10,12 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel
 
-from .documents import document_in, load_document, load_mapping, parse
+from .documents import load_document, mapping_of, parse
 from .errors import InputError
 from .resources import data_folder
 from .robot.description import Robot
 from .robot.importing.upload import XML_ENDINGS
-from .terrain.generation import generated
+from .terrain.generation import terrain_in
 from .terrain.profile import Terrain
 
 D = TypeVar("D", bound=BaseModel)
@@ -40,10 +40,9 @@ def load_terrain(source: str | os.PathLike[str] | Mapping[str, Any] | Terrain) -
 
             return import_terrain(source)
         if path.suffix.lower() in _OWN:
-            data = load_mapping(path)
-            return generated(data) if "kind" in data else document_in(Terrain, data, path)
-    if isinstance(source, Mapping) and "kind" in source:
-        return generated(source)
+            return terrain_in(mapping_of(Terrain, path))
+    if isinstance(source, Mapping):
+        return terrain_in(source)
     return _load(Terrain, "terrains", source)
 
 

@@ -6,10 +6,9 @@ from collections.abc import Callable, Mapping
 from pathlib import PurePath
 from typing import Any
 
-from stairwright.documents import parse
 from stairwright.errors import InputError
 from stairwright.sent import sent_mapping, sent_text
-from stairwright.terrain.generation import generated
+from stairwright.terrain.generation import terrain_in
 from stairwright.terrain.mesh import FILE_TYPES, slice_mesh
 from stairwright.terrain.mesh_heights import mesh_heights
 from stairwright.terrain.profile import Terrain
@@ -82,8 +81,7 @@ def _table(data: bytes, _: str, options: Options) -> Terrain:
 
 def _document(data: bytes, suffix: str, options: Options) -> Terrain:
     given = {key: options[key] for key in ("name", "friction") if key in options}
-    told = {**sent_mapping(data, suffix, "stairwright/terrain/1"), **given}
-    return generated(told) if "kind" in told else parse(Terrain, told)
+    return terrain_in({**sent_mapping(data, suffix, "stairwright/terrain/1"), **given})
 
 
 READERS: dict[str, Callable[[bytes, str, Options], Terrain]] = {

@@ -126,12 +126,14 @@ def generate(parameters: Parameters) -> Terrain:
     return made
 
 
-def generated(document: Mapping[str, Any]) -> Terrain:
-    """The terrain of a document with a `kind` and its measures.
+def terrain_in(document: Mapping[str, Any]) -> Terrain:
+    """The terrain that a mapping is: a whole document, or a `kind` with its measures.
 
     Raises:
-        InputError: If there is no such kind, or for the first bad measure.
+        InputError: If there is no such kind, or for the first bad value.
     """
+    if "kind" not in document:
+        return parse(Terrain, dict(document))
     model = GENERATORS.get(str(kind_of(document)))
     if model is None:
         raise InputError(f"must be one of: {', '.join(GENERATORS)}", ("kind",))

@@ -13,15 +13,7 @@ import type {
 import { fit } from "../profile-editor/viewport";
 import { report } from "../state/connection";
 import { open } from "../state/drawing";
-import {
-  chosenFacing,
-  differing,
-  method,
-  settings,
-  timing,
-  tolerance,
-  weights,
-} from "../state/setup";
+import { chosenFacing, method, takeWeights, timing, tolerance } from "../state/setup";
 import { takeRobot } from "../state/taken-robot";
 import { toast } from "../state/toast";
 import { workspace } from "../state/workspace";
@@ -55,16 +47,12 @@ export async function openCell(place: Place): Promise<void> {
     const question = plan as unknown as Question;
     const changes = measures(values, ofRobot);
     const ground = measures(values, (kind) => Boolean(kind.group));
-    const schema = settings.peek()?.weights[question.method]?.properties;
     batch(() => {
       const name = ground || question.terrain.name;
       open({ ...question.terrain, name, friction: question.friction }, null, () => {
         takeRobot({ ...question.robot, name: called(question.robot.name, changes) });
         method.value = question.method;
-        weights.value = {
-          ...weights.peek(),
-          [question.method]: differing(question.weights, schema),
-        };
+        takeWeights(question.method, question.weights);
         timing.value = question.timing ?? "steady";
         chosenFacing.value = question.facing ?? null;
         tolerance.value = question.tolerance ?? {};

@@ -133,6 +133,12 @@ export function differing(
   return Object.fromEntries(kept) as SettingValues;
 }
 
+/** The weights of a method as a result was asked with. */
+export function takeWeights(by: Method, values: Record<string, unknown>): void {
+  const schema = settings.peek()?.weights[by]?.properties;
+  weights.value = { ...weights.peek(), [by]: differing(values, schema) };
+}
+
 /** With one of them set, or taken out where it is the default. */
 export function withValue(
   values: SettingValues,

@@ -8,11 +8,10 @@ import {
   differing,
   method,
   setFacing,
-  settings,
+  takeWeights,
   timing,
   tolerance,
   toleranceSchema,
-  weights,
 } from "./setup";
 import { takeRobot } from "./taken-robot";
 
@@ -26,14 +25,13 @@ export const robotOf = async (plan: Plan): Promise<SentRobot> =>
  */
 export function showPlan(plan: Plan, robot: SentRobot, settle?: () => void): void {
   const { terrain } = plan;
-  const schema = settings.peek()?.weights[plan.method]?.properties;
   forgetRollout();
   open({ ...terrain, friction: plan.friction }, terrain.name, () => {
     takeRobot(robot);
     method.value = plan.method;
     timing.value = plan.timing.rule === "fast" ? "fast" : "steady";
     setFacing(plan.facing ?? "forward");
-    weights.value = { ...weights.peek(), [plan.method]: differing(plan.weights ?? {}, schema) };
+    takeWeights(plan.method, plan.weights ?? {});
     tolerance.value = differing({ ...plan.tolerance }, toleranceSchema.peek());
     settle?.();
   });
