@@ -1,4 +1,5 @@
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
@@ -7,6 +8,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "stairwright/certificate/dynamic_balance.hpp"
 #include "stairwright/certificate/equilibrium.hpp"
 #include "stairwright/certificate/postures.hpp"
 
@@ -115,6 +117,37 @@ nb::ndarray<nb::numpy, bool> balanced_samples(const ThreeByTwo& at, const ThreeB
     return {out, {n}, owner};
 }
 
+using PerMotor = In<double, nb::shape<-1, kMotors>>;
+
+// One row of an array (n, N).
+template <std::size_t N>
+std::array<double, N> row(const In<double, nb::shape<-1, static_cast<nb::ssize_t>(N)>>& rows, std::size_t k) {
+    std::array<double, N> out;
+    std::copy_n(rows.data() + k * N, N, out.begin());
+    return out;
+}
+
+std::pair<Array, Array> least_shares(const In<double, nb::shape<-1, kConeEdges, 3>>& wrenches, const In<double, nb::shape<-1, kConeEdges, kMotors>>& turned,
+                                     const In<double, nb::shape<-1, 3>>& loads, const PerMotor& torques, const PerMotor& lowest, const PerMotor& highest) {
+    const std::size_t n = loads.shape(0);
+    for (const std::size_t each : {wrenches.shape(0), turned.shape(0), torques.shape(0), lowest.shape(0), highest.shape(0)})
+        if (each != n) throw nb::value_error("as many of each as poses, please");
+    std::vector<double> share(n), missed(n);
+    {
+        nb::gil_scoped_release release;
+        for (std::size_t k = 0; k < n; ++k) {
+            Motion motion{{}, row<3>(loads, k), row<kMotors>(torques, k), row<kMotors>(lowest, k), row<kMotors>(highest, k)};
+            for (std::size_t e = 0; e < kConeEdges; ++e) {
+                std::copy_n(&wrenches(k, e, 0), 3, motion.edges[e].wrench.begin());
+                std::copy_n(&turned(k, e, 0), kMotors, motion.edges[e].torques.begin());
+            }
+            const DynamicBalance balance = least_share(motion);
+            share[k] = balance.share, missed[k] = balance.missed;
+        }
+    }
+    return {give(std::move(share)), give(std::move(missed))};
+}
+
 }  // namespace
 
 void bind_certificate(nb::module_& m) {
@@ -155,6 +188,10 @@ void bind_certificate(nb::module_& m) {
              "Distance (n,) between links and wheels of the front and of the rear leg [m]; a bound where it is not the least.");
     m.def("certificate_balanced", &balanced_samples, nb::arg("points"), nb::arg("normals"), nb::arg("touched"), nb::arg("com_x"), nb::arg("friction"),
           "Whether faces (2 n, 3) that the wheels of n samples in turn touch can hold the robot in balance (n,).");
+    m.def("certificate_least_share", &least_shares, nb::arg("wrenches"), nb::arg("torques"), nb::arg("load"), nb::arg("without_contact"), nb::arg("lowest"),
+          nb::arg("highest"),
+          "Least share of the motors (n,), and what of the load (n, 3) no force balances (n,): unit forces along 12 edges of friction cones "
+          "give wrenches (n, 12, 3) and take torques (n, 12, 6), moving takes more (n, 6), and motors give the lowest to the highest (n, 6) [Nm].");
     m.attr("CERTIFICATE_STRONGEST") = kStrongest;
 }
 

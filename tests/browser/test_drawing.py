@@ -182,6 +182,7 @@ def test_files_are_dropped_and_text_is_pasted(product: Product) -> None:
     product.paste(json.dumps({"points": points})).has_corners(6).planned()
     product.paste("points:\n- [-1.5, 0]\n- [0.6, 0]\n- [1.2, 0.1]\n- [3, 0.1]\nfriction: 0.5\n")
     assert product.has_corners(4).planned().corner(2) == (1.2, pytest.approx(0.1))
+    product.paste("kind: stair\nrise: 0.1\nrun: 0.3\ncount: 2\n").has_corners(6).planned()
 
 
 def test_a_profile_and_a_plan_that_were_downloaded_open_again(product: Product) -> None:

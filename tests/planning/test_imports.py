@@ -11,6 +11,9 @@ import sys
 import stairwright as sw
 for method in ("path", "critical"):
     assert sw.plan("curb-015", method=method).feasible
+# Motors are strained here, or turn fast: judged by linear programs.
+assert sw.plan("stairs-us-7-11", "go2w").feasible
+assert sw.plan("curb-015", timing="fast").feasible
 print(*(name for name in sys.argv[1:] if name in sys.modules))
 """
 

@@ -21,5 +21,5 @@ export function pastedFile(text: string): File {
 function endingOf(text: string): string {
   if (/^[{[]/.test(text)) return "json";
   if (text.startsWith("<")) return "xml";
-  return /(^|\n)\s*(points|schema)\s*:/.test(text) ? "yaml" : "csv";
+  return /(^|\n)\s*(points|schema|kind)\s*:/.test(text) ? "yaml" : "csv";
 }

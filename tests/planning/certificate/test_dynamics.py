@@ -6,8 +6,10 @@ import mujoco
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.optimize import linprog
 
 import stairwright as sw
+from stairwright import _core
 from stairwright.planning.certificate.certify import certify
 from stairwright.planning.certificate.dynamics import WINDOW, _Motion, dynamics_of
 from stairwright.planning.plan import Plan
@@ -108,3 +110,41 @@ def test_time_that_stands_still_is_refused(fast: Plan) -> None:
     poses[20] = poses[20].model_copy(update={"time": poses[19].time})
     verdict = certify(fast.model_copy(update={"poses": poses}))
     assert [check.name for check in verdict.checks if not check.passed] == ["least step of time"]
+
+
+def _least_share(
+    wrenches: Floats, torques: Floats, load: Floats, free: Floats, lowest: Floats, highest: Floats
+) -> tuple[float, float]:
+    """Of one pose by SciPy: forces (12,), the share, and what is missed each way (6,)."""
+    none = np.zeros((6, 6))
+    balance = np.hstack([wrenches.T, np.zeros((3, 1)), np.eye(3), -np.eye(3)])
+    motors = np.vstack(
+        [np.column_stack([torques.T, -highest, none]), np.column_stack([-torques.T, lowest, none])]
+    )
+    cost = np.concatenate([np.zeros(12), [1.0], np.full(6, 100.0)])
+    best = linprog(cost, motors, np.concatenate([-free, free]), balance, load)
+    return best.x[12], best.x[13:].max()
+
+
+def test_the_least_share_of_the_motors_is_scipys() -> None:
+    """Some with few contacts, some out of balance, some of motors that turn at full speed."""
+    rng = np.random.default_rng(11)
+    n = 200
+    wrenches, torques = rng.normal(size=(n, 12, 3)), 20.0 * rng.normal(size=(n, 12, 6))
+    contact = (rng.random((n, 12)) < rng.random(n)[:, None])[..., None]
+    load, free = rng.normal(size=(n, 3)), 5.0 * rng.normal(size=(n, 6))
+    limit = np.where(rng.random((2, n, 6)) < 0.1, 1e-3, 1.0) * rng.uniform(5.0, 50.0, (2, n, 6))
+    given = (wrenches * contact, torques * contact, load, free, -limit[0], limit[1])
+    share, missed = _core.certificate_least_share(*given)
+    expected = np.array([_least_share(*each) for each in zip(*given, strict=True)])
+    assert 20 < (expected[:, 1] > 1e-6).sum() < n - 20
+    assert share == pytest.approx(expected[:, 0], rel=1e-6, abs=1e-6)
+    assert missed == pytest.approx(expected[:, 1], rel=1e-6, abs=1e-6)
+
+
+def test_a_least_share_needs_as_many_of_each_as_poses() -> None:
+    six = np.ones((1, 6))
+    with pytest.raises(ValueError, match="as many of each"):
+        _core.certificate_least_share(
+            np.zeros((2, 12, 3)), np.zeros((1, 12, 6)), np.zeros((1, 3)), six, -six, six
+        )

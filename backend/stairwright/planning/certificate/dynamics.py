@@ -8,11 +8,11 @@ the least share of what the motors can give at their speed.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from stairwright import _core
 from stairwright._core import GRAVITY
 from stairwright.arrays import Flags, Floats, Ints
 from stairwright.planning.certificate.equilibrium import TOUCH, WHEEL_GAP, touching
@@ -22,9 +22,6 @@ from stairwright.robot import kinematics as kin
 from stairwright.robot.description import Robot
 
 WINDOW = 0.1  # s
-_PER_PAIR = 3  # contacts of one wheel at most
-_FORCES = 2 * 2 * _PER_PAIR  # along and out of every contact of two pairs
-_MISSED = 100.0  # cost of a wrench that is missed, against the motors' share
 _EXACT = 1e-4  # of the weight, and of the weight times metres; forces that miss less balance
 _LEAST_TORQUE = 1e-3  # of a motor's torque, that counts where its speed leaves none
 _DOWN = np.array([0.0, -GRAVITY])
@@ -200,10 +197,6 @@ class _Motion:
 
 def _forces(plan: Plan, motion: _Motion) -> tuple[Floats, Floats]:
     """Least share of the motors (n,), and by how much the wrench is missed (n,) in weights."""
-    # Importing it takes as long as thirty plans, and only plans that move fast need it.
-    from scipy.optimize import linprog
-    from scipy.sparse import block_diag
-
     robot = plan.robot_description
     n, weight = len(motion.com), robot.mass * GRAVITY
     centres = motion.frames.wheels.reshape(-1, 2)
@@ -211,49 +204,21 @@ def _forces(plan: Plan, motion: _Motion) -> tuple[Floats, Floats]:
     points, normals, found = touching(
         plan.terrain.vertices, centres, radius + WHEEL_GAP, np.full(len(centres), radius + TOUCH)
     )
-    shape = (n, 2 * _PER_PAIR, 2)
-    points, normals, found = points.reshape(shape), normals.reshape(shape), found.reshape(shape[:2])
-    blocks = list(_blocks(robot, plan.friction, motion, points, normals, found))
-    equal, unequal, right, bound = zip(*blocks, strict=True)
-    # Forces, then the share of the motors, then what is missed each way.
-    cost = np.concatenate([np.zeros(_FORCES), [1.0], np.full(6, _MISSED)])
-    ranges = [(None, None), (0.0, None)] * (_FORCES // 2) + [(0.0, None)] * 7
-    best = linprog(
-        np.tile(cost, n), block_diag(unequal, "csr"), np.concatenate(bound),
-        block_diag(equal, "csr"), np.concatenate(right) / weight, bounds=ranges * n,
-    )  # fmt: skip
-    solved = best.x.reshape(n, -1)
-    return solved[:, _FORCES], solved[:, _FORCES + 1 :].max(axis=1)
-
-
-def _blocks(
-    robot: Robot, friction: float, motion: _Motion, points: Floats, normals: Floats,
-    found: Flags,
-) -> Iterator[tuple[Floats, Floats, Floats, Floats]]:  # fmt: skip
-    """The linear program of each pose in forces by weight: equalities, then inequalities."""
-    weight = robot.mass * GRAVITY
     tangents = np.stack([normals[..., 1], -normals[..., 0]], axis=-1)
-    directions = np.stack([tangents, normals], axis=2).reshape(len(points), _FORCES, 2)
-    directions *= np.repeat(found, 2, axis=1)[..., None]
-    points = np.repeat(points, 2, axis=1)
-    wrench = np.concatenate(
-        [directions, _moment(points - motion.com[:, None], directions)[..., None]], axis=2
-    )
+    edges = np.stack([normals + side * plan.friction * tangents for side in (1.0, -1.0)], axis=2)
+    edges *= found[:, :, None, None]
+    # By pose: pair, face and edge (n, 2, 6).
+    edges = edges.reshape(n, 2, -1, 2)
+    points = np.repeat(points, 2, axis=1).reshape(edges.shape)
+    moments = _moment(points - motion.com[:, None, None], edges)
+    wrenches = np.concatenate([edges, moments[..., None]], axis=-1)
     joints = np.stack([motion.frames.hips, motion.frames.knees, motion.frames.wheels], axis=2)
-    joints = joints.reshape(len(points), 6, 2)
-    # Half of a pair's force turns each of its legs.
-    turned = 0.5 * weight * _moment(points[:, None] - joints[:, :, None], directions[:, None])
-    half = _FORCES // 2
-    turned[:, :3, half:] = turned[:, 3:, :half] = 0.0
-    cones = np.zeros((_FORCES, _FORCES + 7))
-    for k in range(_FORCES // 2):
-        for side in (0, 1):
-            cones[2 * k + side, 2 * k : 2 * k + 2] = (1.0 - 2.0 * side, -friction)
-    signs = np.hstack([np.eye(3), -np.eye(3)])
-    for i in range(len(points)):
-        equal = np.hstack([wrench[i].T, np.zeros((3, 1)), signs])
-        motors = np.zeros((12, _FORCES + 7))
-        motors[:6, :_FORCES], motors[6:, :_FORCES] = -turned[i], turned[i]
-        motors[:6, _FORCES], motors[6:, _FORCES] = -motion.highest[i], motion.lowest[i]
-        bound = np.concatenate([np.zeros(_FORCES), -motion.torques[i], motion.torques[i]])
-        yield equal, np.vstack([cones, motors]), motion.loads[i], bound
+    # Half of a pair's force turns each of its legs, and none turns the other pair's.
+    turned = np.zeros((n, 2, edges.shape[2], 2, 3))
+    for pair in (0, 1):
+        levers = points[:, pair, :, None] - joints[:, pair, None]
+        turned[:, pair, :, pair] = -0.5 * weight * _moment(levers, edges[:, pair, :, None])
+    return _core.certificate_least_share(
+        wrenches.reshape(n, -1, 3), turned.reshape(n, -1, 6), motion.loads / weight,
+        motion.torques, motion.lowest, motion.highest,
+    )  # fmt: skip
