@@ -113,6 +113,7 @@ void bind_own_senses(nb::module_& m) {
 }  // namespace
 
 void bind_control(nb::module_& m) {
+    m.attr("CREEP") = kCreep;
     m.def("balance_forces", &balance_forces, nb::arg("H"), nb::arg("g"), nb::arg("friction"), nb::arg("load_limit"),
           nb::arg("start"), nb::rv_policy::automatic,
           "Forces (8,) of the balance QP (eqs 11-12) [N], per wheel tangential and normal; `start` is a guess.");

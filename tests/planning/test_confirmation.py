@@ -157,6 +157,7 @@ def test_where_any_path_will_do_a_thin_one_is_not_compared(margin, compared):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Solved, "margin", margin)
         patch.setattr(Solved, "torque_share", 0.5)
+        patch.setattr(Solved, "grazes", False)
         found, made = asked(any_path=True)
         assert isinstance(found, Solved)
         assert made == [AT_ONCE]

@@ -14,7 +14,7 @@ from stairwright.simulation.run import Run
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
 EARLY = Disturbance(face_place_error=[0.03, -0.03])
-ROUND = 0.023  # m round its edge; by its height alone a wheel knows that at 25 to 34 mm
+ROUND = 0.024  # m round its edge; by its height alone a wheel knows that at 25 to 34 mm
 
 
 def edge_down(path: WheelPath) -> float:

@@ -17,7 +17,7 @@ from functools import partial
 
 import numpy as np
 
-from stairwright._core import GRAVITY
+from stairwright._core import CREEP, GRAVITY
 from stairwright.arrays import Floats
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
@@ -136,9 +136,10 @@ class Controller:
             settings.force_weight,
         )  # fmt: skip
         forces = np.einsum("nij,nj->ni", frames, self.forces.reshape(4, 2))
-        speeds = target.wheel_speed[LEG_PAIR] + settings.wheel_sync * (planned - self.places)
-        rates = rolling.wheel_rates(speeds, radius) + self._yaw(state)
         driven = np.array([wheel_traction(row, *f) for row, f in zip(held, forces, strict=True)])
+        speeds = target.wheel_speed[LEG_PAIR] + settings.wheel_sync * (planned - self.places)
+        speeds += CREEP * driven / (robot.mass * GRAVITY / 4)
+        rates = rolling.wheel_rates(speeds, radius) + self._yaw(state)
         wheel = radius * driven + rolling.wheel_torques(
             self.gains.wheel_damping, rates, state.rolling_rates
         )

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from stairwright.arrays import Ints
+from stairwright.planning.certificate.certify import ROOM
 from stairwright.planning.lattice.body_lattice import Bounds
 from stairwright.planning.lattice.search import Place
-from stairwright.planning.plan import Certificate
-from stairwright.planning.smoothing.node_margins import Motor
+from stairwright.planning.plan import Certificate, Check
+from stairwright.planning.smoothing.node_margins import LEAST_CLEARANCE, Motor
 from stairwright.planning.smoothing.path_timing import path_parameter
 from stairwright.planning.smoothing.refine import Refined
 
@@ -56,15 +57,31 @@ class Solved:
         return self.nodes.margins.torque_share
 
     @property
+    def good(self) -> bool:
+        """Whether it has passed, with as much clearance between its nodes as at them."""
+        return self.certificate.passed and not self._nearer(LEAST_CLEARANCE)
+
+    @property
+    def grazes(self) -> bool:
+        """Whether trunk or links come so near to the ground that sensors' noise lets them touch."""
+        return bool(self._nearer(ROOM))
+
+    @property
     def bad(self) -> Ints:
         """Nodes at which a check of the certificate is violated most."""
+        failed = [check for check in self.certificate.checks if not check.passed]
         progress = path_parameter(self.nodes.s, self.nodes.body)
         places = {
             int(np.abs(progress - check.progress).argmin())
-            for check in self.certificate.checks
-            if not check.passed and check.progress is not None
+            for check in failed + self._nearer(LEAST_CLEARANCE)
+            if check.progress is not None
         }
         return np.array(sorted(places), np.int64)
+
+    def _nearer(self, least: float) -> list[Check]:
+        """What of trunk and links comes nearer to the ground than that [m]."""
+        clearances = [c for c in self.certificate.checks if c.name.startswith("clearance")]
+        return [check for check in clearances if check.value < least]
 
 
 @dataclass(frozen=True)

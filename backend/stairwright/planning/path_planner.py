@@ -248,7 +248,7 @@ class PathPlanner(PathProblem):
                 judged, bad = found, found.margins.bad
                 if found.margins.worst >= 0.0:
                     solved = self._certified(found)
-                    if solved.certificate.passed:
+                    if solved.good:
                         return solved
                     bad = solved.bad
             if stage is not None:

@@ -9,7 +9,8 @@
    steep stairs with all knees back, a coarse lattice has no pose in them at all.
 
 A path of the first two steps with little CoM margin, or motors that have next to nothing to spare,
-is compared with what the next step finds.
+is compared with what the next step finds. One with so little clearance that sensors' noise lets the
+robot touch the ground is taken only where no attempt finds another.
 Where motors are too weak for the path found, or all but so, all of it is done again with torques
 looked at in the search. Which lattice then has a path that smoothing does not overload is luck: a
 sixth of those refused for a torque had one on some other lattice, so three are tried. Where that
@@ -95,7 +96,7 @@ def _lighter(planner: PathPlanner, found: Solved, pool: Executor) -> Solved:
         return found
     held = _search(planner.within_torques, pool)
     if isinstance(held, Solved) and held.torque_share < found.torque_share:
-        return held
+        return found if held.grazes and not found.grazes else held
     return found
 
 
@@ -105,7 +106,7 @@ def _steadier(planner: PathPlanner, found: Solved) -> Solved:
         return found
     other = planner.again_steadier(found)
     if isinstance(other, Solved) and other.torque_share <= max(found.torque_share, HEAVY):
-        return max(found, other, key=lambda path: path.margin)
+        return max(found, other, key=lambda path: (not path.grazes, path.margin))
     return found
 
 
@@ -154,7 +155,9 @@ def _search(
     thin = planner.thin
     best = _best(tried, thin)
     enough = any_path or (
-        best and (_sound(best, thin) or (best.margin > thin and not planner.torques))
+        best
+        and not best.grazes
+        and (_sound(best, thin) or (best.margin > thin and not planner.torques))
     )
     if best is not None and enough:
         return best  # what is heavy is searched for anew within torques
@@ -174,22 +177,23 @@ def _search(
     else:
         obstructions = ()
 
-    _make(planner, pool, [FORGIVING] if best else [FORGIVING, POSSIBLE], tried, first=any_path)
+    _make(planner, pool, [FORGIVING] if best else [FORGIVING, POSSIBLE], tried, any_path)
     best = _best(tried, thin)
-    if best is not None:
+    if best is not None and (any_path or not best.grazes):
         return best
     forgiving = tried[FORGIVING]
-    assert isinstance(forgiving, Blocked)
-    if forgiving.weak and not planner.torques:
-        return forgiving
-    if _opened(tried):
+    if isinstance(forgiving, Blocked) and forgiving.weak and not planner.torques:
+        return best or forgiving
+    if best is not None or _opened(tried):
         # Where forgiving bounds let a search through, rolling back would be the same path again.
-        back = [] if forgiving.opened else [ROLLING_BACK]
+        opened = isinstance(forgiving, Solved) or forgiving.opened
+        back = [] if opened else [ROLLING_BACK]
         last = [MOST_FORGIVING, FINER, *back, ON_BRINKS]
-        _make(planner, pool, last, tried, first=True)
+        _make(planner, pool, last, tried, any_path, first=True)
         best = _best(tried, thin)
         if best is not None:
             return best
+    assert isinstance(forgiving, Blocked)
     blocked = _blocked(tried, obstructions or ((forgiving.reached,) if forgiving.reached else ()))
     return blocked if blocked.opened else _looked_at_closely(planner, blocked)
 
@@ -207,30 +211,33 @@ def _looked_at_closely(planner: PathPlanner, blocked: Blocked) -> Solved | Block
 
 def _make(
     planner: PathPlanner, pool: Executor, attempts: Sequence[Attempt], tried: Tried,
-    first: bool = False,
+    any_path: bool = False, first: bool = False,
 ) -> None:  # fmt: skip
-    """Make some attempts together; with `first` only until one has a path.
+    """Make some attempts together; with `any_path` only until one has a path, with `first` until
+    one has a path that does not graze.
 
     Whether searches come through need not be probed once one has.
     """
     with race(pool, planner.attempt, attempts) as answers:
         for attempt, answer in zip(attempts, answers, strict=False):
             tried[attempt] = answer
-            if isinstance(answer, Solved) and first:
+            if isinstance(answer, Solved) and (any_path or (first and not answer.grazes)):
                 break
             if (isinstance(answer, Solved) or answer.opened) and attempts[-1].probe:
                 break
 
 
 def _sound(path: Solved, thin: float) -> bool:
-    """Whether a path is neither thin nor heavy, so that none is compared with it."""
-    return path.margin > thin and path.torque_share <= HEAVY
+    """Whether a path is neither thin nor heavy and grazes nothing, so that none is compared."""
+    return path.margin > thin and path.torque_share <= HEAVY and not path.grazes
 
 
 def _best(tried: Tried, thin: float) -> Solved | None:
     """A sound path if there is one, with the most CoM margin; of such the one found first."""
     paths = [answer for answer in tried.values() if isinstance(answer, Solved)]
-    return max(paths, key=lambda path: (_sound(path, thin), path.margin), default=None)
+    return max(
+        paths, key=lambda path: (_sound(path, thin), not path.grazes, path.margin), default=None
+    )
 
 
 def _opened(tried: Tried) -> bool:

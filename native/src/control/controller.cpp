@@ -165,10 +165,13 @@ Command Controller::command(const RobotState& state, const Reference& target,
             out.joints[j + k] = target.value.joints[2 * pair + k], out.rates[j + k] = target.rate.joints[2 * pair + k];
             out.stiffness[j + k] = g.joint_stiffness, out.damping[j + k] = g.joint_damping;
         }
-        const double speed = target.rate.wheels[pair] + g.wheel_sync * (target.value.wheels[pair] - places_[i]);
+        const double traction = s.traction(t * s.tangent() + n * s.normal);
+        // Held by its place alone, a wheel that waits on an edge would hang back by some millimetres, and slip.
+        const double crept = creep_ * traction / (0.25 * mass_ * kGravity);
+        const double speed = target.rate.wheels[pair] + g.wheel_sync * (target.value.wheels[pair] - places_[i]) + crept;
         const double rate = speed / leg.wheel.radius + (i % 2 == 0 ? -difference : difference);
         // A wheel turns against its calf.
-        out.torques[j + 2] = leg.wheel.radius * s.traction(t * s.tangent() + n * s.normal) + motors[i].wheel.rest;
+        out.torques[j + 2] = leg.wheel.radius * traction + motors[i].wheel.rest;
         out.damping[j + 2] = g.wheel_damping;
         out.rates[j + 2] = rate - state.joint_rates[j] - state.joint_rates[j + 1] - m.pitch_rate;
     }

@@ -38,6 +38,7 @@ const control::Reference& PlanExecutor::prepare(const control::Reference& drawn,
     adapted_ = grip_test_.step(drawn, seen.state, seen.used_grip, level, dt);
     waits_ = grip_test_.over() && grip_test_.slipped();
     if (grip_test_.over()) creep_ = grip_test_.creep();
+    if (creep_) controller_.believe_creep(*creep_);
     return adapted_;
 }
 

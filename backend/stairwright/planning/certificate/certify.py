@@ -27,6 +27,7 @@ from stairwright.planning.tolerance import Tolerance
 from stairwright.robot import kinematics as kin
 
 WHEEL_SINK = 0.001  # m
+ROOM = 0.002  # m; clearances are told that exactly where they are not certainly larger
 _JOINT_STEP = 0.35  # rad between two poses
 
 Scope = Literal["motion", "poses"]
@@ -98,7 +99,7 @@ class _Checker:
 
     Attributes:
         unsettled: (poses - 1,) after `checks`: whether clearances between two poses are positive,
-            and yet not more than what the robot moves between samples.
+            and yet hardly more than what the robot moves between samples.
     """
 
     def __init__(self, samples: Samples) -> None:
@@ -140,7 +141,7 @@ class _Checker:
 
     def _clear(self, name: str, clearances: Floats) -> Check:
         slack, interval = self.samples.slack, self.samples.interval
-        unsettled = (clearances < slack) & (clearances > 0.0)
+        unsettled = (clearances < slack + ROOM) & (clearances > 0.0)
         self.unsettled[interval[unsettled[:-1] | unsettled[1:]]] = True
         return self._least(name, clearances - slack, 0.0, "m")
 

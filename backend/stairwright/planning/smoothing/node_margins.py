@@ -18,7 +18,7 @@ from stairwright.arrays import Floats, Ints
 
 Motor = Literal["leg", "wheel"]
 
-LEAST_CLEARANCE = 0.0005  # m; the best controller strays that far
+LEAST_CLEARANCE = 0.0005  # m, also between nodes; the best controller strays that far
 LEAST_COM = 0.001  # m; no robot's centre of mass is known better
 # Where the CoM has less room than this [m], that share of the friction must be left: else a wheel
 # that slides a little tips the robot.

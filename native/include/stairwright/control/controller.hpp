@@ -14,6 +14,9 @@
 namespace stairwright::control {
 
 inline constexpr double kPeriod = 0.002;  // s, between control steps
+// A wheel creeps: under a traction of a quarter of the weight it moves slower than it rolls by this, until a test of the
+// grip tells better [m/s].
+inline constexpr double kCreep = 0.014;
 
 // What is measured.
 struct RobotState {
@@ -97,6 +100,8 @@ class Controller {
     void believe(double friction) { friction_ = friction; }
     void believe(const Robot& robot) { robot_ = robot, mass_ = robot.mass(); }
     void believe(WheelPath path) { path_ = std::move(path); }
+    // How wheels creep, see kCreep [m/s].
+    void believe_creep(double creep) { creep_ = creep; }
 
     const Robot& robot() const { return robot_; }
     double friction() const { return friction_; }
@@ -110,7 +115,7 @@ class Controller {
   private:
     Robot robot_;
     WheelPath path_;
-    double friction_, mass_;
+    double friction_, mass_, creep_ = kCreep;
     Gains gains_;
     Forces forces_{};
     std::array<double, 4> places_;

@@ -46,9 +46,7 @@ struct Noise {
     double place = 0.002, rolling = 0.03, aside = 0.03, off_face = 0.02;
     // A loaded tyre rolls on a radius that is smaller by this [m].
     double deflection = 0.0004;
-    // A wheel creeps: under a traction of a quarter of the weight it moves slower than it rolls by this, until a test of
-    // the grip tells better [m/s].
-    double creep = 0.014;
+    double creep = control::kCreep;
     // How long an error of these lasts [s].
     double place_lasts = 0.06, rolling_lasts = 0.02;
     // Of the force that a leg feels, in robot weights.
@@ -139,6 +137,7 @@ class Estimator {
         double since_clear = 0.0;  // how far it has come since [m]
         std::optional<LowEdge> low_edge;  // the one near to it
         bool missed = false;      // it is put back now
+        bool climbs = false;      // a face whose foot it has felt
         bool contradicts = false; // it rolls otherwise than the filter can believe
         double put_back = 0.0;    // how far it has been put back on that piece, see Estimator::put_back [m]
         double rolled = 0.0;      // by the last step [m]
@@ -192,6 +191,7 @@ class Estimator {
     void leave_low_edge(int wheel, const CurveMatch& on, const Error& along_z, Vec2 centre, Error& error);
     bool over_low_edge(const WheelState& wheel, const CurveMatch& on) const;
     double nearest_corner(double s) const;  // along the curve, to the place `s` on it [m]
+    bool climbs(const WheelState& wheel, const CurveMatch& on) const;
     void measure_place(int wheel, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error);
     void measure_turn(int wheel, Vec2 normal, Error along, double dt, Error& error);
     void measure_rolling(int wheel, const CurveMatch& on, const Readings& readings, const Error& along_x, const Error& along_z, double dt, Error& error);
