@@ -68,7 +68,7 @@ class Solved:
 
     @property
     def bad(self) -> Ints:
-        """Nodes at which a check of the certificate is violated most."""
+        """Nodes at which a check of the certificate is violated most, or clearance is least."""
         failed = [check for check in self.certificate.checks if not check.passed]
         progress = path_parameter(self.nodes.s, self.nodes.body)
         places = {

@@ -7,10 +7,10 @@
 
 namespace stairwright::certificate {
 
-inline constexpr std::size_t kMotors = 6;                // thigh, calf and wheel of a front and of a rear leg
+inline constexpr std::size_t kMotors = 6;                  // thigh, calf and wheel of a front and of a rear leg
 inline constexpr std::size_t kConeEdges = 2 * 2 * kFaces;  // two edges of the cone of every contact of two wheels
-using Wrench = std::array<double, 3>;                    // force x, force z, moment about the centre of mass, +y
-using Torques = std::array<double, kMotors>;             // [Nm]
+using Wrench = std::array<double, 3>;                      // force x, force z, moment about the centre of mass, +y
+using Torques = std::array<double, kMotors>;               // [Nm]
 
 // A unit force along one edge of a contact's friction cone: its wrench and what it takes of the motors, the contact of
 // a pair shared by its legs.
@@ -22,9 +22,9 @@ struct ConeEdge {
 // A pose in motion. Forces are in units of `ConeEdge`.
 struct Motion {
     std::array<ConeEdge, kConeEdges> edges;  // zero where there is no contact
-    Wrench load;               // that moving takes
-    Torques torques;           // that moving takes without contact
-    Torques lowest, highest;   // that the motors can give at their speed: below and above zero
+    Wrench load;                             // that moving takes
+    Torques torques;                         // that moving takes without contact
+    Torques lowest, highest;                 // that the motors can give at their speed: below and above zero
 };
 
 struct DynamicBalance {
