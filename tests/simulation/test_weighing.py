@@ -48,6 +48,15 @@ def test_a_shifted_mass_centre_is_found_by_a_nod(shift: Place) -> None:
     assert found[2] == (pytest.approx(shift[0], abs=0.002), pytest.approx(shift[1], abs=0.005))
 
 
+@pytest.mark.parametrize("name", ["m20", "anymal_wheels"])
+def test_legs_that_swing_together_are_no_shift(name: str) -> None:
+    """Knees that bend both ways move along with the nod: what moves them is no force of weight."""
+    assert weighed(name) is None
+    found = weighed(name, com_z=0.02, delay=0.004)
+    assert found is not None
+    assert found[2] == (pytest.approx(0.0, abs=0.002), pytest.approx(0.02, abs=0.004))
+
+
 def test_what_motors_may_be_wrong_by_is_no_load() -> None:
     for scale in (-0.05, 0.05):
         assert weighed("a1_wheeled", torque_scale=scale, mass=0.04) is None

@@ -21,7 +21,7 @@ what the attempt that found it finds where that margin weighs ten times as much,
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 
@@ -151,7 +151,7 @@ def _search(
 ) -> Solved | Blocked:
     """The three steps."""
     tried: Tried = {}
-    _make(planner, pool, [AT_ONCE], tried)
+    _make(planner, pool, [AT_ONCE], tried, lambda _: True)
     thin = planner.thin
     best = _best(tried, thin)
     enough = any_path or (
@@ -177,7 +177,8 @@ def _search(
     else:
         obstructions = ()
 
-    _make(planner, pool, [FORGIVING] if best else [FORGIVING, POSSIBLE], tried, any_path)
+    second = [FORGIVING] if best else [FORGIVING, POSSIBLE]
+    _make(planner, pool, second, tried, lambda _: any_path)
     best = _best(tried, thin)
     if best is not None and (any_path or not best.grazes):
         return best
@@ -189,7 +190,7 @@ def _search(
         opened = isinstance(forgiving, Solved) or forgiving.opened
         back = [] if opened else [ROLLING_BACK]
         last = [MOST_FORGIVING, FINER, *back, ON_BRINKS]
-        _make(planner, pool, last, tried, any_path, first=True)
+        _make(planner, pool, last, tried, lambda path: any_path or not path.grazes)
         best = _best(tried, thin)
         if best is not None:
             return best
@@ -211,17 +212,16 @@ def _looked_at_closely(planner: PathPlanner, blocked: Blocked) -> Solved | Block
 
 def _make(
     planner: PathPlanner, pool: Executor, attempts: Sequence[Attempt], tried: Tried,
-    any_path: bool = False, first: bool = False,
+    enough: Callable[[Solved], bool],
 ) -> None:  # fmt: skip
-    """Make some attempts together; with `any_path` only until one has a path, with `first` until
-    one has a path that does not graze.
+    """Make some attempts together, until one has a path that is enough.
 
     Whether searches come through need not be probed once one has.
     """
     with race(pool, planner.attempt, attempts) as answers:
         for attempt, answer in zip(attempts, answers, strict=False):
             tried[attempt] = answer
-            if isinstance(answer, Solved) and (any_path or (first and not answer.grazes)):
+            if isinstance(answer, Solved) and enough(answer):
                 break
             if (isinstance(answer, Solved) or answer.opened) and attempts[-1].probe:
                 break

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "inertial_loads.hpp"
 #include "measurement.hpp"
 
 namespace stairwright::control {
@@ -44,10 +45,14 @@ void Weighing::weigh(const Reference& asked, const RobotState& state, const Whee
     const Measurement m = measure(robot_.robot, robot_.mass, state);
     // At the mass centre's height, where what moves it along has no moment.
     const Vec2 about = {state.position[0], m.com.z};
-    double moment = 0.0;
+    const InertialLoads takes = inertial_loads(robot_.robot, asked);
+    double moment = takes.moment;
     for (std::size_t i = 0; i < 4; ++i) {
-        const Vec2 force = felt[i];
-        const Vec2 contact = m.legs[i].wheel - path.radius() * path.normal(places[i]) - about;
+        const MeasuredLeg& leg = m.legs[i];
+        const LegLoads& load = takes.legs[i / 2];
+        // What moves the leg is no force of the ground.
+        const Vec2 force = felt[i] - of_moments(leg.wheel - leg.hip, load.thigh - load.wheel, leg.wheel - leg.knee, load.calf - load.wheel);
+        const Vec2 contact = leg.wheel - path.radius() * path.normal(places[i]) - about;
         weight_ += force.z, moment += contact.x * force.z - contact.z * force.x;
     }
     const Terms terms = {std::cos(m.pitch), std::sin(m.pitch), asked.acceleration.pitch};
