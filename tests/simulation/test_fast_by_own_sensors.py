@@ -32,3 +32,32 @@ def test_steps_that_are_off_do_not_stop_it_in_the_middle(plan: sw.Plan) -> None:
     deviation = draw(BUNDLES["laboratory"], 1, 2)[0]
     run = sw.rollout(plan, controller={"sensing": "robot"}, disturbance=deviation, seed=2)
     assert run.outcome == "success", run.reason
+
+
+def down(robot: str, height: float, friction: float) -> sw.Plan:
+    wall = sw.Terrain(points=[(-1.0, height), (1.5, height), (1.5, 0.0), (3.0, 0.0)])
+    return sw.plan(wall, robot, friction, timing="fast", diagnose=False)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("height", [0.6, 0.65])
+def test_what_moves_a_leg_is_not_taken_for_the_ground(height: float) -> None:
+    """Rear wheels that stop at the edge would seem to be farther, and a calf touch it."""
+    plan = down("a1_wheeled", height, 0.5)
+    for seed in (0, 1):
+        run = sw.rollout(plan, seed=seed)
+        assert run.outcome == "success", run.reason
+
+
+@pytest.mark.slow
+def test_a_wheel_that_leans_on_a_wall_a_little_tells_the_place_on_the_way_down() -> None:
+    run = sw.rollout(down("go2w", 0.86, 0.3))
+    assert run.outcome == "success", run.reason
+
+
+@pytest.mark.slow
+def test_wheels_whose_motors_have_little_left_meet_risers_gently() -> None:
+    """Met at full speed, front wheels on the edge above stall, and it slides off."""
+    plan = sw.plan(stair(0.67, 0.406, 3), "b2w", 0.65, timing="fast", diagnose=False)
+    run = sw.rollout(plan, controller={"sensing": "ideal"})
+    assert run.outcome == "success", run.reason

@@ -19,11 +19,6 @@ constexpr Vec2 operator*(double k, Vec2 v) { return v * k; }
 constexpr double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.z * b.z; }
 // Positive where `b` lies anticlockwise of `a`, seen with x to the right and z up.
 constexpr double cross(Vec2 a, Vec2 b) { return a.x * b.z - a.z * b.x; }
-// The vector v with cross(a, v) = in_a and cross(b, v) = in_b: a force, by its moments.
-constexpr Vec2 of_moments(Vec2 a, double in_a, Vec2 b, double in_b) {
-    const double det = cross(b, a);
-    return {(a.x * in_b - b.x * in_a) / det, (a.z * in_b - b.z * in_a) / det};
-}
 inline double norm(Vec2 v) { return std::sqrt(dot(v, v)); }  // a fifth of what hypot takes
 
 // Cosine and sine of an angle about +y, for who turns many vectors by it.

@@ -145,8 +145,10 @@ Command Controller::command(const RobotState& state, const Reference& target,
     std::array<LegMotors, 4> motors;
     for (int i = 0; i < 4; ++i) {
         motors[i] = leg_torques(robot_.legs[i / 2], m.legs[i], supports[i]);
-        for (const LegLoads& moving : {inertial.legs[i / 2], friction_loads(robot_.legs[i / 2], i / 2, target.rate)})
-            motors[i].thigh.rest += moving.thigh, motors[i].calf.rest += moving.calf, motors[i].wheel.rest += moving.wheel;
+        const LegLoads &moved = inertial.legs[i / 2], rubbed = friction_loads(robot_.legs[i / 2], i / 2, target.rate);
+        for (const LegLoads& load : {moved, rubbed})
+            motors[i].thigh.rest += load.thigh, motors[i].calf.rest += load.calf, motors[i].wheel.rest += load.wheel;
+        moving_[3 * i] = moved.thigh, moving_[3 * i + 1] = moved.calf, moving_[3 * i + 2] = moved.wheel;
     }
     const BalanceQp qp = balance_qp(g, force_map(m, supports), wanted, supports, target, forces_, uneven);
     solve_within_motors(qp, motors, robot_, state.joint_rates, g.force_weight, forces_);

@@ -45,14 +45,10 @@ void Weighing::weigh(const Reference& asked, const RobotState& state, const Whee
     const Measurement m = measure(robot_.robot, robot_.mass, state);
     // At the mass centre's height, where what moves it along has no moment.
     const Vec2 about = {state.position[0], m.com.z};
-    const InertialLoads takes = inertial_loads(robot_.robot, asked);
-    double moment = takes.moment;
+    double moment = inertial_loads(robot_.robot, asked).moment;
     for (std::size_t i = 0; i < 4; ++i) {
-        const MeasuredLeg& leg = m.legs[i];
-        const LegLoads& load = takes.legs[i / 2];
-        // What moves the leg is no force of the ground.
-        const Vec2 force = felt[i] - of_moments(leg.wheel - leg.hip, load.thigh - load.wheel, leg.wheel - leg.knee, load.calf - load.wheel);
-        const Vec2 contact = leg.wheel - path.radius() * path.normal(places[i]) - about;
+        const Vec2 force = felt[i];
+        const Vec2 contact = m.legs[i].wheel - path.radius() * path.normal(places[i]) - about;
         weight_ += force.z, moment += contact.x * force.z - contact.z * force.x;
     }
     const Terms terms = {std::cos(m.pitch), std::sin(m.pitch), asked.acceleration.pitch};

@@ -19,7 +19,7 @@ constexpr double kCruiseTime = 0.1;    // s, smoothing of the speed that a wheel
 constexpr double kForceAtRest = 0.15;   // of a force's uncertainty in motion
 constexpr double kForceSpeed = 0.15;    // m/s of the wheel's centre from which on it is that in motion
 constexpr double kRoom = 0.10;          // m to the next face that a pair needs to roll on freely
-constexpr double kFarUp = 0.1;          // m up a face: so far the place along it does not drift
+constexpr double kFarAlong = 0.1;       // m up or down a face: so far the place along it does not drift
 constexpr double kHop = 0.1;            // s in the air that are no more than a hop, as after a riser is met fast
 constexpr double kHopSpeed = 0.2;       // m/s of the trunk from which on a riser is met so
 constexpr double kSure = 0.02;         // s that both faces of a corner, or an edge farther on, must be felt before that counts
@@ -193,10 +193,10 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     w.since_clear += moves.x * dt;
     if (w.since_clear > -kClearOfEdge) belief.past = w.clear;
     const CurveMatch on = match(path_, belief, w.s, kWindow);
-    // A leg that swings feels a little, too: of a wall it has to be more than that, but where the wheel climbs it.
+    // A leg that swings feels a little, too: of a wall it has to be more than that, but where the wheel follows it.
     w.force_deviation = belief.force_deviation;
-    w.climbs = climbs(w, on);
-    const auto feels = [&](Vec2 n) { return dot(w.felt, n) > std::max(kTouching * weight_ / 4, n.z < kTread && !w.climbs ? w.force_deviation : 0.0); };
+    w.follows = follows(w, on);
+    const auto feels = [&](Vec2 n) { return dot(w.felt, n) > std::max(kTouching * weight_ / 4, n.z < kTread && !w.follows ? w.force_deviation : 0.0); };
     bool touching = feels(on.point.normal) || feels(on.before) || feels(on.after);
     const double corner = nearest_corner(on.s);
     if (std::abs(corner - on.s) < kNearCorner) touching = touching || feels(path_.normal(corner - kBeside)) || feels(path_.normal(corner + kBeside));
@@ -264,12 +264,15 @@ void Estimator::believe_wheels_again(double dt) {
     for (const std::size_t k : {0, 2}) covariance_.add_noise(kVelocity + k, kWrongVelocity * kWrongVelocity);
 }
 
-// Whether a wheel is far up a face whose foot it has felt: it is no news that it stays there.
-bool Estimator::climbs(const WheelState& w, const CurveMatch& on) const {
+// Whether a wheel is far up a face whose foot it has felt, or down one that it has rolled to round its edge: it is no news
+// that it stays there.
+bool Estimator::follows(const WheelState& w, const CurveMatch& on) const {
     const std::size_t next = path_.corner_from(on.s);
-    if (on.corner || on.point.normal.x >= 0.0 || next == 0) return false;
+    if (on.corner) return false;
+    if (on.point.normal.x > 0.0) return w.rounded + 1 == on.piece && on.s > path_.pieces()[on.piece].s + kFarAlong;
+    if (next == 0) return false;
     const double foot = path_.corners()[next - 1];
-    return on.s > foot + kFarUp && std::abs(w.met - foot) < kBeside;
+    return on.s > foot + kFarAlong && std::abs(w.met - foot) < kBeside;
 }
 
 double Estimator::nearest_corner(double s) const {

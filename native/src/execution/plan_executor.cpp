@@ -26,6 +26,13 @@ bool PlanExecutor::hangs(const control::Ahead& ahead) const {
     return (ahead.hanging[kFront] && loaded(kFront)) || (ahead.hanging[kRear] && loaded(kRear));
 }
 
+control::Torques PlanExecutor::without_motion(control::Torques torques) const {
+    const control::Torques& moving = controller_.moving();
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 3 * i; j < 3 * i + 2; ++j) torques[j] -= moving[j] - moving[3 * i + 2];
+    return torques;
+}
+
 const control::Reference& PlanExecutor::prepare(const control::Reference& drawn, const Perceived& seen, double dt) {
     const bool level = seen.ahead.on_tread[0] && seen.ahead.on_tread[1];
     adapted_ = drawn;

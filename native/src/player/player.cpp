@@ -179,7 +179,8 @@ void Player::tell(const control::Command& command, const estimation::Readings& n
 const LowCommand& Player::step(const LowState& state) {
     if (phase_ == Phase::damped || phase_ == Phase::refused) return command_;
     if (!finite(state)) return damp("a state is not finite"), command_;
-    const estimation::Readings now = readings(state);
+    estimation::Readings now = readings(state);
+    now.torques = executor_.without_motion(now.torques);
     double dt = control::kPeriod;
     if (phase_ == Phase::waiting) {
         if (reason_ = not_at_start(now); !reason_.empty()) return phase_ = Phase::refused, command_;

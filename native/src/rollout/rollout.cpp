@@ -53,7 +53,7 @@ Perceived Rollout::perceive(std::span<const double> noise) {
     }
     control::Torques told = torques_;  // by the motors' currents, as if their torques were those that are asked for
     for (double& torque : told) torque /= scale_;
-    return std::get<RobotSense>(perception_).perceive(truth(), told, dt_);
+    return std::get<RobotSense>(perception_).perceive(truth(), executor_.without_motion(told), dt_);
 }
 
 void Rollout::correct_map(const WheelPath& path) {

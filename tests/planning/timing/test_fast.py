@@ -48,10 +48,10 @@ def test_a_path_searched_for_speed_is_faster_than_a_steady_one(steady: Plan, fas
 
 @pytest.mark.slow
 def test_of_two_smoothings_the_sooner_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
-    flight = stair(0.17, 0.29, 5, direction="down", approach=1.18, platform=1.0)
-    found = sw.plan(flight, "b2w", 0.6, timing="fast", facing="forward")
+    flight = stair(0.17, 0.29, 5, approach=1.18, platform=1.0)
+    found = sw.plan(flight, "m20", 0.6, timing="fast", facing="forward")
     monkeypatch.setattr(path_planner, "STRAIGHTER", 1.0)
-    alone = sw.plan(flight, "b2w", 0.6, timing="fast", facing="forward")
+    alone = sw.plan(flight, "m20", 0.6, timing="fast", facing="forward")
     assert found.timing.total < 0.95 * alone.timing.total
 
 

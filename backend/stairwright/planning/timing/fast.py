@@ -10,15 +10,15 @@ import numpy as np
 
 from stairwright import _core
 from stairwright.arrays import Flags, Floats
+from stairwright.planning.binding import Margins
 from stairwright.planning.certificate.dynamics import WINDOW, Dynamics, dynamics_of
-from stairwright.planning.plan import Plan, Timing, plan_id
+from stairwright.planning.plan import Plan, Quantity, Timing, plan_id
 from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.smoothing.path_document import poses_at
-from stairwright.planning.smoothing.path_timing import standing_effort
 from stairwright.planning.standing import enlargement
 from stairwright.terrain.wheel_path import wheel_path
 
-from .limits import LimitName, Limits, Pace, limits_of
+from .limits import LEAST_EASE, LimitName, Limits, Pace, limits_of
 from .moving_robot import MovingRobot, moving_robot, reach_of
 from .path_position import path_positions
 
@@ -27,8 +27,9 @@ _ROUNDS = 60  # of slowing down where a plan would not be certified; few need mo
 _LOCAL = 40  # of them around the places where it would not; then of all of it: at rest it holds
 _SLOWER = 0.8  # each time
 _CLEAR = 0.01  # m of clearance, for legs of 0.4 m or less, below which it is driven gently
-_LEAST_EASE = 0.3
+_STRAY = 0.012  # m that a wheel on an edge may be from its place, below which it is driven gently
 _BINDS = 0.02  # of a cap or of a row's room
+_MOTORS: tuple[Quantity, Quantity] = ("torque", "wheel_torque")
 _STRAINED = 0.8  # of a motor's torque for standing, up to which motion may take half of the rest
 
 
@@ -56,14 +57,21 @@ class TimingProblem:
         line = reference(plan, joint_rate=None)
         motion = moving_robot(line, reach_of(robot))
         progress = [pose.progress for pose in plan.poses]
-        effort = standing_effort(plan)
         large = enlargement(robot)
         pace = Pace.of(aggressiveness).at_size(large)
-        ease = np.interp(motion.progress, progress, _ease(plan, large))
-        standing = np.interp(motion.progress, progress, effort)
-        limits = limits_of(motion, robot, path, plan.friction, standing, pace, ease)
+        margins = Margins.of(robot, plan.friction, plan.poses).measured()
+
+        def along(values: Floats) -> Floats:
+            return np.interp(motion.progress, progress, values)
+
+        ease = along(
+            _ease(margins["clearance"][0], margins["friction"][0] * robot.wheel.radius, large)
+        )
+        legs, wheels = (1.0 - margins[kind][0] / margins[kind][1] for kind in _MOTORS)
+        effort = np.stack([along(legs), along(wheels)], axis=1)
+        limits = limits_of(motion, robot, path, plan.friction, effort, pace, ease)
         poses = np.interp(progress, line.progress, path_positions(line))
-        return cls(motion, limits, poses, effort)
+        return cls(motion, limits, poses, legs)
 
     def times(self, squares: Floats) -> Floats:
         """When each sample is reached (n,) [s]: constant acceleration between two."""
@@ -80,11 +88,12 @@ class TimingProblem:
         return np.interp(self.poses, self.motion.position, self.times(squares))
 
 
-def _ease(plan: Plan, large: float) -> Floats:
-    """Share (n,) of accelerations that is allowed at each pose: less near the ground."""
-    clearance = np.array([pose.margins.clearance for pose in plan.poses])
-    ease: Floats = np.clip(clearance / (_CLEAR * large), _LEAST_EASE, 1.0)
-    return ease
+def _ease(clearance: Floats, stray: Floats, large: float) -> Floats:
+    """Share (n,) of accelerations that is allowed at each pose: less near the ground, and where a
+    wheel on an edge slides once it is `stray` (n,) [m] from its place.
+    """
+    room = np.minimum(clearance / (_CLEAR * large), stray / _STRAY)
+    return np.clip(room, LEAST_EASE, 1.0)
 
 
 def hastened(plan: Plan, aggressiveness: float) -> tuple[Plan, Dynamics]:

@@ -31,6 +31,8 @@ LEG_SPEED_SHARE = 0.5  # of what the motor reaches under the load of standing
 # and moving together: the rest is what the controller corrects with.
 TORQUE_SHARE = 0.8
 FRICTION_SHARE = 0.85
+LEAST_EASE = 0.3  # of the accelerations that the pace allows
+_EASED = 0.3  # of a motor's torque: where standing leaves less, nothing is met or turned as hard
 _LEAST_SPARE = 0.02  # of a motor's torque that counts where there is hardly any
 _STILL = 1e-9
 _NEAR = 1e-4  # m to either side of a corner
@@ -111,10 +113,11 @@ def limits_of(
         robot: Who moves.
         path: Its wheel-centre curve.
         friction: Coulomb friction of all faces.
-        effort: (n,) largest share of a leg motor's torque that standing takes.
+        effort: (n, 2) largest share of a leg's and of a wheel's motor torque that standing takes.
         pace: How hard it may be driven.
         ease: (n,) share of its accelerations that is allowed.
     """
+    gentle = np.clip((1.0 - effort.max(axis=1)) / _EASED, LEAST_EASE, 1.0)
     balance, torque = _core.dynamic_limits(
         robot.native, path.native, friction, motion.values, motion.first, motion.second,
         FRICTION_SHARE, TORQUE_SHARE, pace.sway,
@@ -122,12 +125,12 @@ def limits_of(
     groups: list[tuple[LimitName, Floats]] = [
         ("balance", balance),
         ("torque", torque),
-        ("acceleration", np.stack(list(_accelerations(motion, pace, ease)), axis=1)),
+        ("acceleration", np.stack([*_accelerations(motion, pace, np.minimum(ease, gentle))], 1)),
     ]
     names = tuple(name for name, rows in groups for _ in range(rows.shape[1]))
     rows = np.ascontiguousarray(np.concatenate([rows for _, rows in groups], axis=1))
-    caps = _caps(motion, robot, effort, pace)
-    caps["impact"] = _impact_cap(motion, path, pace)
+    caps = _caps(motion, robot, effort[:, 0], pace)
+    caps["impact"] = gentle**2 * _impact_cap(motion, path, pace)
     return Limits(rows, names, caps)
 
 

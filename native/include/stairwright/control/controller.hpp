@@ -109,6 +109,8 @@ class Controller {
     const Forces& forces() const { return forces_; }
     // Arc length of each wheel on the wheel-centre curve, NaN before the first step [m].
     const std::array<double, 4>& places() const { return places_; }
+    // What the planned motion takes of the motors, as of the last command: of legs, wheels and rotors [Nm].
+    const Torques& moving() const { return moving_; }
     // Pitch acceleration that the model does not know of [rad/s^2].
     double pitch_integral() const { return pitch_integral_; }
 
@@ -119,6 +121,7 @@ class Controller {
     Gains gains_;
     Forces forces_{};
     std::array<double, 4> places_;
+    Torques moving_{};
     double pitch_integral_ = 0.0;
 };
 

@@ -137,7 +137,8 @@ class Estimator {
         double since_clear = 0.0;  // how far it has come since [m]
         std::optional<LowEdge> low_edge;  // the one near to it
         bool missed = false;      // it is put back now
-        bool climbs = false;      // a face whose foot it has felt
+        bool follows = false;     // a steep face of which it has felt the foot or the edge
+        std::size_t rounded = 0;  // the last piece round an edge on which it was felt
         bool contradicts = false; // it rolls otherwise than the filter can believe
         double put_back = 0.0;    // how far it has been put back on that piece, see Estimator::put_back [m]
         double rolled = 0.0;      // by the last step [m]
@@ -191,7 +192,7 @@ class Estimator {
     void leave_low_edge(int wheel, const CurveMatch& on, const Error& along_z, Vec2 centre, Error& error);
     bool over_low_edge(const WheelState& wheel, const CurveMatch& on) const;
     double nearest_corner(double s) const;  // along the curve, to the place `s` on it [m]
-    bool climbs(const WheelState& wheel, const CurveMatch& on) const;
+    bool follows(const WheelState& wheel, const CurveMatch& on) const;
     void measure_place(int wheel, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error);
     void measure_turn(int wheel, Vec2 normal, Error along, double dt, Error& error);
     void measure_rolling(int wheel, const CurveMatch& on, const Readings& readings, const Error& along_x, const Error& along_z, double dt, Error& error);

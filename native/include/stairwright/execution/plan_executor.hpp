@@ -28,6 +28,10 @@ class PlanExecutor {
     // that senses by itself does, it does where `seen.places` are known.
     control::Command step(const Perceived& seen, bool moving, double time, double dt);
 
+    // Of torques that the motors give [Nm] what the ground's forces ask for: less what moves the legs as planned. What spins
+    // wheels up the estimator sees itself.
+    control::Torques without_motion(control::Torques torques) const;
+
     // A robot that stands otherwise than the plan begins gets there within some tenths of a second, and waits for that.
     void begin_from(const Perceived& seen);
 
