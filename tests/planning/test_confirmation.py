@@ -142,8 +142,10 @@ def test_attempts_that_are_likely_to_lead_are_made_before_others():
     assert made == [AT_ONCE, FINER]
 
 
-@pytest.mark.parametrize(("margin", "compared"), [(0.005, 3), (0.5, 1)])
-def test_where_any_path_will_do_a_thin_one_is_not_compared(margin, compared):
+@pytest.mark.parametrize(
+    ("margin", "clearance", "compared"), [(0.005, 0.5, 3), (0.5, 0.001, 2), (0.5, 0.5, 1)]
+)
+def test_where_any_path_will_do_a_thin_one_is_not_compared(margin, clearance, compared):
     def asked(**how):
         made = []
 
@@ -151,11 +153,16 @@ def test_where_any_path_will_do_a_thin_one_is_not_compared(margin, compared):
             made.append(which)
             return Solved(SimpleNamespace(), SimpleNamespace())
 
-        planner = SimpleNamespace(attempt=attempt, again_steadier=attempt, torques=False, thin=0.01)
+        other = SimpleNamespace(again=lambda which, torques: attempt(which))
+        planner = SimpleNamespace(
+            attempt=attempt, how=lambda _: (AT_ONCE, False), steadier=other, clearer=other,
+            torques=False, thin=0.01, near=0.005,
+        )  # fmt: skip
         return solve(planner, in_this_thread(), **how), made
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Solved, "margin", margin)
+        patch.setattr(Solved, "trunk_clearance", clearance)
         patch.setattr(Solved, "torque_share", 0.5)
         patch.setattr(Solved, "grazes", False)
         found, made = asked(any_path=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stairwright.arrays import Ints
-from stairwright.planning.certificate.certify import ROOM
+from stairwright.planning.certificate.certify import LINKS_CLEARANCE, ROOM, TRUNK_CLEARANCE
 from stairwright.planning.lattice.body_lattice import Bounds
 from stairwright.planning.lattice.search import Place
 from stairwright.planning.plan import Certificate, Check
@@ -52,6 +52,12 @@ class Solved:
         return float(self.nodes.margins.firm_com_margin.min())
 
     @property
+    def trunk_clearance(self) -> float:
+        """Least clearance of the trunk [m]."""
+        checks = self.certificate.checks
+        return next(check.value for check in checks if check.name == TRUNK_CLEARANCE)
+
+    @property
     def torque_share(self) -> float:
         """Largest static torque of any motor, over its limit."""
         return self.nodes.margins.torque_share
@@ -80,8 +86,8 @@ class Solved:
 
     def _nearer(self, least: float) -> list[Check]:
         """What of trunk and links comes nearer to the ground than that [m]."""
-        clearances = [c for c in self.certificate.checks if c.name.startswith("clearance")]
-        return [check for check in clearances if check.value < least]
+        clearances = (TRUNK_CLEARANCE, LINKS_CLEARANCE)
+        return [c for c in self.certificate.checks if c.name in clearances and c.value < least]
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,10 @@ from stairwright.robot.description import Robot
 from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import wheel_path
 
-THIN = 0.015  # m; CoM margin up to which more of it comes first, for legs of 0.4 m or less
+# For legs of 0.4 m or less [m]:
+THIN = 0.015  # CoM margin up to which more of it comes first
+NEAR = 0.005  # clearance of the trunk up to which more of it comes first
+CLEARER = 0.006  # more of that clearance
 STRAIGHTER = 3.4  # times the weight of smoothness
 STEADIER = 10.0  # times that of the CoM margin
 
@@ -194,6 +197,11 @@ class PathPlanner(PathProblem):
         """CoM margin up to which a path is compared with others [m]."""
         return thin_com_margin(self.robot)
 
+    @property
+    def near(self) -> float:
+        """Clearance of the trunk up to which a path is compared with another [m]."""
+        return NEAR * enlargement(self.robot)
+
     @cached_property
     def straighter(self) -> PathPlanner:
         """The same problem with more smoothness, for paths that are to be driven fast: whether less
@@ -202,11 +210,25 @@ class PathPlanner(PathProblem):
         smoothness = STRAIGHTER * self.weights.smoothness
         return replace(self, weights=self.weights.model_copy(update={"smoothness": smoothness}))
 
-    def again_steadier(self, found: Solved) -> Solved | Blocked:
-        """What the attempt that found a path finds where the CoM margin weighs much more."""
-        how, torques = next(key for key, end in self.tried.copy().items() if end is found)
+    @cached_property
+    def steadier(self) -> PathPlanner:
+        """The same problem, in which the CoM margin weighs much more."""
         weights = self.weights.model_copy(update={"com_margin": STEADIER * self.weights.com_margin})
-        other = replace(self, torques=torques, weights=weights)
+        return replace(self, weights=weights)
+
+    @cached_property
+    def clearer(self) -> PathPlanner:
+        """The same problem, in which the smoothing keeps the trunk farther from the ground."""
+        extra = self.extra._replace(trunk=self.extra.trunk + CLEARER * enlargement(self.robot))
+        return replace(self, extra=extra, in_search=0.0)
+
+    def how(self, found: Solved) -> tuple[Attempt, bool]:
+        """The attempt that found a path, and whether it was made within torques."""
+        return next(key for key, end in self.tried.copy().items() if end is found)
+
+    def again(self, how: Attempt, *, torques: bool) -> Solved | Blocked:
+        """What comes of an attempt that another planner of the same terrain and robot has made."""
+        other = self._searched(torques=torques)
         return other.finish(other.search_of(how), how.brinks)
 
     @cached_property

@@ -16,7 +16,8 @@ looked at in the search. Which lattice then has a path that smoothing does not o
 sixth of those refused for a torque had one on some other lattice, so three are tried. Where that
 leads to none, it is done without, but with such paths repaired at all cost; where the user's
 weights find none, again with the default weights. A path with little CoM margin is compared with
-what the attempt that found it finds where that margin weighs ten times as much, too.
+what the attempt that found it finds where that margin weighs ten times as much, too, and one whose
+trunk nears the ground with what it finds where that is to stay farther off.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ from .lattice.search import Place
 from .path_planner import PathPlanner
 from .threads import race
 
+STEADY = 0.9  # of a thin path's CoM margin that one with more clearance has to leave
 HEAVY = 0.85  # of a motor's torque; a path that takes more is compared with one that spares motors
 COARSE = 1.7  # lattice refinement of all but the first and the finest attempt
 
@@ -67,7 +69,7 @@ def solve(
     if planner.torques and isinstance(found, Blocked):
         found = _on_other_lattices(planner, pool, any_path) or found
     if isinstance(found, Solved):
-        return found if any_path else _steadier(planner, _lighter(planner, found, pool))
+        return found if any_path else _improved(planner, _lighter(planner, found, pool))
     if found.weak and not planner.torques:
         held = solve(planner.within_torques, pool, any_path, likely)
         if isinstance(held, Solved):
@@ -100,14 +102,28 @@ def _lighter(planner: PathPlanner, found: Solved, pool: Executor) -> Solved:
     return found
 
 
-def _steadier(planner: PathPlanner, found: Solved) -> Solved:
-    """The path `found`, or one with more CoM margin where it has little."""
-    if found.margin > planner.thin:
-        return found
-    other = planner.again_steadier(found)
-    if isinstance(other, Solved) and other.torque_share <= max(found.torque_share, HEAVY):
-        return max(found, other, key=lambda path: (not path.grazes, path.margin))
-    return found
+def _improved(planner: PathPlanner, found: Solved) -> Solved:
+    """The path `found`, or what its attempt finds with more CoM margin or more room for the trunk,
+    where it has little.
+    """
+    how, torques = planner.how(found)
+
+    def again(changed: PathPlanner) -> Solved | None:
+        other = changed.again(how, torques=torques)
+        if isinstance(other, Blocked) or other.torque_share > max(found.torque_share, HEAVY):
+            return None
+        return other
+
+    best = found
+    if found.margin <= planner.thin and (other := again(planner.steadier)):
+        best = max(found, other, key=lambda path: (not path.grazes, path.margin))
+        if best is other:
+            planner = planner.steadier
+    if best.trunk_clearance <= planner.near and (other := again(planner.clearer)):
+        steady = other.margin >= min(STEADY * best.margin, planner.thin)
+        if steady and other.trunk_clearance > best.trunk_clearance and best.grazes >= other.grazes:
+            best = other
+    return best
 
 
 def quick(planner: PathPlanner) -> Solved | Blocked:

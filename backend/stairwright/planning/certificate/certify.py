@@ -27,6 +27,7 @@ from stairwright.planning.tolerance import Tolerance
 from stairwright.robot import kinematics as kin
 
 WHEEL_SINK = 0.001  # m
+TRUNK_CLEARANCE, LINKS_CLEARANCE = "clearance of the trunk", "clearance of the links"
 ROOM = 0.002  # m; clearances are told that exactly where they are not certainly larger
 _JOINT_STEP = 0.35  # rad between two poses
 
@@ -116,8 +117,8 @@ class _Checker:
         return [
             self._most("gap between wheels and ground", np.maximum(*rims), WHEEL_GAP),
             self._most("wheels sunk into the ground", -np.minimum(*rims), WHEEL_SINK),
-            self._clear("clearance of the trunk", postures.trunk(ground, slack)),
-            self._clear("clearance of the links", postures.links(ground, slack)),
+            self._clear(TRUNK_CLEARANCE, postures.trunk(ground, slack)),
+            self._clear(LINKS_CLEARANCE, postures.links(ground, slack)),
             self._least("gap between front and rear leg", postures.between_legs(), LEGS_GAP, "m"),
             self._least("slack of the joint limits", self._limits(), 0.0, "rad"),
             self._balance(),
