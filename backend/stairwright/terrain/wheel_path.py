@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stairwright import _core
-from stairwright.arrays import Floats
+from stairwright.arrays import Flags, Floats
 from stairwright.errors import InputError
 
 from .profile import Terrain
@@ -54,6 +54,12 @@ class WheelPath:
     def normals(self, s: Floats) -> Floats:
         """(n, 2) unit normals at `s` (n,), from the terrain to the wheel centre."""
         return self._sampled(s)[:, 2:].copy()
+
+    def on_edge(self, s: Floats) -> Flags:
+        """(...) whether a wheel at arc lengths `s` (...) is round an edge."""
+        piece = np.searchsorted(self.pieces[:, 1], s, side="right") - 1
+        on_edge: Flags = self.pieces[piece.clip(0), 0] != LINE
+        return on_edge
 
     def contacts(self, s: Floats) -> Floats:
         """(n, 2) contact points on the terrain at `s` (n,)."""

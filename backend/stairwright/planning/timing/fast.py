@@ -13,6 +13,7 @@ from stairwright.arrays import Flags, Floats
 from stairwright.planning.binding import Margins
 from stairwright.planning.certificate.dynamics import WINDOW, Dynamics, dynamics_of
 from stairwright.planning.plan import Plan, Quantity, Timing, plan_id
+from stairwright.planning.pose_arrays import PoseArrays
 from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.smoothing.path_document import poses_at
 from stairwright.planning.standing import enlargement
@@ -56,7 +57,8 @@ class TimingProblem:
         path = wheel_path(plan.terrain, robot.wheel.radius)
         line = reference(plan, joint_rate=None)
         motion = moving_robot(line, reach_of(robot))
-        progress = [pose.progress for pose in plan.poses]
+        arrays = PoseArrays.of(plan)
+        progress = arrays.progress
         large = enlargement(robot)
         pace = Pace.of(aggressiveness).at_size(large)
         margins = Margins.of(robot, plan.friction, plan.poses).measured()
@@ -64,9 +66,9 @@ class TimingProblem:
         def along(values: Floats) -> Floats:
             return np.interp(motion.progress, progress, values)
 
-        ease = along(
-            _ease(margins["clearance"][0], margins["friction"][0] * robot.wheel.radius, large)
-        )
+        on_edge = path.on_edge(arrays.s).any(axis=1)
+        stray = np.where(on_edge, margins["friction"][0] * robot.wheel.radius, np.inf)
+        ease = along(_ease(margins["clearance"][0], stray, large))
         legs, wheels = (1.0 - margins[kind][0] / margins[kind][1] for kind in _MOTORS)
         effort = np.stack([along(legs), along(wheels)], axis=1)
         limits = limits_of(motion, robot, path, plan.friction, effort, pace, ease)
