@@ -134,3 +134,21 @@ STEEP = [
 def test_rear_wheels_do_not_stand_in_a_corner_while_the_plan_climbs(sensing):
     plan = sw.plan({"points": STEEP}, "a1_wheeled_x", 0.6)
     assert sw.rollout(plan, controller={"sensing": sensing}).outcome == "success"
+
+
+def ramp(slope: float) -> dict[str, list[tuple[float, float]]]:
+    return {"points": [(-1.5, 0.0), (0.0, 0.0), (1.5, 1.5 * slope), (3.5, 1.5 * slope)]}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("timing", ["steady", "fast"])
+def test_a_ramp_that_takes_almost_all_friction_is_climbed(timing):
+    plan = sw.plan(ramp(0.35 * 0.979), "d1", 0.35, timing=timing)
+    assert sw.rollout(plan).outcome == "success"
+
+
+@pytest.mark.slow
+def test_a_ramp_that_leaves_no_friction_to_roll_with_is_refused():
+    plan = sw.plan(ramp(0.35 * 0.99), "d1", 0.35)
+    assert plan.problem.limit.quantity == "friction"
+    assert plan.problem.limit.needed == pytest.approx(0.35 * 0.99 / 0.98, rel=0.02)
