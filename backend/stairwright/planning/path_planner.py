@@ -218,7 +218,9 @@ class PathPlanner(PathProblem):
 
     @cached_property
     def clearer(self) -> PathPlanner:
-        """The same problem, in which the smoothing keeps the trunk farther from the ground."""
+        """The same problem, in which the smoothing keeps the trunk farther from the ground: its
+        searches are those of this one.
+        """
         extra = self.extra._replace(trunk=self.extra.trunk + CLEARER * enlargement(self.robot))
         return replace(self, extra=extra, in_search=0.0)
 

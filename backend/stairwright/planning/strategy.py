@@ -121,7 +121,8 @@ def _improved(planner: PathPlanner, found: Solved) -> Solved:
             planner = planner.steadier
     if best.trunk_clearance <= planner.near and (other := again(planner.clearer)):
         steady = other.margin >= min(STEADY * best.margin, planner.thin)
-        if steady and other.trunk_clearance > best.trunk_clearance and best.grazes >= other.grazes:
+        grazes = other.grazes and not best.grazes  # with a link
+        if steady and other.trunk_clearance > best.trunk_clearance and not grazes:
             best = other
     return best
 
