@@ -9,13 +9,14 @@ namespace stairwright::certificate {
 
 namespace {
 
-constexpr std::size_t kRows = 3 + 2 * kMotors;              // components of the wrench, then motors each way
+constexpr std::size_t kForces = 3 + 2 * kMotors;            // rows: components of the wrench, motors each way,
+constexpr std::size_t kRows = kForces + 1;                  // and the sum of all forces
 constexpr std::size_t kShare = kConeEdges;                  // variables: forces along edges, the share,
 constexpr std::size_t kMissedBack = kShare + 1;             // what is missed the other way, and basic at first
 constexpr std::size_t kColumns = kMissedBack + 3;           // what is missed and the slacks of the motors
 constexpr double kTolerance = 1e-10;                        // of a reduced cost or a pivot that counts as zero
 constexpr int kMostPivots = 10'000;                         // Bland's rule ends by itself, but for rounding
-constexpr double kUnknown = std::numeric_limits<double>::infinity();
+constexpr double kUnknown = 1e6;                            // more than any motor can give or any wrench is missed by
 
 // A linear program with basic variables as functions of the others, which are zero: basic = value + rate * other.
 // No variable is negative.
@@ -41,6 +42,8 @@ class Dictionary {
                 for (std::size_t j = 0; j < kConeEdges; ++j) rate_[i][j] = -motion.edges[j].torques[m] / limit;
                 rate_[i][kShare] = 1.0;
             }
+        value_[kForces] = kMostForce;
+        for (std::size_t j = 0; j < kConeEdges; ++j) rate_[kForces][j] = -1.0;
     }
 
     DynamicBalance solve() {
@@ -69,7 +72,7 @@ class Dictionary {
     // The basic variable that first falls to zero, of several the first; `kRows` if none does.
     std::size_t leaving(std::size_t column) const {
         std::size_t best = kRows;
-        double least = kUnknown;
+        double least = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < kRows; ++i) {
             if (rate_[i][column] > -kTolerance) continue;
             const double step = std::max(value_[i], 0.0) / -rate_[i][column];

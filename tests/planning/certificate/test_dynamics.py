@@ -121,8 +121,11 @@ def _least_share(
     motors = np.vstack(
         [np.column_stack([torques.T, -highest, none]), np.column_stack([-torques.T, lowest, none])]
     )
+    together = np.concatenate([np.ones(12), np.zeros(7)])
     cost = np.concatenate([np.zeros(12), [1.0], np.full(6, 100.0)])
-    best = linprog(cost, motors, np.concatenate([-free, free]), balance, load)
+    best = linprog(
+        cost, np.vstack([motors, together]), np.concatenate([-free, free, [10.0]]), balance, load
+    )
     return best.x[12], best.x[13:].max()
 
 
@@ -140,6 +143,27 @@ def test_the_least_share_of_the_motors_is_scipys() -> None:
     assert 20 < (expected[:, 1] > 1e-6).sum() < n - 20
     assert share == pytest.approx(expected[:, 0], rel=1e-6, abs=1e-6)
     assert missed == pytest.approx(expected[:, 1], rel=1e-6, abs=1e-6)
+
+
+def test_forces_that_press_a_wheel_between_two_faces_are_bounded() -> None:
+    """Up an edge on one side, against a riser on the other: all but opposite, and of any size."""
+    wrenches, torques = np.zeros((12, 3)), np.zeros((12, 6))
+    wrenches[:4] = [
+        [1.0007, 0.7992, -0.3819], [-0.56, 1.1517, 0.049], [-1.0, 0.8, 0.1194], [-1.0, -0.8, 0.3819]
+    ]  # fmt: skip
+    wrenches[6:8] = [[0.8, 1.0, -0.1078], [-0.8, 1.0, 0.1714]]
+    torques[:4, :3] = [
+        [22.6951, 16.7754, 2.323], [-14.5966, -2.5831, -2.323],
+        [-18.9078, -4.2931, 2.323], [-22.6809, -16.7725, -2.323],
+    ]  # fmt: skip
+    torques[6:8, 3:] = [[15.05, 14.2371, 2.323], [-5.3311, 8.9805, -2.323]]
+    load, free = np.array([-0.0004, 1.0012, 0.0001]), np.array([0.4, -0.5, 0.0, -0.1, -1.3, 0.0])
+    limits = np.full(6, 33.5)
+    given = (wrenches, torques, load, free, -limits, limits)
+    share, missed = _core.certificate_least_share(*(each[None] for each in given))
+    expected, _ = _least_share(*given)
+    assert share == pytest.approx(expected, rel=1e-6)
+    assert missed == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_least_share_needs_as_many_of_each_as_poses() -> None:

@@ -34,6 +34,8 @@ struct DynamicBalance {
 
 // Missing a wrench costs `kMissed` times as much as the motors' share, so it is missed only where no force balances it.
 inline constexpr double kMissed = 100.0;
+// All forces together: those that press a wheel between an edge and a riser cancel, and its motors hardly feel them.
+inline constexpr double kMostForce = 10.0;
 
 DynamicBalance least_share(const Motion& motion);
 
