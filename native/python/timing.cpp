@@ -53,10 +53,10 @@ std::pair<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, double>> dynami
 void bind_timing(nb::module_& m) {
     m.def("dynamic_limits", [](const Robot& robot, const WheelPath& path, double friction, const PlannedRows& values,
                                const PlannedRows& first, const PlannedRows& second, double friction_share, double torque_share,
-                               double sway) {
-        return dynamic_limits_along(robot, path, friction, values, first, second, {friction_share, torque_share, sway});
+                               double sway, double com) {
+        return dynamic_limits_along(robot, path, friction, values, first, second, {friction_share, torque_share, sway, com});
     }, nb::arg("robot"), nb::arg("path"), nb::arg("friction"), nb::arg("values"), nb::arg("first"), nb::arg("second"),
-       nb::arg("friction_share"), nb::arg("torque_share"), nb::arg("sway"),
+       nb::arg("friction_share"), nb::arg("torque_share"), nb::arg("sway"), nb::arg("com"),
        "Rows (n, k, 3) of balance and of motor torques for planned values (n, 11) and derivatives by the way: "
        "a x + b u + c >= 0.");
     m.def("fastest_squares", [](const In<double, nb::shape<-1, -1, 3>>& limits, const Vector& caps, double step) {

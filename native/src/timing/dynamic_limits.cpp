@@ -18,6 +18,7 @@ using control::Planned;
 using control::Reference;
 
 constexpr double kNoSqueeze = 1e-9;  // of a constraint that pushing against each other does not change
+constexpr double kMostKept = 0.8;    // of a CoM margin: a robot that may not accelerate at all does not get anywhere
 constexpr int kTorques = 6;          // thigh, calf, wheel of a front and of a rear leg
 
 // What is linear in x and u, and in a moment by which the mass centre's place may be wrong.
@@ -120,7 +121,7 @@ class Sample {
 
     // Limits without the number by which pairs push against each other: of every constraint that wants it larger
     // with every one that wants it smaller.
-    DynamicLimits limits(double sway) const {
+    DynamicLimits limits(const Reserve& reserve) const {
         std::vector<Constraint> free;
         for (const Constraint& c : constraints_) {
             if (std::abs(c.squeeze) <= kNoSqueeze) free.push_back({c.value, 0.0, c.motor});
@@ -132,7 +133,8 @@ class Sample {
         double margin = std::numeric_limits<double>::infinity();  // of the mass centre's place [m]
         for (const Constraint& c : free)
             if (!c.motor && std::abs(c.value.shift) > kNoSqueeze) margin = std::min(margin, c.value.rest / std::abs(c.value.shift));
-        const double kept = std::isfinite(margin) ? (1.0 - sway) * std::max(margin, 0.0) : 0.0;
+        margin = std::isfinite(margin) ? std::max(margin, 0.0) : 0.0;
+        const double kept = std::max((1.0 - reserve.sway) * margin, std::min(reserve.com, kMostKept * margin));
         DynamicLimits out;
         for (const Constraint& c : free) {
             const double room = c.value.rest - (c.motor ? 0.0 : kept * std::abs(c.value.shift));
@@ -225,7 +227,7 @@ class Sample {
 
 DynamicLimits dynamic_limits(const Robot& robot, const WheelPath& path, double friction, const PathPoint& point,
                              const Reserve& reserve) {
-    return Sample(robot, path, friction, point, reserve).limits(reserve.sway);
+    return Sample(robot, path, friction, point, reserve).limits(reserve);
 }
 
 }  // namespace stairwright::timing

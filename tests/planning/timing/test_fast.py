@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -95,10 +97,21 @@ def test_speeds_of_poses_far_apart_rise_evenly() -> None:
     assert ripple < 0.05 < 0.15 < bursts
 
 
+def test_motion_leaves_what_a_thin_com_margin_has(
+    steady: Plan, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A fifth of it may go, however thin it is."""
+    times, pace = [], Pace.of(1.0)
+    for com in (1e-6, 0.015, 1.0):
+        monkeypatch.setattr(Pace, "of", lambda _, com=com: replace(pace, com=com))
+        times.append(TimingProblem.of(steady, 1.0).least_time())
+    assert times[0] < times[1] < times[2] < 3.0 * times[0]
+
+
 @pytest.fixture
 def reckless(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
     """Plans driven far harder than what the certificate allows."""
-    pace = Pace(0.9, 30.0, 300.0, 2000.0, 90.0, 30.0, 9.0)
+    pace = Pace(0.9, 0.015, 30.0, 300.0, 2000.0, 90.0, 30.0, 9.0)
     monkeypatch.setattr(Pace, "of", lambda _: pace)
     return monkeypatch
 

@@ -45,6 +45,7 @@ class Pace:
 
     Attributes:
         sway: Share of the CoM margin that inertia may take.
+        com: CoM margin of which it takes less, for places of wheels are known to millimetres [m].
         acceleration: Of the CoM along x and along z [m/s^2].
         pitch_acceleration: [rad/s^2].
         joint_acceleration: Of thighs and calves [rad/s^2].
@@ -54,6 +55,7 @@ class Pace:
     """
 
     sway: float
+    com: float
     acceleration: float
     pitch_acceleration: float
     joint_acceleration: float
@@ -76,6 +78,7 @@ class Pace:
         root = math.sqrt(large)
         return replace(
             self,
+            com=self.com * large,
             pitch_acceleration=self.pitch_acceleration / large,
             joint_acceleration=self.joint_acceleration / large,
             joint_speed=self.joint_speed / root,
@@ -84,8 +87,8 @@ class Pace:
         )
 
 
-GENTLE = Pace(0.5, 0.25, 1.5, 8.0, 1.5, 0.8, 0.1)
-HARD = Pace(0.65, 2.0, 10.0, 60.0, 9.0, 3.0, 0.5)
+GENTLE = Pace(0.5, 0.015, 0.25, 1.5, 8.0, 1.5, 0.8, 0.1)
+HARD = Pace(0.65, 0.015, 2.0, 10.0, 60.0, 9.0, 3.0, 0.5)
 
 
 @dataclass(frozen=True)
@@ -120,7 +123,7 @@ def limits_of(
     gentle = np.clip((1.0 - effort.max(axis=1)) / _EASED, LEAST_EASE, 1.0)
     balance, torque = _core.dynamic_limits(
         robot.native, path.native, friction, motion.values, motion.first, motion.second,
-        FRICTION_SHARE, TORQUE_SHARE, pace.sway,
+        FRICTION_SHARE, TORQUE_SHARE, pace.sway, pace.com,
     )  # fmt: skip
     groups: list[tuple[LimitName, Floats]] = [
         ("balance", balance),

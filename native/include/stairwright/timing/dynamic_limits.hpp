@@ -27,7 +27,8 @@ struct PathPoint {
 struct Reserve {
     double friction = 1.0;  // of the friction
     double torque = 1.0;    // of the motors' torques
-    double sway = 1.0;      // of the CoM margin
+    double sway = 1.0;      // of the CoM margin, and less of it where
+    double com = 0.0;       // less than this is left [m]
 };
 
 struct DynamicLimits {
