@@ -61,3 +61,37 @@ def test_wheels_whose_motors_have_little_left_meet_risers_gently() -> None:
     plan = sw.plan(stair(0.67, 0.406, 3), "b2w", 0.65, timing="fast", diagnose=False)
     run = sw.rollout(plan, controller={"sensing": "ideal"})
     assert run.outcome == "success", run.reason
+
+
+TRENCH = [
+    (-1.6, 0.0), (0.0, 0.0), (0.0, -0.07), (0.1, -0.07), (0.1, -0.11), (0.55, -0.11),
+    (0.55, -0.41), (1.08, -0.33), (1.08, -0.08), (1.94, -0.08), (1.97, -0.18), (4.0, -0.18),
+]  # fmt: skip
+HILL = [
+    (-1.6, 0.0), (0.0, 0.0), (0.4075, 0.2171), (0.7904, 0.2171), (0.7904, -0.0181),
+    (0.9368, -0.0181), (0.9368, -0.4509), (1.1985, -0.4509), (1.1985, -0.8033), (3.0, -0.8033),
+]  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("points", "robot", "friction"), [(TRENCH, "a1_wheeled", 0.92), (HILL, "m20", 0.319)]
+)
+def test_a_wheel_that_has_come_down_fast_is_on_its_tread(
+    points: list[tuple[float, float]], robot: str, friction: float
+) -> None:
+    """Some centimetres before the next edge; its velocity, smoothed, is still that of the fall."""
+    plan = sw.plan({"points": points}, robot, friction, timing="fast", diagnose=False)
+    for seed in (0, 1):
+        run = sw.rollout(plan, seed=seed)
+        assert run.outcome == "success", run.reason
+
+
+@pytest.mark.slow
+def test_wheels_that_push_a_wall_a_little_as_they_climb_tell_the_place() -> None:
+    """Rear ones, by 6 % of the weight, at 0.6 m/s; front ones on the edge above slip meanwhile."""
+    wall = sw.Terrain(points=[(-1.5, 0.0), (0.0, 0.0), (0.0, 0.882), (3.0, 0.882)])
+    plan = sw.plan(wall, "a1_wheeled_x", 0.3, timing="fast", diagnose=False)
+    for seed in (0, 1):
+        run = sw.rollout(plan, seed=seed)
+        assert run.outcome == "success", run.reason

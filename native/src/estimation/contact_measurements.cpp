@@ -58,9 +58,9 @@ void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x,
         return;
     }
     const Vec2 n = on.point.normal;
-    if (path_.pieces()[on.piece].arc && dot(wheels_[i].felt, n) > wheels_[i].force_deviation) wheels_[i].rounded = on.piece;
+    if (path_.pieces()[on.piece].arc && dot(wheels_[i].felt, n) > wheels_[i].least_push) wheels_[i].rounded = on.piece;
     if (n.z < kTread) {
-        if (!wheels_[i].follows && dot(wheels_[i].felt, n) < wheels_[i].force_deviation) return;  // it only seems to be there
+        if (!wheels_[i].follows && dot(wheels_[i].felt, n) < wheels_[i].least_push) return;  // it only seems to be there
         if (n.x < 0.0) wheels_[i].met = nearest_corner(on.s);  // down a face it is the tread below that is to be felt
     }
     const bool passed = on.beyond != 0 && on.blocked;

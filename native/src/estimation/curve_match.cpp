@@ -114,7 +114,10 @@ CurveMatch match(const WheelPath& path, const WheelBelief& wheel, double last, d
         CurveMatch found;
         found.corner = true, found.s = path.corners()[k], found.point = path.at(found.s);
         found.before = path.normal(found.s - kBeside), found.after = path.normal(found.s + kBeside);
-        found.cost = wheel.spread.distance(wheel.centre - found.point.centre) + corner_cost(wheel, found.before, found.after) + kCornerCost;
+        // It may come along one of them, or leave along the other.
+        const double moving = std::min(velocity_cost(wheel, found.before), velocity_cost(wheel, found.after));
+        const double away = wheel.spread.distance(wheel.centre - found.point.centre);
+        found.cost = away + moving + corner_cost(wheel, found.before, found.after) + kCornerCost;
         if (found.cost < best.cost) best = found;
     }
     return best;

@@ -15,14 +15,18 @@ constexpr double kTouching = 0.15;      // of the share of the weight: a wheel t
 constexpr double kForceTime = 0.015;    // s, smoothing of the forces
 constexpr double kVelocityTime = 0.05;  // s, smoothing of the velocity of a wheel's centre
 constexpr double kVelocityNoise = 0.006;  // m/s of that, besides what the trunk's velocity is uncertain by
+constexpr double kTurningLag = 0.02;   // m/s that it lags behind round an edge
 constexpr double kCruiseTime = 0.1;    // s, smoothing of the speed that a wheel rolls at
 constexpr double kForceAtRest = 0.15;   // of a force's uncertainty in motion
 constexpr double kForceSpeed = 0.15;    // m/s of the wheel's centre from which on it is that in motion
+constexpr double kSteadyTime = 0.03;    // s, smoothing of a force against which it changes
+constexpr double kSettleTime = 0.05;    // s in which what it has changed by is over
 constexpr double kRoom = 0.10;          // m to the next face that a pair needs to roll on freely
 constexpr double kFarAlong = 0.1;       // m up or down a face: so far the place along it does not drift
 constexpr double kHop = 0.1;            // s in the air that are no more than a hop, as after a riser is met fast
 constexpr double kHopSpeed = 0.2;       // m/s of the trunk from which on a riser is met so
 constexpr double kSure = 0.02;         // s that both faces of a corner, or an edge farther on, must be felt before that counts
+constexpr double kLight = 5.0;         // of the least push: less force says little of an edge farther on
 constexpr double kLeap = 1e-3;         // m from where the wheel has rolled
 constexpr double kMostScale = 0.025;   // of the wheels: more is slip
 constexpr double kContradicted = 0.05;  // s
@@ -131,11 +135,12 @@ void Estimator::see_legs(const Readings& readings, double dt) {
         w.cruise += dt / (kCruiseTime + dt) * (leg.wheel.radius * w.rate_now - w.cruise);
         w.rate_now = rate;
     }
-    feel_ground(told, readings, share);
+    feel_ground(told, readings, dt);
 }
 
 // What legs do not tell is what the others lack to the force that the accelerometer feels.
-void Estimator::feel_ground(const std::array<WheelForce, 4>& told, const Readings& readings, double share) {
+void Estimator::feel_ground(const std::array<WheelForce, 4>& told, const Readings& readings, double dt) {
+    const double share = dt / (kForceTime + dt);
     Vec3 force;
     for (int i = 0; i < 3; ++i) force[i] = robot_.mass() * (readings.specific_force[i] - force_bias_[i]);
     const Vec3 carried = times(rotation(), force);
@@ -148,6 +153,9 @@ void Estimator::feel_ground(const std::array<WheelForce, 4>& told, const Reading
         Vec2& felt = wheels_[i].felt;
         felt += share * (told[i].force + dot(felt + (1.0 / std::max(untold, 1)) * lacking, along) * along - felt);
         all[i] = felt;
+        WheelState& w = wheels_[i];
+        w.felt_slowly += dt / (kSteadyTime + dt) * (felt - w.felt_slowly);
+        w.unsteady = std::max(norm(felt - w.felt_slowly), (1.0 - dt / kSettleTime) * w.unsteady);
     }
     estimate_.felt = untold ? std::nullopt : std::optional(all);
 }
@@ -173,14 +181,16 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const double least = noise_.place * noise_.place;
     belief.spread.xx += least, belief.spread.zz += least;
     belief.force = w.felt, belief.traction = w.traction;
-    // At rest no acceleration mixes with the ground's force.
     const Vec3 spin = cross3(rate_, {w.place.x, side, w.place.z});
     const Vec3 own_speed = times(R, {spin[0] + w.rate.x, spin[1], spin[2] + w.rate.z});
     const Vec2 moves = {velocity_[0] + own_speed[0], velocity_[2] + own_speed[2]};
     w.velocity += dt / (kVelocityTime + dt) * (moves - w.velocity);
-    const double speed = norm(moves);
-    const double motion = kForceAtRest + (1.0 - kForceAtRest) * std::min(1.0, speed / kForceSpeed);
-    belief.force_deviation = motion * (noise_.force * weight_ + 0.15 * norm(w.felt));
+    w.velocity_lag += dt / (kVelocityTime + dt) * (moves - w.velocity - w.velocity_lag);
+    // At rest no acceleration mixes with the ground's force.
+    const double most = noise_.force * weight_ + 0.15 * norm(w.felt);
+    w.force_deviation = belief.force_deviation = most * std::lerp(kForceAtRest, 1.0, std::min(1.0, norm(moves) / kForceSpeed));
+    // Whether there is one at all is sure at any speed, but where the wheel is hit or its leg thrown about.
+    w.least_push = std::min(most, kForceAtRest * most + w.unsteady);
     const auto low = std::ranges::find_if(low_edges_, [&](const LowEdge& edge) { return is_near(w, edge.first, edge.last); });
     w.low_edge = low == low_edges_.end() ? std::nullopt : std::optional(*low);
     if (w.low_edge) {
@@ -194,9 +204,8 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     if (w.since_clear > -kClearOfEdge) belief.past = w.clear;
     const CurveMatch on = match(path_, belief, w.s, kWindow);
     // A leg that swings feels a little, too: of a wall it has to be more than that, but where the wheel follows it.
-    w.force_deviation = belief.force_deviation;
     w.follows = follows(w, on);
-    const auto feels = [&](Vec2 n) { return dot(w.felt, n) > std::max(kTouching * weight_ / 4, n.z < kTread && !w.follows ? w.force_deviation : 0.0); };
+    const auto feels = [&](Vec2 n) { return dot(w.felt, n) > std::max(kTouching * weight_ / 4, n.z < kTread && !w.follows ? w.least_push : 0.0); };
     bool touching = feels(on.point.normal) || feels(on.before) || feels(on.after);
     const double corner = nearest_corner(on.s);
     if (std::abs(corner - on.s) < kNearCorner) touching = touching || feels(path_.normal(corner - kBeside)) || feels(path_.normal(corner + kBeside));
@@ -208,7 +217,8 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     const bool leaps = !on.corner && path_.pieces()[on.piece].arc && std::abs(on.s - (before + w.rolled)) > kLeap;
     w.leaps = leaps ? w.leaps + dt : 0.0;
     // The other wheel of the pair is where it was: one alone must not be called back.
-    const bool stays = (unsure && std::abs(on.s - before) > kNearCorner) || (leaps && w.leaps <= kSure);
+    const bool leaping = leaps && w.leaps <= kSure;
+    const bool stays = leaping || (unsure && std::abs(on.s - before) > kNearCorner);
     w.s = stays ? before + w.rolled : on.s;
     w.aloft = touching ? 0.0 : w.aloft + dt;
     w.landed = touching ? w.landed + dt : 0.0;
@@ -236,7 +246,7 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     if (!estimate_.touching[i]) return;
     Error error{};
     leave_low_edge(i, on, along_z, centre, error);
-    if (!unsure && !estimate_.lost) measure_place(i, on, along_x, along_z, centre, dt, error);
+    if (!unsure && !(leaping && norm(w.felt) < kLight * w.least_push) && !estimate_.lost) measure_place(i, on, along_x, along_z, centre, dt, error);
     measure_rolling(i, on, readings, along_x, along_z, dt, error);
     correct(error);
     if (on.corner && on.after.x < -kTread)
@@ -248,8 +258,11 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
 void Estimator::look_at_velocity(const WheelState& w, WheelBelief& belief) const {
     belief.velocity = w.velocity;
     const double least = kVelocityNoise * kVelocityNoise;
-    belief.velocity_spread = {covariance_(kVelocity, kVelocity) + least, covariance_(kVelocity, kVelocity + 2),
-                              covariance_(kVelocity + 2, kVelocity + 2) + least};
+    // Smoothed, it still falls when the wheel has landed: on a tread that would be less likely than round the next edge.
+    const double lags = norm(w.velocity_lag);
+    const Vec2 lag = (std::max(lags - kTurningLag, 0.0) / std::max(lags, kTurningLag)) * w.velocity_lag;
+    belief.velocity_spread = {covariance_(kVelocity, kVelocity) + least + lag.x * lag.x, covariance_(kVelocity, kVelocity + 2) + lag.x * lag.z,
+                              covariance_(kVelocity + 2, kVelocity + 2) + least + lag.z * lag.z};
 }
 
 // A filter that is surer of a wrong velocity, as after a slide, than wheels can tell it turns down all that they say, for

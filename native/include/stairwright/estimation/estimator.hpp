@@ -125,8 +125,11 @@ class Estimator {
         Vec2 place, rate;         // in the trunk frame, and its rate there [m, m/s]
         LegPlaces leg;            // world, with the trunk point as origin
         Vec2 felt;                // the force, smoothed [N]
+        Vec2 felt_slowly;         // the same, smoothed once more
+        double unsteady = 0.0;    // by how much it has changed lately [N]
         double traction = 0.0;    // smoothed [N]
         Vec2 velocity;            // of its centre, smoothed [m/s]
+        Vec2 velocity_lag;        // what that lags behind by, about [m/s]
         Vec2 felt_before;         // both until the reading before this one
         double traction_before = 0.0;
         double s;                 // place on the curve [m]
@@ -148,7 +151,8 @@ class Estimator {
         double known = 0.0;       // for how long it has been there, or on a tread [s]
         double stopped = 0.0;     // evidence that it is at the face ahead already, see face_ahead.cpp
         Vec2 early;               // and by how much the map is off then [m]
-        double force_deviation = 0.0;  // of what is felt; of a wall more than that counts [N]
+        double force_deviation = 0.0;  // of what is felt [N]
+        double least_push = 0.0;       // of a wall: more than that counts [N]
         double met = -1e9;        // the last corner of which it has felt the wall [m]
         double aloft = 0.0;       // for how long it has been in the air [s]
         double landed = 0.0;      // since it has met the face or tread that it is on [s]
@@ -161,7 +165,7 @@ class Estimator {
     Rotation rotation() const;
     void predict(const Readings& readings, double dt);
     void see_legs(const Readings& readings, double dt);
-    void feel_ground(const std::array<WheelForce, 4>& told, const Readings& readings, double share);
+    void feel_ground(const std::array<WheelForce, 4>& told, const Readings& readings, double dt);
     void measure(int wheel, const Readings& readings, double dt);
     void look_at_velocity(const WheelState& wheel, WheelBelief& belief) const;
     void put_back(int wheel, const Error& along, double excess, Error& error);
