@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import gc
 import os
+import random
 import signal
 import socket
 import ssl
@@ -15,6 +16,7 @@ from collections import Counter
 from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -160,11 +162,19 @@ class Server:
     log: Path
 
 
+# Below those that systems give to connections: one of these might have it before a server does.
+_FIRST_PORT, _PORTS = 20_000, 1_000
+_ports = count(random.randrange(_PORTS))
+
+
 def free_port() -> int:
-    """One that nobody listens at."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+    """One that nobody listens at, of this worker's own."""
+    worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
+    first = _FIRST_PORT + _PORTS * (worker % 10)
+    while True:
+        with socket.socket() as probe, contextlib.suppress(OSError):
+            probe.bind(("127.0.0.1", first + next(_ports) % _PORTS))
+            return int(probe.getsockname()[1])
 
 
 @contextlib.contextmanager

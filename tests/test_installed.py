@@ -7,7 +7,6 @@ import json
 import os
 import re
 import shutil
-import socket
 import subprocess
 import sys
 import time
@@ -18,6 +17,8 @@ from pathlib import Path
 import httpx
 import pytest
 from packaging.requirements import Requirement
+
+from tests.conftest import free_port
 
 ROOT = Path(__file__).resolve().parents[1]
 LARGEST = 500 * 2**20  # bytes of the whole environment, made smaller by slim.py
@@ -142,9 +143,7 @@ def _first_plan(api: str, process: subprocess.Popen[bytes]) -> httpx.Response:
 def test_it_serves_its_first_plan_and_its_page_at_once(
     installed: Path, record_property: Callable[[str, object], None]
 ) -> None:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = str(probe.getsockname()[1])
+    port = str(free_port())
     begun = time.monotonic()
     with (installed / "log").open("wb") as log:
         process = subprocess.Popen(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
-import socket
 import subprocess
 import sys
 import threading
@@ -16,6 +15,8 @@ from typing import Any
 
 import httpx
 import pytest
+
+from tests.conftest import free_port
 
 STAIR = {"points": [[-1.0, 0], [0, 0], [0, 0.05], [1, 0.05]]}
 WALL = {"points": [[-1.2, 0], [0, 0], [0, 0.85], [1.2, 0.85]]}
@@ -34,9 +35,7 @@ sys.meta_path.insert(0, Finder())
 @contextlib.contextmanager
 def starting(folder: Path, **variables: str) -> Iterator[str]:
     """The address of a server that has just begun to start."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     env = os.environ | variables
     env |= {"STAIRWRIGHT_DATA": str(folder / "data"), "STAIRWRIGHT_PORT": str(port)}
     command = [sys.executable, "-m", "stairwright", "serve"]

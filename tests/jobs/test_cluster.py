@@ -6,7 +6,6 @@ import asyncio
 import contextlib
 import os
 import signal
-import socket
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -34,7 +33,7 @@ from stairwright.simulation import robust_margins
 from stairwright.simulation.rollout import rollout
 from stairwright.storage.artefacts import Artefacts
 from stairwright.studies.local_cluster import QUIET
-from tests.conftest import Server
+from tests.conftest import Server, free_port
 
 pytestmark = pytest.mark.slow  # a cluster of processes takes seconds to start
 
@@ -54,12 +53,6 @@ def dask_cluster() -> Iterator[LocalCluster]:
         ) as cluster,
     ):  # fmt: skip
         yield cluster
-
-
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 def _in_process(port: int) -> LocalCluster:
@@ -140,7 +133,7 @@ def test_margins_are_found_there_too(tmp_path: Path, monkeypatch: pytest.MonkeyP
         assert product.id == expected.id
         assert sw.RobustMargins.model_validate_json(kept.content(product.digest)) == expected
 
-    with _in_process(_free_port()) as cluster:
+    with _in_process(free_port()) as cluster:
         tell(cluster.scheduler_address, tmp_path, story)
 
 
@@ -227,7 +220,7 @@ async def _nothing(_: DaskSimulators) -> None:
 
 def test_a_scheduler_that_goes_away(tmp_path: Path) -> None:
     """Who was waiting may ask again; the next scheduler at the address is used."""
-    port = _free_port()
+    port = free_port()
 
     async def story(found: DaskSimulators) -> None:
         run = Run(TrialsQuestion(_ask(CURB), 0.6, {}, 5, count=500), "me")

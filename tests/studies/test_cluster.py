@@ -32,6 +32,7 @@ from stairwright.studies.store import ResultStore
 from stairwright.studies.study import prepared
 from stairwright.studies.version import engine_of
 from stairwright.studies.worker import evaluate_batch
+from tests.conftest import free_port
 
 from .small import STEP, identical, study
 
@@ -201,11 +202,9 @@ def test_a_cluster_of_ones_own_with_keys(
     """Dask's own programs, as docs/scale.md starts them; whoever has no keys stays out."""
     write_keys(tmp_path)
     settings = dask_settings(tmp_path)
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        address = f"tls://127.0.0.1:{probe.getsockname()[1]}"
+    port = str(free_port())
+    address = f"tls://127.0.0.1:{port}"
     dask = [sys.executable, "-m", "dask"]
-    port = address.rpartition(":")[2]
     listening = ["--protocol", "tls", "--host", "127.0.0.1", "--port", port, "--no-dashboard"]
     working = [address, "--nthreads", "1", "--nworkers", "1", "--no-dashboard"]
     options: dict[str, Any] = {"env": os.environ | settings, "stderr": subprocess.DEVNULL}

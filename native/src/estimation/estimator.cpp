@@ -216,8 +216,8 @@ void Estimator::measure(int i, const Readings& readings, double dt) {
     // wheel, and feel what confirms it.
     const bool leaps = !on.corner && path_.pieces()[on.piece].arc && std::abs(on.s - (before + w.rolled)) > kLeap;
     w.leaps = leaps ? w.leaps + dt : 0.0;
-    // The other wheel of the pair is where it was: one alone must not be called back.
     const bool leaping = leaps && w.leaps <= kSure;
+    // The other wheel of the pair is where it was: one alone must not be called back.
     const bool stays = leaping || (unsure && std::abs(on.s - before) > kNearCorner);
     w.s = stays ? before + w.rolled : on.s;
     w.aloft = touching ? 0.0 : w.aloft + dt;
