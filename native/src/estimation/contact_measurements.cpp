@@ -41,14 +41,14 @@ bool Estimator::before_drop(const CurveMatch& on) const {
     return !on.corner && !path_.pieces()[on.piece].arc && on.point.normal.z > kTread && path_.next_drop(on.s).has_value();
 }
 
-void Estimator::measure_place(int i, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error) {
+void Estimator::measure_place(int i, const CurveMatch& on, const WheelPlace& place, double dt, Error& error) {
     if (over_low_edge(wheels_[i], on)) return;
     const double doubt = before_drop(on) ? kMayEnd : wheels_[i].landed < kBounce ? kGivesWay : 1.0;
     const double variance = doubt * noise_.place * noise_.place * std::max(1.0, noise_.place_lasts / dt);
-    const Vec2 off = on.point.centre - centre;
+    const Vec2 off = on.point.centre - place.centre;
     const auto row = [&](Vec2 d) {
         Error h;
-        for (std::size_t k = 0; k < kErrors; ++k) h[k] = d.x * along_x[k] + d.z * along_z[k];
+        for (std::size_t k = 0; k < kErrors; ++k) h[k] = d.x * place.along_x[k] + d.z * place.along_z[k];
         return h;
     };
     if (on.corner) {
@@ -107,11 +107,11 @@ void Estimator::put_back(int i, const Error& along, double excess, Error& error)
     covariance_.add_noise(spread[own] > spread[kPlace] ? own : kPlace, kSearchNoise * std::abs(excess));
 }
 
-void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& readings, const Error& along_x, const Error& along_z, double dt, Error& error) {
+void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& readings, const WheelPlace& place, double dt, Error& error) {
     const WheelState& w = wheels_[i];
     const Rotation R = rotation();
     const double side = i % 2 == 0 ? robot_.half_track : -robot_.half_track;
-    const Vec3 place = {w.place.x, side, w.place.z}, spin = cross3(rate_, place);
+    const Vec3 arm = {w.place.x, side, w.place.z}, spin = cross3(rate_, arm);
     const Vec3 own = times(R, {spin[0] + w.rate.x, spin[1], spin[2] + w.rate.z});
     const Vec3 speed = {velocity_[0] + own[0], velocity_[1] + own[1], velocity_[2] + own[2]};
     const Vec3 axis = {R[0][1], R[1][1], R[2][1]};
@@ -127,7 +127,7 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
         const Vec3 turned = cross3(lever, d);
         const Vec3 body = {R[0][0] * d[0] + R[1][0] * d[1] + R[2][0] * d[2], R[0][1] * d[0] + R[1][1] * d[1] + R[2][1] * d[2],
                            R[0][2] * d[0] + R[1][2] * d[1] + R[2][2] * d[2]};
-        const Vec3 bias = cross3(body, place);
+        const Vec3 bias = cross3(body, arm);
         for (std::size_t k = 0; k < 3; ++k) h[kAttitude + k] = turned[k], h[kVelocity + k] = d[k], h[kGyroBias + k] = bias[k];
         return h;
     };
@@ -182,7 +182,7 @@ void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& rea
     const bool round = path_.on_arc(on.s);
     if (round) {  // where it goes says how far round the edge it is: dn/ds = t / radius
         const double turning = w.cruise / radius;
-        for (std::size_t k = 0; k < kErrors; ++k) h[k] += turning * (n.z * along_x[k] - n.x * along_z[k]);
+        for (std::size_t k = 0; k < kErrors; ++k) h[k] += turning * (n.z * place.along_x[k] - n.x * place.along_z[k]);
     }
     update(h, off, -dot3(off, speed), round ? kRound * noise_.off_face : std::hypot(noise_.off_face, askew));
 }

@@ -47,6 +47,18 @@ bool Estimator::is_near(const WheelState& w, std::size_t first, std::size_t last
     return begin.s < w.s + kWindow && w.s < below.s + std::min(kWindow, below.length) && w.clear != last + 1;
 }
 
+// Notes which low edge the wheel is near to, and that the pieces of that, or of an edge that leads down, may be none.
+void Estimator::doubt_low_edges(WheelState& w, WheelBelief& belief) const {
+    belief.unsure_height = noise_.tread_height * noise_.tread_height;
+    const auto low = std::ranges::find_if(low_edges_, [&](const LowEdge& edge) { return is_near(w, edge.first, edge.last); });
+    w.low_edge = low == low_edges_.end() ? std::nullopt : std::optional(*low);
+    if (w.low_edge) {
+        belief.unsure = low->first, belief.unsure_count = low->last + 2 - low->first;
+    } else if (const auto drop = std::ranges::find_if(low_drops_, [&](std::size_t k) { return is_near(w, k, k); }); drop != low_drops_.end()) {
+        belief.unsure = *drop + 1, belief.unsure_count = 1;
+    }
+}
+
 // Up an edge that is there a wheel feels it, and measures it. The corner at the foot of one that leads down lies the nearer to
 // it the lower that is.
 bool Estimator::over_low_edge(const WheelState& w, const CurveMatch& on) const {
@@ -58,14 +70,14 @@ bool Estimator::over_low_edge(const WheelState& w, const CurveMatch& on) const {
 
 // A wheel that is clear of it measures how high that tread is, of which nothing was known; but where the wheel has felt the
 // edge on its way up, the height and its place there are what that can be told from.
-void Estimator::leave_low_edge(int i, const CurveMatch& on, const Error& along_z, Vec2 centre, Error& error) {
+void Estimator::leave_low_edge(int i, const CurveMatch& on, const WheelPlace& place, Error& error) {
     WheelState& w = wheels_[i];
     if (!w.low_edge || w.clear != w.low_edge->last + 1) return;
     const bool felt = w.clear_before == w.low_edge->last;
     w.low_edge.reset();
     if (felt) return;
     covariance_.add_noise((i / 2 == 0 ? kFrontOffset : kRearOffset) + 1, noise_.tread_height * noise_.tread_height);
-    covariance_.update(along_z, on.point.centre.z - centre.z, noise_.place * noise_.place, error);
+    covariance_.update(place.along_z, on.point.centre.z - place.centre.z, noise_.place * noise_.place, error);
 }
 
 }  // namespace stairwright::estimation

@@ -159,6 +159,11 @@ class Estimator {
         double leaps = 0.0;       // s for which it has seemed to be elsewhere round an edge
         double at_corner = 0.0;   // for how long it has felt both faces of a corner [s]
     };
+    // Where a wheel's centre is believed to be [m], and how that changes with the state.
+    struct WheelPlace {
+        Vec2 centre;
+        Error along_x{}, along_z{};
+    };
     using Vec3 = std::array<double, 3>;
     using Rotation = std::array<Vec3, 3>;
 
@@ -167,7 +172,16 @@ class Estimator {
     void see_legs(const Readings& readings, double dt);
     void feel_ground(const std::array<WheelForce, 4>& told, const Readings& readings, double dt);
     void measure(int wheel, const Readings& readings, double dt);
+    WheelPlace place_of(int wheel) const;
+    WheelBelief believed(int wheel, const WheelPlace& place, double dt);
+    void doubt_low_edges(WheelState& wheel, WheelBelief& belief) const;
     void look_at_velocity(const WheelState& wheel, WheelBelief& belief) const;
+    bool touches(const WheelState& wheel, const CurveMatch& on) const;
+    bool follows(const WheelState& wheel, const CurveMatch& on) const;
+    void follow(int wheel, const CurveMatch& on, const WheelBelief& belief, bool touching, double dt);
+    static bool is_passing(const WheelState& wheel, const CurveMatch& on);
+    static bool is_leaping(const WheelState& wheel);
+    void look_ahead(int wheel, const CurveMatch& on);
     void put_back(int wheel, const Error& along, double excess, Error& error);
     void compare_with_map(int wheel, const CurveMatch& on, const Spread& spread, double dt);
     void find_map_error();
@@ -193,13 +207,12 @@ class Estimator {
     bool before_drop(const CurveMatch& on) const;
     void note_low_edges();
     bool is_near(const WheelState& wheel, std::size_t first, std::size_t last) const;
-    void leave_low_edge(int wheel, const CurveMatch& on, const Error& along_z, Vec2 centre, Error& error);
+    void leave_low_edge(int wheel, const CurveMatch& on, const WheelPlace& place, Error& error);
     bool over_low_edge(const WheelState& wheel, const CurveMatch& on) const;
     double nearest_corner(double s) const;  // along the curve, to the place `s` on it [m]
-    bool follows(const WheelState& wheel, const CurveMatch& on) const;
-    void measure_place(int wheel, const CurveMatch& on, const Error& along_x, const Error& along_z, Vec2 centre, double dt, Error& error);
+    void measure_place(int wheel, const CurveMatch& on, const WheelPlace& place, double dt, Error& error);
     void measure_turn(int wheel, Vec2 normal, Error along, double dt, Error& error);
-    void measure_rolling(int wheel, const CurveMatch& on, const Readings& readings, const Error& along_x, const Error& along_z, double dt, Error& error);
+    void measure_rolling(int wheel, const CurveMatch& on, const Readings& readings, const WheelPlace& place, double dt, Error& error);
     void correct(const Error& error);
     void report(const Readings& readings);
 
