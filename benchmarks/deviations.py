@@ -1,8 +1,8 @@
 """What does a robot that has only its own sensors do where the world differs from its map?
 
     python benchmarks/deviations.py [--count 60] [--first 5000] [--rows NAME ...] [--robots NAME]
-        [--terrains NAME ...] [--sensing robot] [--salt 0] [--workers N] [--quick] [--show]
-        [--spread] [--json FILE]
+        [--terrains NAME ...] [--timing fast] [--sensing robot] [--salt 0] [--workers N] [--quick]
+        [--show] [--spread] [--json FILE]
 
 Every preset terrain and `--count` profiles of `profiles.py` are planned for each robot; every plan
 is rolled out once for each row of the table, with deviations whose signs and draws differ from plan
@@ -92,12 +92,12 @@ def terrain_of(name: str) -> sw.Terrain:
 
 
 def run_case(
-    case: tuple[str, str], rows: tuple[str, ...], sensing: str, friction: float, salt: int
+    case: tuple[str, str], rows: tuple[str, ...], timing: str, sensing: str, salt: int
 ) -> list[Result]:
     """Plan one terrain for one robot and roll it out in all `rows`; `salt` draws anew."""
     terrain, robot = case
     try:
-        plan = sw.plan(terrain_of(terrain), robot, friction)
+        plan = sw.plan(terrain_of(terrain), robot, FRICTION, timing=timing)
     except InputError as error:
         return [Result(terrain, robot, "", "refused", str(error))]
     if not plan.feasible:
@@ -121,10 +121,10 @@ def run_case(
 
 
 def results(
-    cases: list[tuple[str, str]], workers: int, rows: list[tuple[str, ...]], sensing: str, salt: int
+    cases: list[tuple[str, str]], workers: int, rows: list[tuple[str, ...]], **asked: Any
 ) -> Iterator[Result]:
-    """All results, in order; each case in its rows."""
-    work = partial(run_case, sensing=sensing, friction=FRICTION, salt=salt)
+    """All results, in order; each case in its rows, as `run_case` is asked."""
+    work = partial(run_case, **asked)
     if workers == 1:
         for case, mine in zip(cases, rows, strict=True):
             yield from work(case, mine)
@@ -171,9 +171,10 @@ def run(quick: bool = False, **options: Any) -> list[Row]:
     cases = [(t, r) for t in [*presets, *map(str, range(first, first + count))] for r in robots]
     workers = options.get("workers") or len(os.sched_getaffinity(0))
     found = []
-    sensing, salt = options.get("sensing", "robot"), options.get("salt", 0)
+    asked = {"timing": "steady", "sensing": "robot", "salt": 0}
+    asked |= {name: options[name] for name in asked if name in options}
     each = [(rows[k % len(rows)],) if options.get("spread") else rows for k in range(len(cases))]
-    for result in results(cases, workers, each, sensing, salt):
+    for result in results(cases, workers, each, **asked):
         found.append(result)
         if options.get("show") and result.row and result.outcome != "success":
             print(
@@ -190,6 +191,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, help="random profiles")
     parser.add_argument("--rows", nargs="*", help=f"of: {', '.join(ROWS)}".replace("%", "%%"))
     parser.add_argument("--robots", nargs="*")
+    parser.add_argument("--timing", choices=("steady", "fast"))
     parser.add_argument("--sensing", choices=("ideal", "robot"))
     parser.add_argument("--terrains", nargs="*", help="presets; all by default")
     parser.add_argument("--salt", type=int, help="for other draws: tune on some, report others")

@@ -131,7 +131,8 @@ void bind_control(nb::module_& m) {
            "Torques (12,) before the motors' limits [Nm]; `target` is a row in the order of control.setpoint.")
         .def_prop_ro("forces", [](const Controller& c) { return numbers(c.forces()); }, nb::rv_policy::automatic)
         .def_prop_ro("places", [](const Controller& c) { return numbers(c.places()); }, nb::rv_policy::automatic)
-        .def_prop_ro("pitch_integral", &Controller::pitch_integral);
+        .def_prop_ro("pitch_integral", &Controller::pitch_integral)
+        .def_prop_ro("tips", &Controller::tips);
     m.def("available_torque", &available_torque, nb::arg("motor"), nb::arg("torque"), nb::arg("speed"),
           "The part of `torque` [Nm] that a motor can give while it turns at `speed` [rad/s].");
     m.def("limit_torques", [](const Robot& robot, const Fixed<12>& rates, const Fixed<12>& wanted) {

@@ -34,6 +34,7 @@ def test_native_controller_equals_plain(name: str) -> None:
     path = wheel_path(load_terrain("single-stair-036"), robot.wheel.radius)
     settings = ControllerSettings(solver="clarabel", beta=0.01)
     random = np.random.default_rng(7)
+    tipped = 0
     for _ in range(100):
         qpos, qvel, row = state_and_row(robot, random)
         plain = Controller(robot, path, 0.6, settings)
@@ -44,6 +45,9 @@ def test_native_controller_equals_plain(name: str) -> None:
             np.testing.assert_allclose(native.places, plain.places, atol=1e-9)
             np.testing.assert_allclose(torques, expected, atol=1e-5, rtol=1e-5)
             assert native.pitch_integral == pytest.approx(plain.pitch_integral)
+            assert native.tips == plain.tips
+        tipped += native.tips
+    assert 10 < tipped < 90
 
 
 def test_wrong_shapes_are_refused() -> None:

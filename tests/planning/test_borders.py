@@ -19,6 +19,7 @@ FLIGHTS = [
 ]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("robot", "friction", "height"), STEPS)
 def test_a_high_step_is_climbed(robot: str, friction: float, height: float) -> None:
     plan = sw.plan(stair(height), robot, friction, diagnose=False)
@@ -26,6 +27,7 @@ def test_a_high_step_is_climbed(robot: str, friction: float, height: float) -> N
     assert sw.rollout(plan).success
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("robot", "friction", "rise", "tread"), FLIGHTS)
 def test_three_high_steps_are_planned(
     robot: str, friction: float, rise: float, tread: float

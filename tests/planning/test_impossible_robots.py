@@ -29,6 +29,7 @@ def thick_thighs(hips: float) -> dict[str, Any]:
     return robot(thigh={"radius": 0.13}, hips={"front": [hips, 0.0], "rear": [-hips, 0.0]})
 
 
+@pytest.mark.slow
 def test_thighs_that_cannot_swing_to_the_ground():
     problem = sw.plan(LEVEL, thighs(2.0)).problem
     assert (problem.kind, problem.limit.quantity) == ("joint_limit", "thigh range")
@@ -39,6 +40,7 @@ def test_thighs_that_cannot_swing_to_the_ground():
     assert not sw.plan(LEVEL, thighs(2.0 - 0.95 * half)).feasible
 
 
+@pytest.mark.slow
 def test_legs_that_touch_each_other_however_they_stand():
     hips = sw.load_robot("a1_wheeled").hips.front[0]
     problem = sw.plan(LEVEL, thick_thighs(hips)).problem
@@ -48,6 +50,7 @@ def test_legs_that_touch_each_other_however_they_stand():
     assert not sw.plan(LEVEL, thick_thighs(0.5 * 0.98 * problem.limit.needed)).feasible
 
 
+@pytest.mark.slow
 def test_wheel_motors_of_a_seventh_of_what_is_needed():
     def weak(torque: float) -> dict[str, Any]:
         actuators = sw.load_robot("a1_wheeled").actuators.model_dump(mode="json")
@@ -59,6 +62,7 @@ def test_wheel_motors_of_a_seventh_of_what_is_needed():
     assert not sw.plan(CURB, weak(0.98 * problem.limit.needed)).feasible
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("quantity", "part", "values"),
     [

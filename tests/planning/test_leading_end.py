@@ -66,6 +66,7 @@ def test_a_refusal_is_that_of_the_end_that_comes_farther() -> None:
     assert refused.problem.limit is not None
 
 
+@pytest.mark.slow
 def test_a_refusal_tells_of_a_plan_with_the_other_end_in_front() -> None:
     refused = sw.plan(DROP, friction=0.4)
     bare = sw.plan(DROP, friction=0.4, diagnose=False)

@@ -88,6 +88,7 @@ def test_easy_terrain_is_planned(points, robot):
     assert certify(plan).passed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_friction_that_is_named_is_enough(robot):
     ramp = terrain([(-1.5, 0.0), (0.0, 0.0), (1.5, 1.05), (2.7, 1.05)])

@@ -63,6 +63,7 @@ def test_work_outside_a_race_is_always_wanted():
     still_wanted()
 
 
+@pytest.mark.slow
 def test_searches_are_shared_by_threads_that_add_to_them(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of 300 rounds 15 failed once: a dictionary that changes while it is iterated over."""
     monkeypatch.setattr(windows, "Search", lambda *_: object())

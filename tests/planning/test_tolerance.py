@@ -51,6 +51,7 @@ def test_each_tolerance_has_an_id_of_its_own() -> None:
     assert len({sw.plan(CURB, "a1_wheeled", tolerance=one).id for one in asked}) == 3
 
 
+@pytest.mark.slow
 def test_friction_alone_is_planned_for() -> None:
     usual = sw.plan(STAIRS, "a1_wheeled_x")
     firm = sw.plan(STAIRS, "a1_wheeled_x", tolerance={"friction": 0.2})
@@ -82,6 +83,7 @@ def test_friction_that_is_too_low_is_told_as_ever() -> None:
     assert plan.tolerance is not None
 
 
+@pytest.mark.slow
 def test_a_fast_plan_keeps_its_tolerance() -> None:
     plan = sw.plan(CURB, "a1_wheeled", timing="fast", tolerance={"height": 0.01})
     assert plan.feasible, plan.problem

@@ -82,6 +82,7 @@ def test_the_torque_that_is_named_is_enough_and_little_less_is_not():
     assert data["actuators"]["calf"]["torque"] < limit.needed
 
 
+@pytest.mark.slow
 def test_a_search_within_torques_leads_where_motors_have_most_to_spare():
     """Few of the paths that 9 Nm legs hold are smoothed into one that leaves them a reserve."""
     data = sw.load_robot("a1_wheeled").model_dump()
@@ -92,6 +93,7 @@ def test_a_search_within_torques_leads_where_motors_have_most_to_spare():
     assert sw.rollout(plan, controller={"sensing": "ideal"}).outcome == "success"
 
 
+@pytest.mark.slow
 def test_what_overloads_motors_is_repaired_where_no_path_within_torques_is_found():
     flight = StairParameters(kind="stair", rise=0.16, run=0.22, count=3)
     terrain, robot = generate(flight), sw.load_robot("go2w")

@@ -95,3 +95,20 @@ def test_wheels_that_push_a_wall_a_little_as_they_climb_tell_the_place() -> None
     for seed in (0, 1):
         run = sw.rollout(plan, seed=seed)
         assert run.outcome == "success", run.reason
+
+
+@pytest.mark.slow
+def test_front_wheels_thrown_off_a_wall_come_back_to_it() -> None:
+    """Its mass centre is 2 cm ahead of where it tips backward there."""
+    ground = [
+        (-1.6, 0.0), (0.0, 0.0), (0.1143, -0.0363), (0.5055, -0.0735), (0.9461, -0.0187),
+        (1.1272, -0.0672), (1.3906, 0.005), (1.7686, 0.0503), (2.2053, -0.0373), (2.5704, 0.0653),
+        (2.6896, 0.0243), (3.1123, -0.1083), (3.1123, -0.0216), (3.9645, 0.1984), (3.9645, 0.4311),
+        (4.1538, 0.4311), (4.2146, 0.7597), (4.5501, 0.7597), (4.5501, 0.6278), (4.6961, 0.6278),
+        (6.2961, 0.6278),
+    ]  # fmt: skip
+    weights = {"pitch": 0.336}
+    plan = sw.plan({"points": ground}, "d1", 0.504, weights=weights, timing="fast", diagnose=False)
+    for seed in (1, 2):
+        run = sw.rollout(plan, seed=seed)
+        assert run.outcome == "success", run.reason

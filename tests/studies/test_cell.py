@@ -49,6 +49,7 @@ def test_what_stops_the_robot_is_told(result: sw.StudyResult) -> None:
     assert np.isnan(float(here.margin_com))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("diagnose", "told"), [("all", [1, 1]), ("last", [0, 1]), ("none", [0, 0])]
 )

@@ -23,6 +23,7 @@ MAX_PITCH_INTEGRAL = 15.0  # rad/s^2 that the pitch integral may add
 # alone, the side that is to lift more may push more.
 EVEN = np.array([0.002, 0.02])
 MOST_UNEVEN = 0.8  # of what a pair carries: left less right
+TIPPING_PLACE = 0.05  # of the weight of forces along x, of a robot that tips
 
 
 def desired_wrench(
@@ -90,13 +91,16 @@ def force_cost(
     resting: Floats,
     previous: Floats,
     differences: tuple[Floats, Floats] | None = None,
+    place_counts: float = 1.0,
 ) -> tuple[Floats, Floats]:
     """Hessian H (8, 8) and gradient g (8,) of ``F' H F / 2 + g' F``, half the cost of eq 11.
 
     ``D' S D + alpha |F - F_rest|^2 + beta |F - F_prev|^2`` with ``D = A F - b_des``; the paper's
     cost has ``F_rest = 0``, and not the squares of what `differences` are from what they shall be.
+    Of forces along x `place_counts` of the weight counts.
     """
-    weights = np.array([settings.force_weight, settings.force_weight, settings.moment_weight])
+    force, moment = settings.force_weight, settings.moment_weight
+    weights = np.array([place_counts * force, force, moment])
     weighted = force_map.T * weights
     hessian = weighted @ force_map + (settings.alpha + settings.beta) * np.eye(8)
     gradient = -weighted @ desired - settings.alpha * resting - settings.beta * previous

@@ -25,6 +25,7 @@ from stairwright.terrain.wheel_path import WheelPath
 from . import balance, qp, rigid_body, rolling, tracking
 from .contact import locate, support, wheel_traction
 from .inertial_loads import friction_loads, inertial_loads
+from .lift_off import lift_off
 from .measurement import Measurement, measure
 from .motor_limits import MotorTorques, solve_within_motors
 from .setpoint import PITCH, Setpoint
@@ -72,6 +73,7 @@ class Controller:
         forces: (8,) last solution of the QP, per wheel tangential and normal [N].
         places: (4,) arc length of each wheel on the wheel-centre curve [m].
         pitch_integral: Pitch acceleration that the model does not know of [rad/s^2].
+        tips: Whether the robot tips: then its plan must not go on.
     """
 
     def __init__(
@@ -82,6 +84,7 @@ class Controller:
         self.forces = np.tile([0.0, robot.mass * GRAVITY / 4], 4)
         self.places = np.full(4, np.nan)
         self.pitch_integral = 0.0
+        self.tips = False
 
     def locate(self, state: Measurement) -> Floats:
         """Update and return the wheels' places (4,)."""
@@ -130,7 +133,10 @@ class Controller:
             [balance.leg_weight_torques(robot, state) + moving[:, :2], moving[:, 2]]
         )
         motors = MotorTorques.of(state, frames, points, held[:, 3], rest)
-        H, g = balance.force_cost(settings, A, desired, resting, self.forces, sides)
+        lifted = float(lift_off(state, self.path, self.places, target.pitch).max())
+        self.tips = lifted > 0.5
+        share = 1.0 + lifted * (balance.TIPPING_PLACE - 1.0)
+        H, g = balance.force_cost(settings, A, desired, resting, self.forces, sides, share)
         self.forces = solve_within_motors(
             partial(self._solved, friction=friction), H, g, motors, robot, joint_rates,
             settings.force_weight,

@@ -217,7 +217,8 @@ class Run:
     def _tick(self, moving: bool, qpos: Floats, qvel: Floats) -> None:
         """One control step with the numpy controller."""
         t = self.track
-        self.target[:] = self.follower.advance(self.places, moving, self.dt)
+        advances = moving and not self.controller.tips
+        self.target[:] = self.follower.advance(self.places, advances, self.dt)
         self.position = self.follower.position
         if self.settings.form == "paper" and moving and self.position < t.end - 1e-9:
             # Eq 15 follows a speed and no place: held back by the lead it would never catch up.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "inertial_loads.hpp"
+#include "lift_off.hpp"
 #include "measurement.hpp"
 #include "motor_limits.hpp"
 #include "stairwright/control/static_forces.hpp"
@@ -21,6 +22,7 @@ constexpr double kMaxPitchIntegral = 15.0;  // rad/s^2
 // with one wheel of a pair, and nothing else keeps the robot from rolling over. Yaw has the wheels' rates and tyres, too: on
 // upright faces, where a wheel lifts by its grip alone, the side that is to lift more may push more.
 constexpr Vec2 kEven = {0.002, 0.02};
+constexpr double kTippingPlace = 0.05;  // of the weight of forces along x, of a robot that tips
 constexpr double kMostUneven = 0.8;  // of what a pair carries: left less right
 
 using Supports = std::array<WheelSupport, 4>;
@@ -82,15 +84,16 @@ void ask_difference(BalanceQp& qp, int pair, double weight, Vec2 axis, const Sup
     }
 }
 
-// Cost of eq 11: wrench error, distance from the plan's static forces, change, unevenness of left and right.
+// Cost of eq 11: wrench error, distance from the plan's static forces, change, unevenness of left and right. Of forces along x
+// `share` of the weight counts.
 BalanceQp balance_qp(const Gains& gains, const std::array<Wrench, 8>& A, const Wrench& wanted, const Supports& supports,
-                     const Reference& target, const Forces& last, double uneven) {
+                     const Reference& target, const Forces& last, double uneven, double share) {
     BalanceQp qp;
-    const double S = gains.force_weight, M = gains.moment_weight;
-    const Wrench b = {S * wanted.x, S * wanted.z, M * wanted.moment};
+    const double S = gains.force_weight, Sx = share * S, M = gains.moment_weight;
+    const Wrench b = {Sx * wanted.x, S * wanted.z, M * wanted.moment};
     for (int i = 0; i < 8; ++i) {
         for (int j = 0; j <= i; ++j)
-            qp.H[i][j] = qp.H[j][i] = S * A[i].x * A[j].x + S * A[i].z * A[j].z + M * A[i].moment * A[j].moment;
+            qp.H[i][j] = qp.H[j][i] = Sx * A[i].x * A[j].x + S * A[i].z * A[j].z + M * A[i].moment * A[j].moment;
         qp.H[i][i] += gains.alpha + gains.beta;
         const Vec2 f = 0.5 * target.forces[i / 4];
         const Vec2 n = supports[i / 2].normal;
@@ -127,7 +130,7 @@ Torques Controller::step(const RobotState& state, const Reference& target) {
 }
 
 Command Controller::command(const RobotState& state, const Reference& target,
-                            const std::optional<std::array<double, 4>>& places) {
+                            const std::optional<std::array<double, 4>>& places, const std::array<Vec2, 2>& ground) {
     const Gains& g = gains_;
     const Measurement m = measure(robot_, mass_, state);
     const double usable = std::max(g.friction_share, target.friction_share) * friction_;
@@ -150,7 +153,9 @@ Command Controller::command(const RobotState& state, const Reference& target,
             motors[i].thigh.rest += load.thigh, motors[i].calf.rest += load.calf, motors[i].wheel.rest += load.wheel;
         moving_[3 * i] = moved.thigh, moving_[3 * i + 1] = moved.calf, moving_[3 * i + 2] = moved.wheel;
     }
-    const BalanceQp qp = balance_qp(g, force_map(m, supports), wanted, supports, target, forces_, uneven);
+    lift_off_ = lift_off(m, path_, places_, ground, target.value.pitch);
+    const double place_counts = std::lerp(1.0, kTippingPlace, std::max(lift_off_[kFront], lift_off_[kRear]));
+    const BalanceQp qp = balance_qp(g, force_map(m, supports), wanted, supports, target, forces_, uneven, place_counts);
     solve_within_motors(qp, motors, robot_, state.joint_rates, g.force_weight, forces_);
 
     // Torques: forces, weight and inertia, tracking (eq 27), rolling (eqs 14-16) with the traction fed forward.

@@ -15,6 +15,8 @@ constexpr double kHurry = 1.5;            // how much faster than planned it may
 constexpr double kHangingLead = 0.005;    // m
 constexpr double kRateAcceleration = 1.0; // m/s^2 of the plan's rate, where the plan itself asks for no more
 
+constexpr double kBraking = 2.0;          // of what the plan brakes by: a rate that is above the plan's must come down to it
+
 using Row = std::array<double, kReferenceWidth>;
 
 double mix(double a, double b, double share) { return a + share * (b - a); }
@@ -63,8 +65,9 @@ const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool
         else
             rate = allowed * std::min(kHurry, 1.0 - lag_ / maximum_lead_ * (kHurry - 1.0));
     }
-    const double reach = std::max(kRateAcceleration, planned_acceleration(now)) * dt;
-    rate = std::min(std::max(rate, rate_ - 4 * reach), rate_ + reach);
+    const double planned = planned_acceleration(now);
+    const double faster = std::max(kRateAcceleration, planned), slower = std::max(4 * faster, kBraking * -planned);
+    rate = std::min(std::max(rate, rate_ - slower * dt), rate_ + faster * dt);
     const double end = start_ + step_ * static_cast<double>(rows_.size() - 1);
     const double position = std::min(std::max(position_ + rate * dt, start_), end);
     rate_ = (position - position_) / dt;

@@ -59,7 +59,8 @@ const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool 
     if (seen.places && on_plan) early_face_.watch_edge(follower_.target(), controller_.path(), *seen.places, dt);
     std::array<double, 4> places = controller_.places();
     for (std::size_t i = 0; i < 4; ++i) places[i] -= early_face_.ahead()[i / 2] - (i / 2 == kRear ? legs_apart_.back() : 0.0);
-    const control::Reference& drawn = follower_.advance(places, on_plan && !early_face_.waits(), dt, hangs(seen.ahead));
+    const bool advances = on_plan && !early_face_.waits() && !controller_.tips();
+    const control::Reference& drawn = follower_.advance(places, advances, dt, hangs(seen.ahead));
     if (!seen.places) return drawn;
     if (!prepared() && plan_change_.over()) return prepare(drawn, seen, dt);
     adapted_ = plan_change_.step(drawn, dt);
@@ -94,7 +95,7 @@ void PlanExecutor::keep_legs_apart(const control::Reference& fitted, const std::
 
 control::Command PlanExecutor::step(const Perceived& seen, bool moving, double time, double dt) {
     asked_ = next_target(seen, moving, time, dt);
-    return controller_.command(seen.state, asked_, seen.places);
+    return controller_.command(seen.state, asked_, seen.places, seen.ground);
 }
 
 void PlanExecutor::begin_from(const Perceived& seen) {

@@ -4,6 +4,7 @@
 // Wheels and legs are in the order FL, FR, RL, RR; pairs are front, rear. SI units; angles about +y.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -87,9 +88,9 @@ class Controller {
     Controller(Robot robot, WheelPath path, double friction, const Gains& gains);
 
     // What the drives are to do. `places` of the wheels on the wheel-centre curve [m] are those nearest to where
-    // the state puts the wheels, unless they are given.
-    Command command(const RobotState& state, const Reference& target,
-                    const std::optional<std::array<double, 4>>& places = {});
+    // the state puts the wheels, unless they are given; `ground` is by how much that of each pair is off the curve [m].
+    Command command(const RobotState& state, const Reference& target, const std::optional<std::array<double, 4>>& places = {},
+                    const std::array<Vec2, 2>& ground = {});
     // The torques of that command at the same state, before the motors' limits.
     Torques step(const RobotState& state, const Reference& target);
 
@@ -113,6 +114,8 @@ class Controller {
     const Torques& moving() const { return moving_; }
     // Pitch acceleration that the model does not know of [rad/s^2].
     double pitch_integral() const { return pitch_integral_; }
+    // Whether the robot tips, as of the last command: then its plan must not go on.
+    bool tips() const { return std::max(lift_off_[0], lift_off_[1]) > 0.5; }
 
   private:
     Robot robot_;
@@ -123,6 +126,7 @@ class Controller {
     std::array<double, 4> places_;
     Torques moving_{};
     double pitch_integral_ = 0.0;
+    std::array<double, 2> lift_off_{};  // how far each pair has lifted off the ground, from 0 to 1
 };
 
 // What a motor that turns at `speed` can give of `torque`: speed limits only torque in the direction of motion.

@@ -1,0 +1,16 @@
+// Whether the robot tips: a pair of wheels hangs above the ground that is to carry it, and the trunk leans that way.
+//
+// On its other pair alone the robot is an inverted pendulum on wheels. What rights it is a force along the ground towards
+// the side that it falls to, so its place must give way, and the plan must not go on meanwhile.
+#pragma once
+
+#include "measurement.hpp"
+
+namespace stairwright::control {
+
+// How far each pair, front and rear, has lifted off: from 0 (not at all) to 1. `places` of the wheels on the wheel-centre
+// curve [m], `ground` by how much each pair's ground is off it [m], `pitch` as it is to be [rad].
+std::array<double, 2> lift_off(const Measurement& m, const WheelPath& path, const std::array<double, 4>& places,
+                               const std::array<Vec2, 2>& ground, double pitch);
+
+}  // namespace stairwright::control
