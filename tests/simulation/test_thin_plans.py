@@ -136,8 +136,8 @@ def test_rear_wheels_do_not_stand_in_a_corner_while_the_plan_climbs(sensing):
     assert sw.rollout(plan, controller={"sensing": sensing}).outcome == "success"
 
 
-def ramp(slope: float) -> dict[str, list[tuple[float, float]]]:
-    return {"points": [(-1.5, 0.0), (0.0, 0.0), (1.5, 1.5 * slope), (3.5, 1.5 * slope)]}
+def ramp(slope: float, run: float = 1.5) -> dict[str, list[tuple[float, float]]]:
+    return {"points": [(-1.5, 0.0), (0.0, 0.0), (run, run * slope), (run + 2.0, run * slope)]}
 
 
 @pytest.mark.slow
@@ -145,6 +145,17 @@ def ramp(slope: float) -> dict[str, list[tuple[float, float]]]:
 def test_a_ramp_that_takes_almost_all_friction_is_climbed(timing):
     plan = sw.plan(ramp(0.35 * 0.979), "d1", 0.35, timing=timing)
     assert sw.rollout(plan).outcome == "success"
+
+
+@pytest.mark.slow
+def test_the_longer_a_ramp_the_more_friction_it_must_leave():
+    """A robot is a centimetre off per metre up it; one like this slid back from its end."""
+    plan = sw.plan(ramp(0.3 * 0.965, run=3.8), "anymal_wheels", 0.3)
+    needed = plan.problem.limit.needed
+    assert plan.problem.limit.quantity == "friction"
+    assert 0.3 < needed < 0.335
+    enough = sw.plan(ramp(0.3 * 0.965, run=3.8), "anymal_wheels", needed)
+    assert [sw.rollout(enough, seed=seed).outcome for seed in range(2)] == 2 * ["success"]
 
 
 @pytest.mark.slow

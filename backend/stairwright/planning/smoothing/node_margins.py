@@ -23,6 +23,10 @@ LEAST_COM = 0.001  # m; no robot's centre of mass is known better
 # That share of the friction must be left everywhere: rolling up takes more than standing there. By
 # its own sensors a robot failed on a third of ramps that leave 1 %, and on all that leave 0.05 %.
 LEAST_GRIP = 0.02
+# On a slope with less than that left wheels slip a little, always the same way, and a robot that
+# knows its place by its wheels is a centimetre off per metre. For each beyond some [m] so much must
+# be left [1/m].
+STEEP_GRIP, FREE_SLOPE, GRIP_PER_METRE = 0.1, 0.7, 0.05
 # Where the CoM has less room than this [m], that share of the friction must be left: else a wheel
 # that slides a little tips the robot.
 THIN_COM, FIRM_GRIP = 0.006, 0.08
@@ -42,6 +46,7 @@ class NodeMargins:
         friction: What there is.
         torque_limits: (2, 3) front and rear: of thigh, calf and wheel motors [Nm].
         legs: Length of the front legs [m].
+        wheels: (n, 2) places of the pairs on the wheel-centre curve [m].
         q: (n, 4) planar joints.
         com: (n, 2) centre of mass.
         trunk_clearance, link_clearance: (n,) distances from the terrain.
@@ -61,6 +66,7 @@ class NodeMargins:
     friction: float
     torque_limits: Floats
     legs: float
+    wheels: Floats
     q: Floats
     com: Floats
     trunk_clearance: Floats
@@ -96,11 +102,23 @@ class NodeMargins:
         most: Floats = shares.max(axis=(1, 2))
         return most
 
+    @property
+    def _grip_of_slopes(self) -> Floats:
+        """(n,) share of the friction that must be left where little is over a long way."""
+        steep = self.friction_needed > (1.0 - STEEP_GRIP) * self.friction
+        rolled = np.abs(np.diff(self.wheels, axis=0)).mean(axis=1)
+        share = np.zeros(len(steep))
+        edges = np.flatnonzero(np.diff(steep, prepend=False, append=False))
+        for begin, end in edges.reshape(-1, 2):
+            beyond = max(rolled[begin : end - 1].sum() - FREE_SLOPE, 0.0)
+            share[begin:end] = min(GRIP_PER_METRE * beyond, STEEP_GRIP)
+        return share
+
     @cached_property
     def _slacks(self) -> Floats:
         """(10, n) margins, each against its bound, in comparable sizes."""
 
-        def spare_friction(least: float) -> Floats:
+        def spare_friction(least: float | Floats) -> Floats:
             return 0.2 * ((1.0 - least) * self.friction - self.friction_needed)
 
         carried = np.linalg.norm(self.forces, axis=2)
@@ -113,7 +131,7 @@ class NodeMargins:
                 0.2 * self.joint_slack,
                 self.firm_com_margin - LEAST_COM,
                 self.strayed_com_margin,
-                spare_friction(LEAST_GRIP),
+                spare_friction(np.maximum(LEAST_GRIP, self._grip_of_slopes)),
                 np.maximum(self.firm_com_margin - THIN_COM, spare_friction(FIRM_GRIP)),
                 np.maximum(np.minimum(lean, spare_friction(STANDING_GRIP)), light),
                 *(0.3 * (FIRM_TORQUE - self.torque_shares(motor)) for motor in JOINTS),

@@ -99,17 +99,14 @@ def refine(
     laid = _core.NodeSpacing(*spacing)
     nodes, margins = q.refine_problem.refine(both, np.hstack([s, body]), laid, held, as_drawn)
     still_wanted()
-    return Refined(
-        np.ascontiguousarray(nodes[:, :2]),
-        np.ascontiguousarray(nodes[:, 2:]),
-        _named(q, margins),
-    )
+    wheels = np.ascontiguousarray(nodes[:, :2])
+    return Refined(wheels, np.ascontiguousarray(nodes[:, 2:]), _named(q, wheels, margins))
 
 
 def node_margins(q: PathProblem, s: Floats, body: Floats) -> NodeMargins:
     """What poses are worth: arc lengths (n, 2) and trunk poses (n, 3)."""
-    return _named(q, q.refine_problem.margins(np.hstack([s, body])))
+    return _named(q, s, q.refine_problem.margins(np.hstack([s, body])))
 
 
-def _named(q: PathProblem, margins: dict[str, Floats]) -> NodeMargins:
-    return NodeMargins(q.friction, q.robot.torque_limits, q.robot.legs[0].reach, **margins)
+def _named(q: PathProblem, s: Floats, margins: dict[str, Floats]) -> NodeMargins:
+    return NodeMargins(q.friction, q.robot.torque_limits, q.robot.legs[0].reach, s, **margins)
