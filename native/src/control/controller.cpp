@@ -130,7 +130,7 @@ Torques Controller::step(const RobotState& state, const Reference& target) {
 }
 
 Command Controller::command(const RobotState& state, const Reference& target,
-                            const std::optional<std::array<double, 4>>& places, const std::array<Vec2, 2>& ground) {
+                            const std::optional<std::array<double, 4>>& places, const std::array<bool, 2>& feels_ground) {
     const Gains& g = gains_;
     const Measurement m = measure(robot_, mass_, state);
     const double usable = std::max(g.friction_share, target.friction_share) * friction_;
@@ -153,7 +153,7 @@ Command Controller::command(const RobotState& state, const Reference& target,
             motors[i].thigh.rest += load.thigh, motors[i].calf.rest += load.calf, motors[i].wheel.rest += load.wheel;
         moving_[3 * i] = moved.thigh, moving_[3 * i + 1] = moved.calf, moving_[3 * i + 2] = moved.wheel;
     }
-    lift_off_ = lift_off(m, path_, places_, ground, target.value.pitch);
+    lift_off_ = lift_off(m, path_, places_, feels_ground, target.value.pitch);
     const double place_counts = std::lerp(1.0, kTippingPlace, std::max(lift_off_[kFront], lift_off_[kRear]));
     const BalanceQp qp = balance_qp(g, force_map(m, supports), wanted, supports, target, forces_, uneven, place_counts);
     solve_within_motors(qp, motors, robot_, state.joint_rates, g.force_weight, forces_);

@@ -26,6 +26,7 @@ Perceived perceived(const estimation::Estimate& estimate, const estimation::Read
     Perceived out;
     out.state = ahead(estimate.state, late), out.places = estimate.places, out.ground = estimate.ground;
     out.ahead = {estimate.searching, estimate.on_tread, estimate.nearing, estimate.hanging, estimate.found};
+    for (int i = 0; i < 4; ++i) out.feels_ground[i / 2] |= estimate.touching[i];
     out.felt = estimate.felt, out.used_grip = estimate.used_grip;
     out.lost = estimate.lost, out.map_error = estimate.map_error;
     out.joints = now.joints, out.joint_rates = now.joint_rates;

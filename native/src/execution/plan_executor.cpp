@@ -95,7 +95,7 @@ void PlanExecutor::keep_legs_apart(const control::Reference& fitted, const std::
 
 control::Command PlanExecutor::step(const Perceived& seen, bool moving, double time, double dt) {
     asked_ = next_target(seen, moving, time, dt);
-    return controller_.command(seen.state, asked_, seen.places, seen.ground);
+    return controller_.command(seen.state, asked_, seen.places, seen.feels_ground);
 }
 
 void PlanExecutor::begin_from(const Perceived& seen) {

@@ -88,9 +88,9 @@ class Controller {
     Controller(Robot robot, WheelPath path, double friction, const Gains& gains);
 
     // What the drives are to do. `places` of the wheels on the wheel-centre curve [m] are those nearest to where
-    // the state puts the wheels, unless they are given; `ground` is by how much that of each pair is off the curve [m].
+    // the state puts the wheels, unless they are given; `feels_ground` are pairs that do not hang in the air for sure.
     Command command(const RobotState& state, const Reference& target, const std::optional<std::array<double, 4>>& places = {},
-                    const std::array<Vec2, 2>& ground = {});
+                    const std::array<bool, 2>& feels_ground = {});
     // The torques of that command at the same state, before the motors' limits.
     Torques step(const RobotState& state, const Reference& target);
 

@@ -12,6 +12,7 @@ struct Perceived {
     control::RobotState state;
     std::optional<std::array<double, 4>> places;  // of the wheels on the map, where they are known by themselves
     std::array<Vec2, 2> ground{};                 // how the pairs' ground differs, see estimation::Estimate
+    std::array<bool, 2> feels_ground{};           // of each pair, a wheel; none where nothing is felt
     control::Ahead ahead{};
     std::optional<std::array<Vec2, 4>> felt;      // forces of the ground on the wheels, see estimation::Estimate
     std::array<double, 4> used_grip{};            // of the wheels, see estimation::Estimate
