@@ -133,7 +133,7 @@ class Controller:
             [balance.leg_weight_torques(robot, state) + moving[:, :2], moving[:, 2]]
         )
         motors = MotorTorques.of(state, frames, points, held[:, 3], rest)
-        lifted = float(lift_off(state, self.path, self.places, target.pitch).max())
+        lifted = lift_off(state, self.path, self.places, target.pitch)
         self.tips = lifted > 0.5
         share = 1.0 + lifted * (balance.TIPPING_PLACE - 1.0)
         H, g = balance.force_cost(settings, A, desired, resting, self.forces, sides, share)

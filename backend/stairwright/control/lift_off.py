@@ -18,16 +18,14 @@ TOUCHES, LIFTED = 0.004, 0.010  # m above the ground
 FRONT, REAR = 0, 1
 
 
-def lift_off(state: Measurement, path: WheelPath, places: Floats, pitch: float) -> Floats:
-    """How far each pair, front and rear, has lifted off: (2,) from 0 (not at all) to 1.
+def lift_off(state: Measurement, path: WheelPath, places: Floats, pitch: float) -> float:
+    """How far a pair has lifted off: from 0 (not at all) to 1.
 
     `places` (4,) of the wheels on the wheel-centre curve [m]; `pitch` as it is to be [rad].
     """
-    out = np.zeros(2)
     # Nose up, or down: the pair at the other end lifts nothing off.
     pair = FRONT if state.pitch < pitch else REAR
     mine = slice(2 * pair, 2 * pair + 2)
     off = state.wheels[mine] - path.centres(places[mine])
     above = float(np.mean(np.sum(off * path.normals(places[mine]), axis=1)))
-    out[pair] = np.clip((above - TOUCHES) / (LIFTED - TOUCHES), 0.0, 1.0)
-    return out
+    return min(max((above - TOUCHES) / (LIFTED - TOUCHES), 0.0), 1.0)

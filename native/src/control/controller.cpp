@@ -154,7 +154,7 @@ Command Controller::command(const RobotState& state, const Reference& target,
         moving_[3 * i] = moved.thigh, moving_[3 * i + 1] = moved.calf, moving_[3 * i + 2] = moved.wheel;
     }
     lift_off_ = lift_off(m, path_, places_, feels_ground, target.value.pitch);
-    const double place_counts = std::lerp(1.0, kTippingPlace, std::max(lift_off_[kFront], lift_off_[kRear]));
+    const double place_counts = std::lerp(1.0, kTippingPlace, lift_off_);
     const BalanceQp qp = balance_qp(g, force_map(m, supports), wanted, supports, target, forces_, uneven, place_counts);
     solve_within_motors(qp, motors, robot_, state.joint_rates, g.force_weight, forces_);
 

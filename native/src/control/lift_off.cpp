@@ -12,17 +12,15 @@ constexpr double kTouches = 0.004, kLifted = 0.010;  // m above the ground
 
 }  // namespace
 
-std::array<double, 2> lift_off(const Measurement& m, const WheelPath& path, const std::array<double, 4>& places,
-                               const std::array<bool, 2>& feels_ground, double pitch) {
-    std::array<double, 2> out{};
+double lift_off(const Measurement& m, const WheelPath& path, const std::array<double, 4>& places,
+                const std::array<bool, 2>& feels_ground, double pitch) {
     // Nose up, or down: the pair at the other end lifts nothing off.
     const int pair = m.pitch < pitch ? kFront : kRear;
-    if (feels_ground[pair]) return out;
+    if (feels_ground[pair]) return 0.0;
     double above = 0.0;
     for (int i = 2 * pair; i < 2 * pair + 2; ++i)
         above += 0.5 * dot(m.legs[i].wheel - path.centre(places[i]), path.normal(places[i]));
-    out[pair] = std::clamp((above - kTouches) / (kLifted - kTouches), 0.0, 1.0);
-    return out;
+    return std::clamp((above - kTouches) / (kLifted - kTouches), 0.0, 1.0);
 }
 
 }  // namespace stairwright::control

@@ -8,9 +8,9 @@
 
 namespace stairwright::control {
 
-// How far each pair, front and rear, has lifted off: from 0 (not at all) to 1. `places` of the wheels on the wheel-centre
+// How far a pair has lifted off: from 0 (not at all) to 1. `places` of the wheels on the wheel-centre
 // curve [m], `pitch` as it is to be [rad]. Of pairs that feel the ground it is the map that is wrong.
-std::array<double, 2> lift_off(const Measurement& m, const WheelPath& path, const std::array<double, 4>& places,
-                               const std::array<bool, 2>& feels_ground, double pitch);
+double lift_off(const Measurement& m, const WheelPath& path, const std::array<double, 4>& places,
+                const std::array<bool, 2>& feels_ground, double pitch);
 
 }  // namespace stairwright::control

@@ -4,7 +4,6 @@
 // Wheels and legs are in the order FL, FR, RL, RR; pairs are front, rear. SI units; angles about +y.
 #pragma once
 
-#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -115,7 +114,7 @@ class Controller {
     // Pitch acceleration that the model does not know of [rad/s^2].
     double pitch_integral() const { return pitch_integral_; }
     // Whether the robot tips, as of the last command: then its plan must not go on.
-    bool tips() const { return std::max(lift_off_[0], lift_off_[1]) > 0.5; }
+    bool tips() const { return lift_off_ > 0.5; }
 
   private:
     Robot robot_;
@@ -126,7 +125,7 @@ class Controller {
     std::array<double, 4> places_;
     Torques moving_{};
     double pitch_integral_ = 0.0;
-    std::array<double, 2> lift_off_{};  // how far each pair has lifted off the ground, from 0 to 1
+    double lift_off_ = 0.0;  // how far a pair has lifted off the ground, from 0 to 1
 };
 
 // What a motor that turns at `speed` can give of `torque`: speed limits only torque in the direction of motion.
