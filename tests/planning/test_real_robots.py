@@ -13,12 +13,8 @@ from stairwright.terrain.stairs import stair
 REAL = ("go2w", "b2w", "m20", "d1", "anymal_wheels")
 
 
-HEAVY = {"b2w", "m20", "anymal_wheels"}
-
-
-@pytest.mark.parametrize(
-    "robot", [pytest.param(name, marks=[pytest.mark.slow] * (name in HEAVY)) for name in REAL]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("robot", REAL)
 def test_a_stair_is_climbed(robot):
     plan = sw.plan("single-stair-030", robot)
     assert plan.feasible

@@ -94,6 +94,7 @@ def test_a_trunk_that_cannot_stand_there_is_told_where_it_can(end):
     assert moved.problem is None or moved.problem.kind != end
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", METHODS)
 def test_calves_thicker_than_their_wheels_are_refused_for_that(method):
     robot = sw.load_robot("a1_wheeled").model_dump(mode="json")

@@ -14,6 +14,7 @@ STEP_DOWN = [(-1.3, 0.0), (0.0, 0.0), (0.0, -0.155), (1.3, -0.155)]
 FLIGHT_DOWN = stair(0.16, 0.4, 3, direction="down").points
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("robot", "points"), [("a1_wheeled", STEP_DOWN), ("d1", FLIGHT_DOWN)])
 def test_it_has_more_margin_and_is_certified(
     robot: str, points: list[tuple[float, float]], monkeypatch: pytest.MonkeyPatch
@@ -25,6 +26,7 @@ def test_it_has_more_margin_and_is_certified(
     assert least_margins(steady)["com"] > 1.5 * least_margins(usual)["com"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("robot", "height", "friction"), [("d1", 0.6, 0.4), ("d1", 0.6, 0.5)])
 def test_its_trunk_has_more_room(
     robot: str, height: float, friction: float, monkeypatch: pytest.MonkeyPatch

@@ -62,6 +62,7 @@ def test_climbs_a_stair(climbed: Rollout) -> None:
     assert metrics.progress == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_what_heats_the_motors_is_told_against_what_they_hold(climbed: Rollout) -> None:
     """As a share of the continuous torque that the robot's file states, of the motor nearest it."""
     assert climbed.metrics.torque_rms is not None
@@ -140,6 +141,7 @@ def test_noise_and_delay_are_the_same_for_the_compiled_and_the_plain_loop(shorte
     assert np.abs(plain.series.q[:n] - fast.series.q[:n]).max() < 0.02
 
 
+@pytest.mark.slow
 def test_speed_setting_is_kept(flat: Plan) -> None:
     slow, fast = (rollout(flat, controller={"speed": v}) for v in (0.1, 0.3))
     progress = np.array(fast.series.progress)

@@ -28,6 +28,7 @@ def test_ups_and_downs_are_driven_at_high_friction(friction, rises, treads):
     assert run.outcome == "success", run.reason
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("armature", [0.0, 3e-4])
 def test_wheels_with_light_rotors_do_not_swing(armature):
     robot = sw.load_robot("a1_wheeled").model_dump()

@@ -48,6 +48,7 @@ def test_a_shifted_mass_centre_is_found_by_a_nod(shift: Place) -> None:
     assert found[2] == (pytest.approx(shift[0], abs=0.002), pytest.approx(shift[1], abs=0.005))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["m20", "anymal_wheels"])
 def test_legs_that_swing_together_are_no_shift(name: str) -> None:
     """Knees that bend both ways move along with the nod: what moves them is no force of weight."""

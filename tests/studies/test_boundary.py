@@ -157,6 +157,7 @@ def test_an_outcome_that_changes_more_than_once_is_found_out(tmp_path: Path) -> 
     assert np.allclose(high.boundary, 0.30)
 
 
+@pytest.mark.slow
 def test_rows_without_a_border(tmp_path: Path) -> None:
     store, engine = _filled(_three(), lambda *_: False, tmp_path / "a.zarr")
     data = border_dataset(store)

@@ -124,6 +124,7 @@ def test_however_hard_it_is_driven_the_certificate_holds(reckless: pytest.Monkey
     assert plan.certificate.passed
 
 
+@pytest.mark.slow
 def test_where_places_are_not_enough_all_is_slowed_down(reckless: pytest.MonkeyPatch) -> None:
     in_places = sw.plan("three-stairs-up", "a1_wheeled_x", timing="fast")
     reckless.setattr(timing, "_LOCAL", 0)
