@@ -110,10 +110,7 @@ void Estimator::put_back(int i, const Error& along, double excess, Error& error)
 void Estimator::measure_rolling(int i, const CurveMatch& on, const Readings& readings, const WheelPlace& place, double dt, Error& error) {
     const WheelState& w = wheels_[i];
     const Rotation R = rotation();
-    const double side = i % 2 == 0 ? robot_.half_track : -robot_.half_track;
-    const Vec3 arm = {w.place.x, side, w.place.z}, spin = cross3(rate_, arm);
-    const Vec3 own = times(R, {spin[0] + w.rate.x, spin[1], spin[2] + w.rate.z});
-    const Vec3 speed = {velocity_[0] + own[0], velocity_[1] + own[1], velocity_[2] + own[2]};
+    const Vec3 arm = arm_of(i), speed = velocity_of(i);
     const Vec3 axis = {R[0][1], R[1][1], R[2][1]};
     const Vec2 n = on.point.normal;
     Vec3 t = {n.z, 0.0, -n.x};

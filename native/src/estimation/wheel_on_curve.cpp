@@ -26,11 +26,19 @@ constexpr double kLeap = 1e-3;            // m from where the wheel has rolled
 
 }  // namespace
 
+Estimator::Vec3 Estimator::arm_of(int i) const {
+    return {wheels_[i].place.x, i % 2 == 0 ? robot_.half_track : -robot_.half_track, wheels_[i].place.z};
+}
+
+Estimator::Vec3 Estimator::velocity_of(int i) const {
+    const WheelState& w = wheels_[i];
+    const Vec3 spin = cross3(rate_, arm_of(i)), own = times(rotation(), {spin[0] + w.rate.x, spin[1], spin[2] + w.rate.z});
+    return {velocity_[0] + own[0], velocity_[1] + own[1], velocity_[2] + own[2]};
+}
+
 // The rows are those of d(R f) = e x R f.
 Estimator::WheelPlace Estimator::place_of(int i) const {
-    const WheelState& w = wheels_[i];
-    const double side = i % 2 == 0 ? robot_.half_track : -robot_.half_track;
-    const Vec3 arm = times(rotation(), {w.place.x, side, w.place.z});
+    const Vec3 arm = times(rotation(), arm_of(i));
     const std::size_t own = i / 2 == 0 ? kFrontOffset : kRearOffset;
     WheelPlace place;
     place.centre = place_ + offset_[i / 2] + Vec2{arm[0], arm[2]};
@@ -49,9 +57,8 @@ WheelBelief Estimator::believed(int i, const WheelPlace& place, double dt) {
     const double least = noise_.place * noise_.place;
     belief.spread.xx += least, belief.spread.zz += least;
 
-    const Vec3 arm = {w.place.x, i % 2 == 0 ? robot_.half_track : -robot_.half_track, w.place.z}, spin = cross3(rate_, arm);
-    const Vec3 own = times(rotation(), {spin[0] + w.rate.x, spin[1], spin[2] + w.rate.z});
-    const Vec2 moves = {velocity_[0] + own[0], velocity_[2] + own[2]};
+    const Vec3 speed = velocity_of(i);
+    const Vec2 moves = {speed[0], speed[2]};
     w.velocity += dt / (kVelocityTime + dt) * (moves - w.velocity);
     w.velocity_lag += dt / (kVelocityTime + dt) * (moves - w.velocity - w.velocity_lag);
 

@@ -172,6 +172,8 @@ class Estimator {
     void see_legs(const Readings& readings, double dt);
     void feel_ground(const std::array<WheelForce, 4>& told, const Readings& readings, double dt);
     void measure(int wheel, const Readings& readings, double dt);
+    Vec3 arm_of(int wheel) const;       // of its centre, in the trunk frame [m]
+    Vec3 velocity_of(int wheel) const;  // of its centre, in the world [m/s]
     WheelPlace place_of(int wheel) const;
     WheelBelief believed(int wheel, const WheelPlace& place, double dt);
     void doubt_low_edges(WheelState& wheel, WheelBelief& belief) const;
