@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from stairwright.errors import InputError
 from stairwright.robot import kinematics
 from stairwright.robot.importing.read import read
 from stairwright.robot.importing.upload import Upload
+from stairwright.robot.turning import Facing, turned
 from stairwright.simulation.original import Original, build_original, read_original
 from stairwright.simulation.original_physics import Mirror
 from tests.robot.importing.files import LEGS, Design, LegQuirks
@@ -38,20 +40,23 @@ def robot(design_is_odd: bool, form: str) -> tuple[str, sw.Robot]:
     return as_read(write(ODD if design_is_odd else Design()))
 
 
-def built(text: str, machine: sw.Robot) -> Original:
-    upload, reading = read_original(text, machine)
-    return build_original(upload, reading, machine, sw.load_terrain(CURB), 0.6)
+def built(text: str, machine: sw.Robot, facing: Facing = "forward") -> Original:
+    upload, reading = read_original(text, machine, facing)
+    return build_original(upload, reading, machine, sw.load_terrain(CURB), 0.6, facing)
 
 
-def mirror(odd: bool, form: str) -> tuple[Mirror, sw.Robot]:
+def mirror(odd: bool, form: str, facing: Facing = "forward") -> tuple[Mirror, sw.Robot]:
     text, machine = robot(odd, form)
-    return Mirror(built(text, machine)), machine
+    if facing == "backward":
+        machine = turned(machine)
+    return Mirror(built(text, machine, facing)), machine
 
 
+@pytest.mark.parametrize("facing", get_args(Facing))
 @pytest.mark.parametrize("form", ["mjcf", "urdf"])
 @pytest.mark.parametrize("odd", [False, True])
-def test_a_state_reads_in_our_layout_as_it_was_placed(odd: bool, form: str) -> None:
-    seen, machine = mirror(odd, form)
+def test_a_state_reads_in_our_layout_as_it_was_placed(odd: bool, form: str, facing: Facing) -> None:
+    seen, machine = mirror(odd, form, facing)
     rng = np.random.default_rng(3)
     limits = machine.joints.front
     pitch = -0.4
@@ -69,12 +74,13 @@ def test_a_state_reads_in_our_layout_as_it_was_placed(odd: bool, form: str) -> N
         np.testing.assert_allclose(place[[0, 2]], frames.wheels[k // 2], atol=1e-9)
 
 
+@pytest.mark.parametrize("facing", get_args(Facing))
 @pytest.mark.parametrize("odd", [False, True])
-def test_speeds_are_those_of_the_positions(odd: bool) -> None:
+def test_speeds_are_those_of_the_positions(odd: bool, facing: Facing) -> None:
     """Velocities read so are the differences of positions read so."""
     import mujoco
 
-    seen, machine = mirror(odd, "mjcf")
+    seen, machine = mirror(odd, "mjcf", facing)
     seen.qpos[2], seen.qpos[3] = 2.0, 1.0
     middle = [sum(pair) / 2 for pair in (machine.joints.front.thigh, machine.joints.front.calf)]
     seen.qpos[7:] = [*middle, 0.0] * 4
@@ -99,6 +105,14 @@ def test_masses_and_shapes_are_the_files() -> None:
     assert seen.original.model.body_mass.sum() == pytest.approx(machine.mass)
     assert {"trunk", "FL_thigh", "RR_wheel", "terrain_0"} <= set(seen.original.labels)
     assert seen.original.model.nu == 12 + 4
+
+
+def test_urdf_gets_the_rotors_that_it_has_no_place_for() -> None:
+    seen, machine = mirror(True, "urdf")
+    own = seen.original
+    rotors = [motor.armature for motor in machine.motors]
+    assert min(rotors) > 0.0
+    np.testing.assert_allclose(own.model.dof_armature[own.speeds], rotors)
 
 
 def test_balls_in_the_place_of_wheels_touch_the_terrain_and_each_other() -> None:
@@ -143,6 +157,25 @@ def test_shapes_that_overlap_as_it_stands_do_not_collide() -> None:
     assert seen.data.ncon == 0
 
 
+def test_a_knee_bends_as_far_as_its_range_says() -> None:
+    """Hips are drawn so large that wheels meet them a little before, whatever the thighs do."""
+    design, text = Design(), mjcf(Design())
+    for leg in LEGS:
+        y = design.side if leg[1] == "L" else -design.side
+        motor = f'<geom class="touch" type="sphere" size="0.07" pos="0 {y} 0"/>'
+        text = text.replace(f'<body name="{leg}_thigh"', f'{motor}<body name="{leg}_thigh"')
+    text, machine = as_read(text)
+    seen = Mirror(built(text, machine))
+    ends = []
+    for thigh in (0.0, 2.0):
+        legs = [angle for leg in machine.legs for angle in (thigh, leg.limits.calf[0])]
+        seen.qpos[:4] = 0.3, 0.0, 5.0, 1.0
+        seen.qpos[7:] = kinematics.all_joints(np.array(legs))
+        seen.place()
+        ends.append(seen.data.ncon)
+    assert ends == [0, 0]
+
+
 def test_what_does_not_fit_is_refused() -> None:
     text, _ = robot(False, "mjcf")
     plan = sw.plan(CURB, "a1_wheeled")
@@ -170,3 +203,15 @@ def test_a_step_is_climbed_by_the_original() -> None:
     assert theirs.id != ours.id
     assert "FL_calf <- FL_calf_joint" in theirs.model
     assert theirs.metrics.duration == pytest.approx(ours.metrics.duration, rel=0.1)
+
+
+@pytest.mark.slow
+def test_the_original_goes_backward() -> None:
+    """Down a step with its rear in front."""
+    text, machine = robot(True, "urdf")
+    step = {"points": [(-0.4, 0.15), (0, 0.15), (0, 0), (0.4, 0)]}
+    plan = sw.plan(step, machine, facing="backward", timing="fast")
+    theirs = sw.rollout(plan, model=text)
+    assert theirs.success, theirs.reason
+    assert "FL_calf <- RR_calf_joint" in theirs.model
+    assert theirs.series.base_position[-1, 0] > 0.2

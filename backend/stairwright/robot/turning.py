@@ -14,7 +14,8 @@ from .parts import JointFrame, Joints, LegLimits, Link, Point, Range, RearLegs
 
 Facing = Literal["forward", "backward"]  # which end leads: the front, or the rear
 
-_OTHER_END = {"FL": "RR", "FR": "RL", "RL": "FR", "RR": "FL"}
+# Which leg stands in the place of each once the robot is turned.
+OTHER_END = {"FL": "RR", "FR": "RL", "RL": "FR", "RR": "FL"}
 
 
 def turned(robot: Robot) -> Robot:
@@ -53,7 +54,7 @@ def symmetric(robot: Robot) -> bool:
 def opposite(joint: str) -> str:
     """The joint that stands in the place of `joint` once the robot is turned."""
     leg, part = joint.split("_")
-    return f"{_OTHER_END[leg]}_{part}"
+    return f"{OTHER_END[leg]}_{part}"
 
 
 def _form(robot: Robot) -> dict[str, Any]:

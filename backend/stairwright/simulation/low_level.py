@@ -24,7 +24,7 @@ from stairwright.control.settings import ControllerSettings
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
 from stairwright.robot.description import JOINTS, LEGS, Robot
-from stairwright.robot.turning import opposite
+from stairwright.robot.turning import opposite, turned
 
 from .disturbance import Disturbance
 from .end_error import end_error
@@ -122,16 +122,16 @@ class LowLevelRobot:
         physics = OwnPhysics(*given) if model is None else OriginalPhysics(model, *given)
         self.run = Run(plan, truth, ControllerSettings(), Disturbance(), seed, 100.0, physics)
         self.dt = self.run.dt
-        self._sensors = _core.RobotSensors(
-            plan.robot_description.native, _core.SensorErrors(noise), seed
-        )
+        built = robot = plan.robot_description
+        self._sensors = _core.RobotSensors(robot.native, _core.SensorErrors(noise), seed)
         self._torques = np.zeros(12)
-        self._signs, self._offsets = plan.robot_description.ros_frames
+        self._signs, self._offsets = robot.ros_frames
         self._motor_of, self._facing = MOTOR_OF, np.ones(6)
         if plan.facing == "backward":  # its motors and its IMU are as they were built
+            built = turned(robot)
             self._motor_of = MOTOR_OF[[JOINTS.index(opposite(joint)) for joint in JOINTS]]
             self._facing = np.array([-1.0, -1.0, 1.0] * 2)
-        self._abduction = _Abduction(plan.robot_description, physics)
+        self._abduction = _Abduction(built, physics)
         self.peak = np.zeros(2)
 
     def sense(self) -> tuple[Floats, Floats]:

@@ -1,12 +1,14 @@
 """A robot's own MuJoCo file in our world: its bodies, masses, shapes and joints as they are.
 
-What is ours: the terrain, physics settings and contact sensors, torque motors on the 12 joints, a
-position servo on each joint that is held (abduction), and a free joint where the file has none. A
-wheel whose mesh is missing touches as a ball of the plan's radius. Parts that overlap as the robot
-stands do not touch each other: so their shapes are drawn, and so MoveIt takes them.
+What is ours: the terrain, physics settings and contact sensors, torque motors and their rotors on
+the 12 joints, a position servo on each joint that is held (abduction), and a free joint where the
+file has none. A wheel whose mesh is missing touches as a ball of the plan's radius. Parts that
+overlap as the robot stands do not touch each other: so their shapes are drawn, and so MoveIt takes
+them. Nor do parts of a leg that overlap at an end of the knee's range whatever the thigh does.
 
-How joints are mapped: `robot.importing` finds thigh, calf and wheel of each leg by the tree's shape
-and says sign and offset of each: ours = sign * theirs + offset, and torques take the same sign.
+How joints are mapped: `robot.importing` finds thigh, calf and wheel of each leg by the tree's
+shape and says sign and offset of each: ours = sign * theirs + offset, and torques take the same
+sign. Of a plan whose rear leads our front left leg is the file's rear right one.
 """
 
 from __future__ import annotations
@@ -21,19 +23,20 @@ import numpy as np
 from stairwright._core import GRAVITY
 from stairwright.arrays import Floats, Ints
 from stairwright.errors import InputError
-from stairwright.robot.description import JOINTS, LEGS, Robot
+from stairwright.robot.description import LEGS, Robot
 from stairwright.robot.importing.assemble import Reading
+from stairwright.robot.importing.leg import SideLeg
 from stairwright.robot.importing.local import gather
 from stairwright.robot.importing.read import read_closely
 from stairwright.robot.importing.report import JointMap, Notes
 from stairwright.robot.importing.source import read_spec
 from stairwright.robot.importing.upload import Upload, unpack
-from stairwright.robot.kinematics import all_joints, standing_joints
 from stairwright.robot.mujoco_model import add_contact_sensors, set_physics, stiffen_contacts
 from stairwright.robot.mujoco_terrain import TERRAIN_HALF_WIDTH, add_terrain
+from stairwright.robot.turning import OTHER_END, Facing, turned
 from stairwright.terrain.profile import Terrain
 
-from .original_shapes import BALLS, add_ball, join_held
+from .original_shapes import BALLS, add_ball, join_held, overlapping
 
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 _ALIKE = 1e-3  # m between the plan's robot and the file's
@@ -80,8 +83,12 @@ class Original:
         return qpos
 
 
-def read_original(model: str | os.PathLike[str], robot: Robot) -> tuple[Upload, Reading]:
+def read_original(
+    model: str | os.PathLike[str], robot: Robot, facing: Facing = "forward"
+) -> tuple[Upload, Reading]:
     """The file `model` (a path, or MJCF or URDF text), which must be `robot`'s.
+
+    Of a backward plan `robot` is turned about, and the reading is not.
 
     Raises:
         InputError: If it cannot be read, or has other legs than the plan's robot.
@@ -102,7 +109,8 @@ def read_original(model: str | os.PathLike[str], robot: Robot) -> tuple[Upload, 
         reading, _ = read_closely(upload, options)
     except InputError as error:
         raise InputError(error.message, ("model",)) from None
-    for own, other in zip(robot.legs, reading.robot.legs, strict=True):
+    built = turned(robot) if facing == "backward" else robot
+    for own, other in zip(built.legs, reading.robot.legs, strict=True):
         for what, a, b in (
             ("hips", own.hip, other.hip),
             ("thighs", own.thigh.length, other.thigh.length),
@@ -115,13 +123,21 @@ def read_original(model: str | os.PathLike[str], robot: Robot) -> tuple[Upload, 
 
 
 def build_original(
-    upload: Upload, reading: Reading, robot: Robot, terrain: Terrain, friction: float
+    upload: Upload,
+    reading: Reading,
+    robot: Robot,
+    terrain: Terrain,
+    friction: float,
+    facing: Facing = "forward",
 ) -> Original:
-    """The file's model on `terrain`, driven as ours is.
+    """The file's model on `terrain`, driven as ours is, the end in front that `facing` says.
 
     Raises:
         InputError: If its trunk can move in some directions only.
     """
+    backward = facing == "backward"
+    names = [OTHER_END[leg] if backward else leg for leg in LEGS]  # in the reading
+    legs = {leg: reading.legs[name] for leg, name in zip(LEGS, names, strict=True)}
     read = read_spec(upload, Notes())
     spec, source = read.spec, reading.source
     bodies, joints = list(spec.bodies), _by_id(spec, source.model)
@@ -132,7 +148,7 @@ def build_original(
         joint.name = joint.name or f"joint_{k}"
     for geom in spec.geoms:
         geom.name = ""
-    labels = _labels(reading, bodies)
+    labels = _labels(reading, legs, bodies)
     join_held(spec, reading, bodies, labels)
     _remove_others(spec, bodies, source.model, base)
     _set_free(bodies[source.model.body_rootid[base]])
@@ -143,14 +159,14 @@ def build_original(
             mesh.scale = [1.0, 1.0, 1.0]
     for geom in spec.worldbody.geoms:
         geom.conaffinity |= BALLS
-    wheels = [int(source.model.jnt_bodyid[reading.legs[leg].chain.wheel]) for leg in LEGS]
-    planes = _planes(reading, wheels)
+    wheels = [int(source.model.jnt_bodyid[leg.chain.wheel]) for leg in legs.values()]
+    planes = _planes(reading, names, wheels)
     for leg, wheel, plane in zip(LEGS, wheels, planes, strict=True):
         if any(body is bodies[wheel] for body in read.lost) or not list(bodies[wheel].geoms):
             add_ball(bodies[wheel], plane, robot.wheel.radius)
         labels[bodies[wheel].name] = f"{leg}_wheel"
-    chosen = [leg.chain for leg in (reading.legs[name] for name in LEGS)]
-    driven = [joints[j] for chain in chosen for j in (chain.thigh, chain.calf, chain.wheel)]
+    chains = [leg.chain for leg in legs.values()]
+    driven = [joints[j] for chain in chains for j in (chain.thigh, chain.calf, chain.wheel)]
     _add_motors(spec, robot, driven, [joints[j].name for j in reading.held])
     add_contact_sensors(spec, [bodies[wheel].name for wheel in wheels], bodies[base].name)
     model = spec.compile()
@@ -160,11 +176,11 @@ def build_original(
     axes = frame.axes @ body
     own = Original(
         model=model,
-        maps=tuple(reading.joints[name] for name in JOINTS),
+        maps=tuple(_turned(own) if backward else own for leg in legs.values() for own in leg.maps),
         positions=np.array([int(model.jnt_qposadr[joint.id]) for joint in at]),
         speeds=np.array([int(model.jnt_dofadr[joint.id]) for joint in at]),
         base=model.body(bodies[base].name).id,
-        axes=axes,
+        axes=np.diag([-1.0, -1.0, 1.0]) @ axes if backward else axes,
         centre=axes.T @ reading.centre,
         held={
             int(model.jnt_qposadr[model.joint(joints[j].name).id]): value
@@ -196,11 +212,16 @@ def _base(reading: Reading) -> int:
     raise AssertionError("the frame's origin is a body's")
 
 
-def _labels(reading: Reading, bodies: list[Any]) -> dict[str, str]:
+def _turned(own: JointMap) -> JointMap:
+    """Of the robot turned about, whose joints turn the other way."""
+    return JointMap(name=own.name, sign=-own.sign, offset=-own.offset)
+
+
+def _labels(reading: Reading, legs: dict[str, SideLeg], bodies: list[Any]) -> dict[str, str]:
     """What each body is part of."""
     model = reading.source.model
     part = {}
-    for name, leg in reading.legs.items():
+    for name, leg in legs.items():
         for what, joint in (
             ("thigh", leg.chain.thigh),
             ("calf", leg.chain.calf),
@@ -217,16 +238,12 @@ def _labels(reading: Reading, bodies: list[Any]) -> dict[str, str]:
 
 
 def _apart(spec: Any, own: Original, robot: Robot) -> Original:
-    """The same, where parts that overlap as the robot stands do not touch each other."""
-    model, data = own.model, mujoco.MjData(own.model)
-    data.qpos[:] = own.positions_with(all_joints(standing_joints(robot)))
-    mujoco.mj_forward(model, data)
-    touching = np.sort(model.geom_bodyid[data.contact.geom[data.contact.dist < 0.0]])
-    overlaps = {(int(a), int(b)) for a, b in touching if a > 0}
+    """The same, where parts that are drawn too large do not touch each other."""
+    overlaps = overlapping(own.model, own.positions_with, robot)
     if not overlaps:
         return own
     for first, second in overlaps:
-        spec.add_exclude(bodyname1=model.body(first).name, bodyname2=model.body(second).name)
+        spec.add_exclude(bodyname1=first, bodyname2=second)
     model = spec.compile()
     stiffen_contacts(model, own.wheels.tolist())
     return replace(own, model=model)
@@ -259,10 +276,10 @@ def _set_free(root: Any) -> None:
         raise InputError(f"{own[0].name!r} holds the trunk; it must be free", ("model",))
 
 
-def _planes(reading: Reading, wheels: list[int]) -> Floats:
+def _planes(reading: Reading, names: list[str], wheels: list[int]) -> Floats:
     """(4, 3) the middle of each wheel in its body's frame [m]."""
     data, found = reading.source.data, []
-    for name, body in zip(LEGS, wheels, strict=True):
+    for name, body in zip(names, wheels, strict=True):
         leg = reading.legs[name]
         own = leg.joints[2].copy()
         own[1] = reading.planes[name]
@@ -272,11 +289,16 @@ def _planes(reading: Reading, wheels: list[int]) -> Floats:
 
 
 def _add_motors(spec: Any, robot: Robot, driven: list[Any], held: list[str]) -> None:
-    """Torque on our 12 joints, first; then a servo on each joint that is held."""
+    """Torque on our 12 joints, first; then a servo on each joint that is held.
+
+    Rotors are the robot's: it has them where the file does, and where URDF has no place for them.
+    Wheels without them are so light that the gains, which suit the robot, make them swing.
+    """
     for joint, motor in zip(driven, robot.motors, strict=True):
         actuator = _actuator(spec, joint.name)
         actuator.set_to_motor()
         actuator.ctrllimited, actuator.ctrlrange = True, [-motor.torque, motor.torque]
+        joint.armature = motor.armature
     plenty = _SERVO_TORQUE * robot.mass * GRAVITY * min(leg.reach for leg in robot.legs)
     for name in held:
         actuator = _actuator(spec, name)

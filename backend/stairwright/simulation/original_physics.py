@@ -13,6 +13,7 @@ from stairwright.arrays import Floats
 from stairwright.control.measurement import rotation
 from stairwright.errors import InputError
 from stairwright.planning.plan import Plan
+from stairwright.robot.description import JOINTS
 
 from .disturbance import Disturbance
 from .original import Original, build_original, read_original
@@ -105,15 +106,15 @@ class OriginalPhysics:
         for name in _OUR_MODEL:
             if getattr(disturbance, name):
                 raise InputError("is for our own model of the robot", ("disturbance", name))
-        if plan.facing == "backward":
-            raise InputError("a backward plan is carried out by our own model", ("model",))
         robot = plan.robot_description
-        upload, self.reading = read_original(model, robot)
-        maps = (f"{ours} <- {own.name}" for ours, own in self.reading.joints.items())
-        self.source = f"{self.reading.robot.source}: {', '.join(maps)}"
+        upload, self.reading = read_original(model, robot, plan.facing)
         self.terrain = terrain = real_terrain(plan.terrain, disturbance, seed)
         friction = max(0.01, friction + disturbance.friction)
-        self.original = build_original(upload, self.reading, robot, terrain, friction)
+        self.original = own = build_original(
+            upload, self.reading, robot, terrain, friction, plan.facing
+        )
+        maps = (f"{ours} <- {made.name}" for ours, made in zip(JOINTS, own.maps, strict=True))
+        self.source = f"{self.reading.robot.source}: {', '.join(maps)}"
         self.state = Mirror(self.original)
         self.timestep = float(self.original.model.opt.timestep)
 
