@@ -47,7 +47,10 @@ def of_plan(plan: Plan) -> str:
         rows.append(("least margins", _margins(plan)))
     if plan.safer_facing is not None:
         safer = plan.safer_facing
-        rows.append(("safer", f"facing {safer.facing}: CoM {safer.com_margin * 1e3:.0f} mm"))
+        name, least = ("CoM", safer.com_margin)
+        if safer.by == "clearance" and safer.clearance is not None:
+            name, least = ("clearance", safer.clearance)
+        rows.append(("safer", f"facing {safer.facing}: {name} {least * 1e3:.0f} mm"))
     if plan.certificate is not None:
         passed = "passed" if plan.certificate.passed else "NOT passed"
         rows.append(("certificate", f"{passed} ({plan.certificate.scope})"))

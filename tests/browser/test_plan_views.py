@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from stairwright.terrain.stairs import stair
+
 from .axe import violations
 from .conftest import Product
 
@@ -182,7 +184,11 @@ def test_a_thin_plan_offers_the_safer_end_in_front(product: Product) -> None:
     assert "thin" not in pill.inner_text()
     assert inspector.get_by_role("button", name="Plan backward").count() == 0
     page.get_by_role("radio", name="Forward").click()
-    product.planned()
+    _choose_robot(page, "go2w")
+    flight = stair(0.18, 0.28, 3, direction="down")
+    product.paste(json.dumps({"points": flight.points}))
+    product.has_corners(len(flight.points)).planned()
+    assert re.search(r"Clearance \d mm, backward \d\d mm", pill.inner_text())
 
 
 def test_that_there_is_no_path_shows_before_what_stops_the_robot(product: Product) -> None:

@@ -49,6 +49,7 @@ def test_a_thin_plan_tells_of_a_safer_one_with_the_other_end_in_front() -> None:
     assert thin.safer_facing.facing == "backward"
     assert thin.safer_facing.com_margin == least_margins(safer)["com"]
     assert thin.safer_facing.com_margin > 1.5 * least_margins(thin)["com"]
+    assert thin.safer_facing.by == "com"
     assert safer.safer_facing is None
     assert sw.plan(flight, facing="either").id == safer.id
     assert sw.plan(flight, diagnose=False).safer_facing is None
@@ -100,12 +101,20 @@ def test_another_plan_on_the_way_keeps_the_end_that_leads() -> None:
 
 
 class Ends:
-    """Plans with either end in front, of given times [s] and least CoM margins [m]."""
+    """Plans with either end in front, of given times [s] and least CoM margins [m], and with
+    clearances [m].
+    """
 
-    def __init__(self, like: Plan, forward: tuple[float, float], backward: tuple[float, float]):
+    def __init__(
+        self,
+        like: Plan,
+        forward: tuple[float, float],
+        backward: tuple[float, float],
+        clearances: tuple[float, float] = (0.02, 0.02),
+    ) -> None:
         self.plans = {
-            "forward": _altered(like, "forward", *forward),
-            "backward": _altered(like, "backward", *backward),
+            "forward": _altered(like, "forward", *forward, clearances[0]),
+            "backward": _altered(like, "backward", *backward, clearances[1]),
         }
         self.asked: list[Facing] = []
 
@@ -114,9 +123,10 @@ class Ends:
         return self.plans[facing]
 
 
-def _altered(like: Plan, facing: Facing, total: float, com: float) -> Plan:
+def _altered(like: Plan, facing: Facing, total: float, com: float, clearance: float) -> Plan:
     first, *rest = like.poses
-    thin = first.model_copy(update={"margins": first.margins.model_copy(update={"com": com})})
+    least = {"com": com, "clearance": clearance}
+    thin = first.model_copy(update={"margins": first.margins.model_copy(update=least)})
     timing = like.timing.model_copy(update={"total": total})
     return like.model_copy(update={"facing": facing, "timing": timing, "poses": [thin, *rest]})
 
@@ -164,7 +174,40 @@ def test_it_turns_about_where_forward_is_thin(
     assert (told.facing if told else "forward") == leads
 
 
+@pytest.mark.parametrize("timing", ["steady", "fast"])
+@pytest.mark.parametrize(
+    ("forward", "behind", "com", "leads"),
+    [
+        (0.002, 0.03, 0.02, "backward"),
+        (0.002, 0.004, 0.02, "forward"),
+        (0.006, 0.03, 0.02, "forward"),
+        (0.002, 0.03, 0.01, "forward"),
+    ],
+    ids=["clearly safer", "still thin", "not thin", "the CoM thinner there"],
+)
+def test_it_turns_about_where_forward_hardly_clears_the_ground(
+    backward: Plan, timing: PlanTiming, forward: float, behind: float, com: float, leads: Facing
+) -> None:
+    """Go2-W and D1 go down stairs with 2 mm between the calves and the edges, or with 40."""
+    ends = Ends(backward, (10.0, 0.02), (12.0, com), (forward, behind))
+    assert better_led(ends, timing).facing == leads
+    told = told_of_other_end(ends.plans["forward"], ends).safer_facing
+    assert (told.facing if told else "forward") == leads
+    assert told is None or (told.by, told.clearance) == ("clearance", behind)
+
+
 def test_no_second_plan_is_made_where_a_steady_one_faces_forward(backward: Plan) -> None:
     ends = Ends(backward, (10.0, 0.02), (5.0, 0.02))
     assert better_led(ends, "steady").facing == "forward"
     assert ends.asked == ["forward"]
+
+
+@pytest.mark.slow
+def test_a_go2w_goes_down_stairs_with_its_rear_in_front() -> None:
+    flight = stair(0.18, 0.28, 3, direction="down")
+    near = sw.plan(flight, "go2w")
+    assert near.safer_facing is not None
+    assert near.safer_facing.by == "clearance"
+    clear = sw.plan(flight, "go2w", facing="either")
+    assert clear.facing == "backward"
+    assert least_margins(clear)["clearance"] == near.safer_facing.clearance

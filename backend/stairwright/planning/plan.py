@@ -130,10 +130,12 @@ class Binding(Model):
 
 
 class SaferFacing(Model):
-    """Which end in front leaves the CoM clearly more margin, and the least of that plan."""
+    """Which end in front leaves clearly more of a thin margin, and the least of that plan."""
 
     facing: Facing
+    by: Literal["com", "clearance"] = Field("com", description="the margin that is thin here")
     com_margin: float = Field(description="[m]")
+    clearance: float | None = Field(None, description="from the robot to the terrain [m]")
 
 
 # May be made when it is first read, written or compared.
@@ -170,8 +172,8 @@ class Plan(Model):
     )
     safer_facing: SaferFacing | None = Field(
         None,
-        description="where the CoM's margin is thin and the plan with the robot's other end in "
-        "front leaves clearly more: that end, and its margin",
+        description="where the CoM's margin or the clearance is thin and the plan with the robot's "
+        "other end in front leaves clearly more: that end, and its margins",
     )
     binding: Binding | None = Field(None, description="which margin is least")
     energy: Later = Field(

@@ -952,7 +952,7 @@ export interface components {
              * @enum {string}
              */
             facing: "forward" | "backward";
-            /** @description where the CoM's margin is thin and the plan with the robot's other end in front leaves clearly more: that end, and its margin */
+            /** @description where the CoM's margin or the clearance is thin and the plan with the robot's other end in front leaves clearly more: that end, and its margins */
             safer_facing?: components["schemas"]["SaferFacing"] | null;
             /** @description which margin is least */
             binding?: components["schemas"]["Binding"] | null;
@@ -1544,12 +1544,20 @@ export interface components {
             /** @description how the real world differs from what plan and controller believe */
             disturbance?: components["schemas"]["Disturbance"] | null;
         };
-        /** @description Which end in front leaves the CoM clearly more margin, and the least of that plan. */
+        /** @description Which end in front leaves clearly more of a thin margin, and the least of that plan. */
         SaferFacing: {
             /** @enum {string} */
             facing: "forward" | "backward";
+            /**
+             * @description the margin that is thin here
+             * @default com
+             * @enum {string}
+             */
+            by: "com" | "clearance";
             /** @description [m] */
             com_margin: number;
+            /** @description from the robot to the terrain [m] */
+            clearance?: number | null;
         };
         /** @description What the scene shows; what is left out stays, null shows none. */
         SceneRequest: {

@@ -16,12 +16,14 @@ export function PlanOtherEnd({ of }: { of: Plan | null | undefined }) {
   );
 }
 
-/** How much more margin the CoM has with the other end in front; null where that is no safer. */
+/** How much more of a thin margin the other end in front leaves; null where that is no safer. */
 export function saferEnd(shown: Plan | null): string | null {
   const safer = shown?.safer_facing;
   if (!safer) return null;
-  const [now, then] = [worst(shown.poses, "com"), safer.com_margin];
-  return `CoM margin ${fixed(now * 1e3, 0)} mm, ${safer.facing} ${fixed(then * 1e3, 0)} mm`;
+  const near = safer.by === "clearance" && safer.clearance != null;
+  const [name, then] = near ? ["Clearance", safer.clearance!] : ["CoM margin", safer.com_margin];
+  const now = worst(shown.poses, near ? "clearance" : "com");
+  return `${name} ${fixed(now * 1e3, 0)} mm, ${safer.facing} ${fixed(then * 1e3, 0)} mm`;
 }
 
 /** The same with the button, under the choice of the end that leads. */
