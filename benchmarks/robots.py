@@ -32,7 +32,8 @@ with a pair of wheels on level ground.
 With the front in front, `a1_wheeled` (all knees back) and `d1` go down these flights with 5 to 9 mm
 of CoM margin or not at all, and win 6 to 17 of 29 trials; in most others they stand, as they find
 that their mass centre is not where the plan has it and that there is no plan for where it is. With
-the rear in front they win all. All rows are of 2026-11-30.
+the rear in front they win all. `go2w` goes down most of them so, too, for its calves would clear
+the edges by 2 to 5 mm. All rows are of 2026-11-30.
 
 Rows are kept in a folder by the hash of the code and the question, so that a run that was ended
 goes on, and several may share the work.
