@@ -76,6 +76,33 @@ def test_joints_and_wheels_keep_their_speeds(fast: Plan) -> None:
     assert np.abs(wheels).max() < 0.9 * robot.wheel_speed * robot.wheel.radius
 
 
+def _damped(wheels: float) -> sw.Robot:
+    """An A1 whose wheels' joints have that damping [Nm s/rad]."""
+    robot = sw.load_robot("a1_wheeled").model_dump() | {"schema": "stairwright/robot/2"}
+    wheel = robot["actuators"]["wheel"] | {"damping": wheels}
+    return sw.load_robot(robot | {"actuators": robot["actuators"] | {"wheel": wheel}})
+
+
+def test_damping_of_the_joints_leaves_torque() -> None:
+    """About half of what a wheel's motor has at its speed goes into damping."""
+    robot, motor = _damped(2.0), _damped(2.0).actuators.wheel
+    plan = sw.plan("curb-015", robot, timing="fast")
+    time = np.array([pose.time for pose in plan.poses])
+    along = np.array([pose.wheel_progress for pose in plan.poses])
+    speeds = np.abs(np.diff(along, axis=0) / np.diff(time)[:, None]) / robot.wheel.radius
+    there = motor.torque * (1.0 - speeds.max() / motor.speed)
+    assert 0.4 * there < 2.0 * speeds.max() < 0.6 * there  # between poses a little more
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("damping", [0.5, 2.0])
+def test_robots_with_damped_wheels_are_as_fast_as_planned(damping: float) -> None:
+    """They fell behind their plans, and off a ramp."""
+    ramp = {"points": [(-1.0, 0), (0, 0), (0.6, 0.35), (1.2, 0.35)]}
+    run = sw.rollout(sw.plan(ramp, _damped(damping), timing="fast"))
+    assert run.success, run.reason
+
+
 def test_wheels_meet_risers_gently(fast: Plan) -> None:
     path = wheel_path(fast.terrain, fast.robot_description.wheel.radius)
     time = np.array([pose.time for pose in fast.poses])

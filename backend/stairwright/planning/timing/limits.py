@@ -34,6 +34,8 @@ FRICTION_SHARE = 0.85
 LEAST_EASE = 0.3  # of the accelerations that the pace allows
 _EASED = 0.3  # of a motor's torque: where standing leaves less, nothing is met or turned as hard
 _LEAST_SPARE = 0.02  # of a motor's torque that counts where there is hardly any
+_DAMPED = 0.5  # of what standing leaves, for the joints' damping; the rest accelerates
+_LEAST_DAMPED = 0.1  # of the torque that standing leaves at least: no slower than steady plans are
 _STILL = 1e-9
 _NEAR = 1e-4  # m to either side of a corner
 _MEETS = 0.01  # m before and behind a corner where a wheel counts as meeting it
@@ -132,7 +134,7 @@ def limits_of(
     ]
     names = tuple(name for name, rows in groups for _ in range(rows.shape[1]))
     rows = np.ascontiguousarray(np.concatenate([rows for _, rows in groups], axis=1))
-    caps = _caps(motion, robot, effort[:, 0], pace)
+    caps = _caps(motion, robot, effort, pace)
     caps["impact"] = gentle**2 * _impact_cap(motion, path, pace)
     return Limits(rows, names, caps)
 
@@ -154,9 +156,11 @@ def _accelerations(motion: MovingRobot, pace: Pace, ease: Floats) -> Iterator[Fl
 
 def _caps(motion: MovingRobot, robot: Robot, effort: Floats, pace: Pace) -> dict[LimitName, Floats]:
     """Largest x (n,) by speed limits."""
-    spare = np.maximum(1.0 - effort, _LEAST_SPARE)
+    spare = np.maximum(1.0 - effort[:, 0], _LEAST_SPARE)
+    leg, turning = _damped_speeds(robot, effort)
     joint = np.minimum(pace.joint_speed, LEG_SPEED_SHARE * robot.leg_speed * spare)
-    wheel = WHEEL_SPEED_SHARE * robot.wheel_speed * robot.wheel.radius
+    joint = np.minimum(joint, leg)
+    wheel = np.minimum(WHEEL_SPEED_SHARE * robot.wheel_speed, turning) * robot.wheel.radius
 
     def cap(most: Floats | float, slopes: Floats) -> Floats:
         square: Floats = (most / np.maximum(slopes, _STILL)) ** 2
@@ -167,6 +171,23 @@ def _caps(motion: MovingRobot, robot: Robot, effort: Floats, pace: Pace) -> dict
         "pitch_speed": cap(pace.pitch_speed, np.abs(motion.first[:, PITCH])),
         "wheel_speed": cap(wheel, np.abs(motion.first[:, WHEELS]).max(axis=1)),
     }
+
+
+def _damped_speeds(robot: Robot, effort: Floats) -> tuple[Floats, Floats]:
+    """(n,) of legs' joints and of wheels [rad/s]: where their damping takes `_DAMPED` of the torque
+    that standing leaves and the motor has at that speed.
+    """
+    torque, damping, speed = np.array(
+        [(motor.torque, motor.damping, motor.speed) for motor in robot.motors]
+    ).T.reshape(3, 4, 3)
+
+    def least(part: slice, effort: Floats) -> Floats:
+        spare = _DAMPED * np.maximum(1.0 - effort, _LEAST_DAMPED)[:, None, None] * torque[:, part]
+        most = spare / (damping[:, part] + spare / speed[:, part])
+        found: Floats = most.min(axis=(1, 2))
+        return found
+
+    return least(slice(2), effort[:, 0]), least(slice(2, 3), effort[:, 1])
 
 
 def _impact_cap(motion: MovingRobot, path: WheelPath, pace: Pace) -> Floats:
