@@ -101,7 +101,8 @@ def _thin(plan: Plan) -> set[Margin]:
     enough: dict[Margin, float] = {
         "com": thin_com_margin(plan.robot_description), "clearance": THIN_CLEARANCE
     }  # fmt: skip
-    return {margin for margin, least in enough.items() if _least(plan)[margin] < least}
+    least = _least(plan)
+    return {margin for margin, bound in enough.items() if least[margin] < bound}
 
 
 def _least(plan: Plan) -> dict[Quantity, float]:
