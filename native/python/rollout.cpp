@@ -60,7 +60,7 @@ void bind_follower(nb::module_& m) {
             new (self) PlanFollower(start, step, references(rows), {speeds.data(), speeds.data() + speeds.size()}, maximum_lead);
         }, nb::arg("start"), nb::arg("step"), nb::arg("rows"), nb::arg("speeds"), nb::arg("maximum_lead"))
         .def("advance", [](PlanFollower& self, const In<double, nb::shape<4>>& places, bool moving, double dt) {
-            return row(self.advance({places(0), places(1), places(2), places(3)}, moving, dt));
+            return row(self.advance({places(0), places(1), places(2), places(3)}, moving ? Motion::go : Motion::stop, dt));
         }, nb::arg("places"), nb::arg("moving"), nb::arg("dt"), nb::rv_policy::automatic, "The next set point (33,).")
         .def_prop_ro("position", &PlanFollower::position)
         .def_prop_ro("rate", &PlanFollower::rate)

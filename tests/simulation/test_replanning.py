@@ -4,10 +4,18 @@ import numpy as np
 import pytest
 
 import stairwright as sw
+from stairwright.control.settings import parse_settings
 from stairwright.planning.plan import Plan, Pose
 from stairwright.planning.standing import StandingPose
-from stairwright.simulation import plan_change
-from stairwright.simulation.replanning import Decision, plan_onward
+from stairwright.simulation import plan_change, replanning
+from stairwright.simulation.governor import plan_track
+from stairwright.simulation.replanning import (
+    Decision,
+    after_weighing,
+    needed_friction,
+    plan_anew,
+    plan_onward,
+)
 from stairwright.terrain.wheel_path import wheel_path
 
 SLIPPERY_REAR = {"friction_rear": -0.3}
@@ -100,3 +108,47 @@ def test_a_plan_begins_where_the_robot_is_and_where_it_has_arrived_there_is_none
     assert abs(onward.poses[0].x_c - middle.x_c) < 0.02
     assert onward.poses[-1].x_c == pytest.approx(end.x_c, abs=1e-6)
     assert plan_onward(plan, plan.terrain, at(end), end.progress) is None
+
+
+@pytest.fixture(scope="module")
+def tolerant() -> Plan:
+    asked = {"height": 0.005, "place": 0.005, "friction": 0.1}
+    return sw.plan("single-stair-030", "go2w", 0.6, tolerance=asked)
+
+
+def test_another_plan_keeps_the_tolerance(tolerant: Plan) -> None:
+    anew = plan_anew(tolerant, tolerant.terrain, tolerant.friction)
+    assert anew is not None
+    assert anew.tolerance == tolerant.tolerance
+    path = wheel_path(tolerant.terrain, tolerant.robot_description.wheel.radius)
+    middle = tolerant.poses[len(tolerant.poses) // 2]
+    front, rear = (path.project(wheel) for wheel in middle.wheels)
+    here = StandingPose((front, rear), np.array([middle.x_c, middle.z_c, middle.pitch]))
+    onward = plan_onward(tolerant, tolerant.terrain, here, middle.progress)
+    assert onward is not None
+    assert onward.tolerance == tolerant.tolerance
+
+
+def test_friction_that_was_measured_need_not_be_doubted(tolerant: Plan) -> None:
+    anew = plan_anew(tolerant, tolerant.terrain, 0.55)
+    assert anew is not None
+    assert anew.tolerance is not None
+    assert anew.tolerance.asked == {"height": 0.005, "place": 0.005}
+
+
+def test_no_more_friction_is_needed_than_a_plan_stands_to_be_left_with(tolerant: Plan) -> None:
+    path = wheel_path(tolerant.terrain, tolerant.robot_description.wheel.radius)
+    need = needed_friction(plan_track(tolerant, path, parse_settings(None)), tolerant)
+    assert need <= 0.5 + 1e-12
+
+
+def test_a_plan_with_a_tolerance_is_not_given_up_for_one_without(
+    tolerant: Plan, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While it holds with the mass centre where it was found."""
+    without = tolerant.model_copy(update={"tolerance": None})
+    monkeypatch.setattr(replanning, "plan_anew", lambda *_: without)
+    nowhere = (0.0, float("nan"))
+    assert after_weighing(tolerant, 0.0, nowhere, (0.002, 0.0)) == Decision()
+    assert after_weighing(without, 0.0, nowhere, (0.002, 0.0)) == Decision(without)
+    assert after_weighing(tolerant, 0.5, nowhere, (0.0, 0.0)) == Decision(without)

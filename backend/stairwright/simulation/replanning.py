@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from stairwright.control.setpoint import SHARE
@@ -12,6 +13,7 @@ from stairwright.planning.path import plan_path
 from stairwright.planning.plan import Plan, PlanTiming
 from stairwright.planning.planner import plan as make_plan
 from stairwright.planning.standing import StandingPose
+from stairwright.planning.tolerance import Tolerance
 from stairwright.planning.weights import parse_weights
 from stairwright.robot.description import Robot
 from stairwright.robot.parts import Payload
@@ -40,8 +42,12 @@ def tested_friction(line: Track, plan: Plan) -> float:
 
 
 def needed_friction(line: Track, plan: Plan) -> float:
-    """The friction that the plan needs: that of its static forces, and some for the motion."""
-    return min(1.0, MOTION * float(line.rows[:, SHARE].max())) * plan.friction
+    """The friction that the plan needs: that of its static forces, and some for the motion.
+
+    No more than it stands to be left with.
+    """
+    stood = plan.friction - (plan.tolerance.friction if plan.tolerance else 0.0)
+    return min(stood, MOTION * float(line.rows[:, SHARE].max()) * plan.friction)
 
 
 @dataclass(frozen=True)
@@ -60,21 +66,28 @@ class Decision:
 def plan_anew(
     old: Plan, terrain: Terrain, friction: float, robot: Robot | None = None
 ) -> Plan | None:
-    """A plan of the same kind over `terrain` with `friction`; None where there is none."""
-    try:
-        new = make_plan(
-            terrain,
-            robot or old.robot_description,
-            friction,
-            old.method,
-            old.weights or None,
-            timing=_timing(old),
-            facing="forward",  # the end that leads already
-            diagnose=False,
-        )
-    except InputError:
-        return None
-    return new.model_copy(update={"facing": old.facing}) if new.feasible else None
+    """A plan of the same kind over `terrain` with `friction`; None where there is none.
+
+    It has the old one's tolerance, or none where there is no plan with that.
+    """
+    for tolerance in _tolerances(old, friction):
+        try:
+            new = make_plan(
+                terrain,
+                robot or old.robot_description,
+                friction,
+                old.method,
+                old.weights or None,
+                timing=_timing(old),
+                tolerance=tolerance,
+                facing="forward",  # the end that leads already
+                diagnose=False,
+            )
+        except InputError:
+            continue
+        if new.feasible:
+            return new.model_copy(update={"facing": old.facing})
+    return None
 
 
 def plan_onward(old: Plan, terrain: Terrain, here: StandingPose, progress: float) -> Plan | None:
@@ -88,19 +101,29 @@ def plan_onward(old: Plan, terrain: Terrain, here: StandingPose, progress: float
     """
     if old.method != "path":
         return None
-    new = plan_path(
-        terrain,
-        [old.robot_description],
-        old.friction,
-        parse_weights("path", old.weights or None),
-        timing=_timing(old),
-        diagnose=False,
-        here=here,
-    )
-    if not new.feasible:
-        return None
-    poses = [pose.model_copy(update={"progress": progress + pose.progress}) for pose in new.poses]
-    return new.model_copy(update={"facing": old.facing, "poses": poses})
+    for tolerance in _tolerances(old, old.friction):
+        new = plan_path(
+            terrain,
+            [old.robot_description],
+            old.friction,
+            parse_weights("path", old.weights or None),
+            timing=_timing(old),
+            tolerance=tolerance,
+            diagnose=False,
+            here=here,
+        )
+        if new.feasible:
+            moved = [p.model_copy(update={"progress": progress + p.progress}) for p in new.poses]
+            return new.model_copy(update={"facing": old.facing, "poses": moved})
+    return None
+
+
+def _tolerances(old: Plan, friction: float) -> Iterator[Tolerance | None]:
+    """What another plan is asked to stand, the first that can be had."""
+    if old.tolerance is not None:
+        known = friction != old.friction  # it was measured
+        yield old.tolerance.model_copy(update={"friction": 0.0}) if known else old.tolerance
+    yield None
 
 
 def _timing(plan: Plan) -> PlanTiming:
@@ -167,14 +190,17 @@ def after_weighing(plan: Plan, mass: float, place: Point, shift: Point) -> Decis
     """
     robot = plan.robot_description
     found = laden(robot, mass, place) if mass else balanced_at(robot, shift)
-    if new := plan_anew(plan, plan.terrain, plan.friction, found):
-        return Decision(new)
-    if mass:
+    new = plan_anew(plan, plan.terrain, plan.friction, found)
+    if mass and new is None:
         return Decision(
             why=f"the robot weighs {found.mass:.1f} kg, {mass:.1f} kg more than the plan is for, "
             "and there is none for that"
         )
     lacking = KEPT - float(firm_com_margins(plan, shift).min())
+    # A plan that stands a tolerance has more to spare than another one without.
+    kept = not mass and lacking <= 0.0 and plan.tolerance is not None
+    if new is not None and not (kept and new.tolerance is None):
+        return Decision(new)
     if lacking <= 0.0:
         return Decision()
     return Decision(

@@ -153,13 +153,14 @@ Command Controller::command(const RobotState& state, const Reference& target,
             motors[i].thigh.rest += load.thigh, motors[i].calf.rest += load.calf, motors[i].wheel.rest += load.wheel;
         moving_[3 * i] = moved.thigh, moving_[3 * i + 1] = moved.calf, moving_[3 * i + 2] = moved.wheel;
     }
-    lift_off_ = lift_off(m, path_, places_, feels_ground, target.value.pitch);
+    lift_off_ = lift_off(m, path_, places_, feels_ground, target.value);
     const double place_counts = std::lerp(1.0, kTippingPlace, lift_off_);
     const BalanceQp qp = balance_qp(g, force_map(m, supports), wanted, supports, target, forces_, uneven, place_counts);
     solve_within_motors(qp, motors, robot_, state.joint_rates, g.force_weight, forces_);
 
     // Torques: forces, weight and inertia, tracking (eq 27), rolling (eqs 14-16) with the traction fed forward.
     const double turn = -g.heading_stiffness * m.heading;
+    const int lifting = lifting_pair(m, target.value.pitch);
     const double difference = robot_.half_track / path_.radius() * (turn + g.yaw_damping * (turn - m.yaw_rate));
     Command out;
     for (int i = 0; i < 4; ++i) {
@@ -179,7 +180,8 @@ Command Controller::command(const RobotState& state, const Reference& target,
         const double rate = speed / leg.wheel.radius + (i % 2 == 0 ? -difference : difference);
         // A wheel turns against its calf.
         out.torques[j + 2] = leg.wheel.radius * traction + motors[i].wheel.rest;
-        out.damping[j + 2] = g.wheel_damping;
+        // Held in its place, the pair that a robot which tips stands on could not roll back under it.
+        out.damping[j + 2] = pair == lifting ? g.wheel_damping : (1.0 - lift_off_) * g.wheel_damping;
         out.rates[j + 2] = rate - state.joint_rates[j] - state.joint_rates[j + 1] - m.pitch_rate;
     }
     return out;

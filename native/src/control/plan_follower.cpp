@@ -15,6 +15,7 @@ constexpr double kHurry = 1.5;            // how much faster than planned it may
 constexpr double kHangingLead = 0.005;    // m
 constexpr double kRateAcceleration = 1.0; // m/s^2 of the plan's rate, where the plan itself asks for no more
 
+constexpr double kHalting = 0.5;          // m/s^2 of the centre of mass; stopped at once, a trunk that swings would tip the robot
 constexpr double kBraking = 2.0;          // of what the plan brakes by: a rate that is above the plan's must come down to it
 
 using Row = std::array<double, kReferenceWidth>;
@@ -42,6 +43,11 @@ double PlanFollower::planned_acceleration(Spot at) const {
     return mix(slow, fast, at.share) * (fast - slow) / step_;
 }
 
+// Of the rate, by which the centre of mass is halted [m/s^2].
+double PlanFollower::gentle_braking(Spot at) const {
+    return kHalting / std::max(norm(rows_[at.row].rate.com), 1e-6);
+}
+
 double PlanFollower::wheel_lag(Spot at, const std::array<double, 4>& places) const {
     if (std::isnan(places[0])) return 0.0;
     const Reference &a = rows_[at.row], &b = rows_[at.row + 1];
@@ -53,12 +59,12 @@ double PlanFollower::wheel_lag(Spot at, const std::array<double, 4>& places) con
     return lag * (0.5 * (std::abs(df) + std::abs(dr)));  // of wheels, not of a trunk that swings
 }
 
-const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool moving, double dt, bool hanging) {
+const Reference& PlanFollower::advance(const std::array<double, 4>& places, Motion motion, double dt, bool hanging) {
     const Spot now = spot(position_);
     lag_ = wheel_lag(now, places);
     const double most = hanging ? std::min(kHangingLead, maximum_lead_) : maximum_lead_;
     double rate = 0.0;
-    if (moving) {
+    if (motion == Motion::go) {
         const double allowed = mix(speeds_[now.row], speeds_[now.row + 1], now.share);
         if (lag_ >= 0.0)
             rate = allowed * std::min(1.0, std::max(-0.5, 2.0 * (most - lag_) / most));
@@ -66,7 +72,8 @@ const Reference& PlanFollower::advance(const std::array<double, 4>& places, bool
             rate = allowed * std::min(kHurry, 1.0 - lag_ / maximum_lead_ * (kHurry - 1.0));
     }
     const double planned = planned_acceleration(now);
-    const double faster = std::max(kRateAcceleration, planned), slower = std::max(4 * faster, kBraking * -planned);
+    const double faster = std::max(kRateAcceleration, planned), abrupt = std::max(4 * faster, kBraking * -planned);
+    const double slower = motion == Motion::halt ? std::min(abrupt, std::max(gentle_braking(now), kBraking * -planned)) : abrupt;
     rate = std::min(std::max(rate, rate_ - slower * dt), rate_ + faster * dt);
     const double end = start_ + step_ * static_cast<double>(rows_.size() - 1);
     const double position = std::min(std::max(position_ + rate * dt, start_), end);

@@ -7,6 +7,8 @@
 
 namespace stairwright::execution {
 
+using control::Motion;
+
 namespace {
 
 constexpr double kCarries = 0.1;  // of the weight, on a pair of wheels that is to be on the ground
@@ -53,14 +55,18 @@ const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool 
     if (safe_stop_.why() != control::Stop::none) return stand_;
     moving = moving && (!seen.places || prepared()) && !waits_;
     if (mends_map_ && moving && seen.map_error && !map_error_ && std::abs(seen.map_error->s - ignored_) > kSamePlace)
-        map_error_ = seen.map_error, waits_ = true;
+        map_error_ = seen.map_error;
+    const bool halts = map_error_ && !waits_;
+    if (halts && seen.map_error) map_error_ = seen.map_error;  // what was found meanwhile
+    if (halts && (map_error_->pairs == 0 || follower_.rate() <= 0.0)) waits_ = true;
     moving = moving && !waits_ && plan_change_.over();
     const bool on_plan = moving && !seen.ahead.any();
     if (seen.places && on_plan) early_face_.watch_edge(follower_.target(), controller_.path(), *seen.places, dt);
     std::array<double, 4> places = controller_.places();
     for (std::size_t i = 0; i < 4; ++i) places[i] -= early_face_.ahead()[i / 2] - (i / 2 == kRear ? legs_apart_.back() : 0.0);
     const bool advances = on_plan && !early_face_.waits() && !controller_.tips();
-    const control::Reference& drawn = follower_.advance(places, advances, dt, hangs(seen.ahead));
+    const Motion motion = !advances ? Motion::stop : halts ? Motion::halt : Motion::go;
+    const control::Reference& drawn = follower_.advance(places, motion, dt, hangs(seen.ahead));
     if (!seen.places) return drawn;
     if (!prepared() && plan_change_.over()) return prepare(drawn, seen, dt);
     adapted_ = plan_change_.step(drawn, dt);
@@ -72,7 +78,8 @@ const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool 
     const control::Reference fitted = leg_fit_.fit(apart, ground, path, controller_.friction(), dt);
     keep_legs_apart(fitted, found, held.value.wheels[kRear], dt);
     const control::Ahead ahead = moving ? seen.ahead : control::Ahead{};
-    adapted_ = face_search_.step(fitted, ahead, *seen.places, safe_stop_.waited() > kStalled, dt);
+    const bool stalled = safe_stop_.waited() > kStalled && !controller_.tips();
+    adapted_ = face_search_.step(fitted, ahead, *seen.places, stalled, dt);
     const control::Reference& next = adapted_;
     const auto [w, x, y, z] = seen.state.quaternion;
     const double pitch = std::atan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y));

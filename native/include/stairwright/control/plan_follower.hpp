@@ -11,6 +11,9 @@
 
 namespace stairwright::control {
 
+// Whether a plan goes on, comes to rest as gently as its centre of mass is to be slowed down, or stops here and now.
+enum class Motion { go, halt, stop };
+
 class PlanFollower {
   public:
     // Set points on an even grid of path positions, the first at `start`, with rates per metre of path and
@@ -21,7 +24,7 @@ class PlanFollower {
 
     // One control step on; `places` of the wheels are NaN before the first measurement. Of wheels that hang over a
     // corner the plan is ahead by much less.
-    const Reference& advance(const std::array<double, 4>& places, bool moving, double dt, bool hanging = false);
+    const Reference& advance(const std::array<double, 4>& places, Motion motion, double dt, bool hanging = false);
 
     const Reference& first() const { return rows_.front(); }
     double position() const { return position_; }  // along the path [m]
@@ -38,6 +41,7 @@ class PlanFollower {
     Spot spot(double position) const;
     double wheel_lag(Spot at, const std::array<double, 4>& places) const;
     double planned_acceleration(Spot at) const;
+    double gentle_braking(Spot at) const;
     void set_target(Spot at);
 
     double start_, step_, maximum_lead_;
