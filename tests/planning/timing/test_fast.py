@@ -13,9 +13,16 @@ from stairwright.errors import InputError
 from stairwright.planning import path_planner
 from stairwright.planning.plan import Plan
 from stairwright.planning.timing import fast as timing
-from stairwright.planning.timing.fast import TimingProblem, fastest, hastened, slow_down
+from stairwright.planning.timing.fast import (
+    TimingProblem,
+    fastest,
+    hastened,
+    slow_down,
+    slow_down_nearby,
+)
 from stairwright.planning.timing.limits import Pace
 from stairwright.planning.timing.path_position import evened
+from stairwright.planning.tolerance import Tolerance
 from stairwright.terrain.stairs import stair
 from stairwright.terrain.wheel_path import wheel_path
 
@@ -173,6 +180,22 @@ def test_slowing_down_reaches_the_poses_next_to_one(steady: Plan) -> None:
     assert between.any()
     assert np.allclose(problem.limits.caps["balance"][between], 0.64 * squares[between])
     assert np.isinf(problem.limits.caps["balance"]).any()
+
+
+def test_with_a_tolerance_it_is_slow_wherever_faces_may_be(steady: Plan) -> None:
+    problem = TimingProblem.of(steady, 0.5)
+    freely, position = fastest(problem), problem.motion.position
+    slow_down_nearby(problem, 0.02)
+    slowly = fastest(problem)
+    middle = (position > position[0] + 0.3) & (position < position[-1] - 0.3)
+    for at in np.flatnonzero(middle):
+        near = np.abs(position - position[at]) < 0.0199
+        assert slowly[at] <= freely[near].min() * (1.0 + 1e-9)
+    # It starts as it did: what holds it back there is rest, which is at no other place.
+    np.testing.assert_allclose(slowly[:5], freely[:5], rtol=1e-6)
+    sooner = hastened(steady, 0.5)[0].timing.total
+    tolerant = steady.model_copy(update={"tolerance": Tolerance(place=0.02)})
+    assert sooner < hastened(tolerant, 0.5)[0].timing.total < 1.5 * sooner
 
 
 def test_inertia_tips_nothing(fast: Plan) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Self
@@ -106,6 +107,8 @@ def hastened(plan: Plan, aggressiveness: float) -> tuple[Plan, Dynamics]:
         aggressiveness: 0..1, see `limits.Pace`.
     """
     problem = TimingProblem.of(plan, aggressiveness)
+    if plan.tolerance is not None:
+        slow_down_nearby(problem, plan.tolerance.place + plan.tolerance.height)
     squares = fastest(problem)
     most = 0.5 * (1.0 + np.maximum(problem.effort, _STRAINED))
     for k in range(_ROUNDS):
@@ -133,6 +136,22 @@ def hastened(plan: Plan, aggressiveness: float) -> tuple[Plan, Dynamics]:
     poses = poses_at(plan, found.time)
     moving = plan.model_copy(update={"id": plan_id(*asked), "poses": poses, "timing": timing})
     return moving, found
+
+
+def slow_down_nearby(problem: TimingProblem, reach: float) -> None:
+    """Lower caps to the least speed within `reach` [m] of path: what wheels meet may be there."""
+    squares = fastest(problem)
+    rises, falls = (np.flatnonzero(s * np.diff(squares) > 0.0) for s in (1.0, -1.0))
+    inner = slice(falls[0], rises[-1] + 1)  # what is before and after starts from rest, and ends so
+    reached = math.ceil(reach / problem.motion.step)
+    if inner.stop <= inner.start:
+        return
+    lowest = np.full(len(squares), np.inf)
+    lowest[inner] = squares[inner]
+    around = np.pad(lowest, reached, constant_values=np.inf)
+    lowest = np.lib.stride_tricks.sliding_window_view(around, 2 * reached + 1).min(axis=1)
+    caps = problem.limits.caps
+    caps["impact"] = np.minimum(caps["impact"], lowest)
 
 
 def slow_down(problem: TimingProblem, failures: Mapping[LimitName, Flags], squares: Floats) -> None:
