@@ -4,15 +4,13 @@ import numpy as np
 import pytest
 
 import stairwright as sw
-from stairwright.control.settings import parse_settings
 from stairwright.planning.plan import Plan, Pose
 from stairwright.planning.standing import StandingPose
 from stairwright.simulation import plan_change, replanning
-from stairwright.simulation.governor import plan_track
 from stairwright.simulation.replanning import (
     Decision,
+    after_slip,
     after_weighing,
-    needed_friction,
     plan_anew,
     plan_onward,
 )
@@ -136,12 +134,6 @@ def test_friction_that_was_measured_need_not_be_doubted(tolerant: Plan) -> None:
     assert anew.tolerance.asked == {"height": 0.005, "place": 0.005}
 
 
-def test_no_more_friction_is_needed_than_a_plan_stands_to_be_left_with(tolerant: Plan) -> None:
-    path = wheel_path(tolerant.terrain, tolerant.robot_description.wheel.radius)
-    need = needed_friction(plan_track(tolerant, path, parse_settings(None)), tolerant)
-    assert need <= 0.5 + 1e-12
-
-
 def test_a_plan_with_a_tolerance_is_not_given_up_for_one_without(
     tolerant: Plan, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -152,3 +144,6 @@ def test_a_plan_with_a_tolerance_is_not_given_up_for_one_without(
     assert after_weighing(tolerant, 0.0, nowhere, (0.002, 0.0)) == Decision()
     assert after_weighing(without, 0.0, nowhere, (0.002, 0.0)) == Decision(without)
     assert after_weighing(tolerant, 0.5, nowhere, (0.0, 0.0)) == Decision(without)
+    assert after_slip(tolerant, 0.6, 0.47, front=True) == Decision()  # it was made for 0.5
+    assert after_slip(without, 0.6, 0.47, front=True) == Decision(without)
+    assert after_slip(tolerant, 0.6, 0.3, front=True) == Decision(without)

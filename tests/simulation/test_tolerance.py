@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stairwright as sw
+from stairwright.simulation.plan_change import PlanChange
 
 STAIRS = {
     "points": [[-1.2, 0], [0, 0], [0, 0.16], [0.3, 0.16], [0.3, 0.32], [0.6, 0.32], [0.6, 0.48],
@@ -29,6 +30,27 @@ def test_a_robot_with_its_own_sensors_stands_what_was_asked(seed: int) -> None:
     run = sw.rollout(plan, disturbance=world, seed=seed, controller={"sensing": "robot"})
     assert run.success, run.reason
     assert run.metrics.link_contacts == 0
+
+
+@pytest.mark.slow
+def test_where_the_map_is_wrong_by_no_more_than_that_the_plan_is_followed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    told, without = [], sw.plan(STAIRS, "a1_wheeled_x")
+    plan = sw.plan(STAIRS, "a1_wheeled_x", tolerance={"height": 0.012})
+    decide = PlanChange.decide
+
+    def listen(change: PlanChange) -> str:
+        told.append((change._loop.map_error is not None, change.followed))
+        return decide(change)
+
+    monkeypatch.setattr(PlanChange, "decide", listen)
+    for one, anew in ((plan, False), (without, True)):
+        told.clear()
+        world = {"step_height_error": [0.012, 0.012, -0.012]}
+        assert sw.rollout(one, disturbance=world).success
+        assert any(wrong for wrong, _ in told)
+        assert any(followed is not one for _, followed in told) == anew
 
 
 def flight(rise: float, tread: float, count: int) -> dict[str, list[tuple[float, float]]]:

@@ -26,6 +26,7 @@ from .replanning import (
     tested_friction,
 )
 
+_FOUND = 0.006  # m to which errors of the map are found
 _FARTHER = 0.05  # m that a robot must have come before it goes on after another stop
 
 
@@ -49,6 +50,7 @@ class PlanChange:
         self._loop, self._plan, self._settings = loop, plan, settings
         self._known, self._path = plan.terrain, path  # as the robot has found it
         self._went_on = -math.inf  # progress at which it did so after a stop [m]
+        self._higher = 0.0  # the map's error in height that the plan stood last [m]
 
     def decide(self) -> str:
         """Go on, with another plan or the old one; why the robot must stop, or nothing."""
@@ -105,6 +107,9 @@ class PlanChange:
         Wheels that a riser stopped before they were there by the old one cannot: the robot stops.
         """
         loop = self._loop
+        if pairs and self._stands(face=face, along=along, up=up):
+            loop.go_on()
+            return
         off = np.array([along, 0.0] if face else [0.0, up])
         front, rear = np.reshape(loop.places, (2, 2)).mean(axis=1)
         centres = self._path.centres(np.array([front, rear]))
@@ -121,10 +126,23 @@ class PlanChange:
             else:
                 loop.go_on()
             return
-        self._known, self._path = known, path
+        self._known, self._path, self._higher = known, path, 0.0
         loop.correct_map(path.native)
         plan, track, row = found
         self._follow(plan, track, row)
+
+    def _stands(self, *, face: bool, along: float, up: float) -> bool:
+        """Whether the plan was made to hold where the map is as wrong as that: see `Tolerance`."""
+        tolerance = self.followed.tolerance
+        if tolerance is None:
+            return False
+        if face:
+            # It is found from the face before, which may be off the other way.
+            return abs(along) <= 2.0 * tolerance.place + _FOUND
+        stands = abs(up - self._higher) <= tolerance.height + _FOUND  # each step may be off
+        if stands:
+            self._higher = up
+        return stands
 
     def _on_the_map(
         self, known: Terrain, path: WheelPath, target: Floats

@@ -42,12 +42,8 @@ def tested_friction(line: Track, plan: Plan) -> float:
 
 
 def needed_friction(line: Track, plan: Plan) -> float:
-    """The friction that the plan needs: that of its static forces, and some for the motion.
-
-    No more than it stands to be left with.
-    """
-    stood = plan.friction - (plan.tolerance.friction if plan.tolerance else 0.0)
-    return min(stood, MOTION * float(line.rows[:, SHARE].max()) * plan.friction)
+    """The friction that the plan needs: that of its static forces, and some for the motion."""
+    return min(1.0, MOTION * float(line.rows[:, SHARE].max())) * plan.friction
 
 
 @dataclass(frozen=True)
@@ -135,10 +131,14 @@ def after_slip(plan: Plan, need: float, found: float, *, front: bool) -> Decisio
     """What to do after a test of the grip in which wheels slipped at the friction `found`."""
     if found >= TESTED * need:
         return Decision()
+    least = plan.friction - (plan.tolerance.friction if plan.tolerance else 0.0)
+    stands = plan.tolerance is not None and found >= TESTED * least
     for usable in USABLE if found >= LEAST else ():
-        if new := plan_anew(plan, plan.terrain, usable * found):
+        new = plan_anew(plan, plan.terrain, usable * found)
+        # What stands that little friction at rest has more to spare than a plan without tolerance.
+        if new is not None and not (stands and new.tolerance is None):
             return Decision(new)
-    if found >= ENOUGH * need:
+    if stands or found >= ENOUGH * need:
         return Decision()
     pair = "front" if front else "rear"
     return Decision(
