@@ -33,10 +33,14 @@ def test_native_controller_equals_plain(name: str) -> None:
     robot = load_robot(name)
     path = wheel_path(load_terrain("single-stair-036"), robot.wheel.radius)
     settings = ControllerSettings(solver="clarabel", beta=0.01)
-    random = np.random.default_rng(7)
+    random, beside = np.random.default_rng(7), np.random.default_rng(1)
     tipped = 0
-    for _ in range(100):
+    for k in range(100):
         qpos, qvel, row = state_and_row(robot, random)
+        if k % 4:  # a robot tips where its other wheels are about in their place
+            native = native_controller(robot, path, 0.6, settings)
+            native.step(qpos, qvel, row)
+            row[:2] = native.places.reshape(2, 2).mean(axis=1) + beside.normal(0.0, 0.07, 2)
         plain = Controller(robot, path, 0.6, settings)
         native = native_controller(robot, path, 0.6, settings)
         for _ in range(3):  # memory of forces and places, too

@@ -25,7 +25,7 @@ from stairwright.terrain.wheel_path import WheelPath
 from . import balance, qp, rigid_body, rolling, tracking
 from .contact import locate, support, wheel_traction
 from .inertial_loads import friction_loads, inertial_loads
-from .lift_off import lift_off
+from .lift_off import lift_off, lifting_pair
 from .measurement import Measurement, measure
 from .motor_limits import MotorTorques, solve_within_motors
 from .setpoint import PITCH, Setpoint
@@ -133,7 +133,7 @@ class Controller:
             [balance.leg_weight_torques(robot, state) + moving[:, :2], moving[:, 2]]
         )
         motors = MotorTorques.of(state, frames, points, held[:, 3], rest)
-        lifted = lift_off(state, self.path, self.places, target.pitch)
+        lifted = lift_off(state, self.path, self.places, target)
         self.tips = lifted > 0.5
         share = 1.0 + lifted * (balance.TIPPING_PLACE - 1.0)
         H, g = balance.force_cost(settings, A, desired, resting, self.forces, sides, share)
@@ -146,9 +146,10 @@ class Controller:
         speeds = target.wheel_speed[LEG_PAIR] + settings.wheel_sync * (planned - self.places)
         speeds += CREEP * driven / (robot.mass * GRAVITY / 4)
         rates = rolling.wheel_rates(speeds, radius) + self._yaw(state)
-        wheel = radius * driven + rolling.wheel_torques(
-            self.gains.wheel_damping, rates, state.rolling_rates
-        )
+        # Held in its place, the pair that a tipping robot stands on could not roll under it.
+        free = np.where(lifting_pair(state, target.pitch) == LEG_PAIR, 0.0, lifted)
+        damping = (1.0 - free) * self.gains.wheel_damping
+        wheel = radius * driven + rolling.wheel_torques(damping, rates, state.rolling_rates)
         return self._joined(state, target, motors.at(self.forces)[:, :2], wheel + moving[:, 2])
 
     def _paper(self, state: Measurement, target: Setpoint) -> Floats:

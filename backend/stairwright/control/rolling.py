@@ -27,7 +27,7 @@ def yaw_difference(damping: float, desired: float, measured: float, scale: float
     return SIDES * (scale * (desired + damping * (desired - measured)))
 
 
-def wheel_torques(damping: float, desired: Floats, measured: Floats) -> Floats:
+def wheel_torques(damping: float | Floats, desired: Floats, measured: Floats) -> Floats:
     """(4,) ``K_d,wheel (qdot_des - qdot)`` (eq 14) [Nm]."""
     torques: Floats = damping * (desired - measured)
     return torques

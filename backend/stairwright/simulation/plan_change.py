@@ -16,7 +16,7 @@ from stairwright.terrain.profile import Terrain
 from stairwright.terrain.wheel_path import WheelPath, wheel_path
 
 from .governor import Track, follower, lead_of, plan_track
-from .map_correction import Row, corrected, nearest_row
+from .map_correction import corrected, nearest_row
 from .replanning import (
     after_slip,
     after_weighing,
@@ -150,29 +150,18 @@ class PlanChange:
         """A plan over the map `known`, its track, and the row from which that is to be followed.
 
         A plan from here, unless a row of that from the start is as near as makes no difference.
-        Plans with a tolerance take long, and the rest of the way less long than all of it.
         """
-        tolerant = self.followed.tolerance is not None
-        onward = self._onward(known, target) if tolerant else None
-        if onward is None or onward.tolerance is None:
-            anew = self._row_anew(known, path, target)
-            if anew is not None and anew[2].near:
-                return anew[0], anew[1], anew[2].number
-            onward = onward if tolerant else self._onward(known, target)
-            if onward is None:
-                return anew and (anew[0], anew[1], anew[2].number)
-        return onward, plan_track(onward, path, self._settings), 0
-
-    def _row_anew(
-        self, known: Terrain, path: WheelPath, target: Floats
-    ) -> tuple[Plan, Track, Row] | None:
-        """A plan from the start over `known`, its track, and its row nearest to `target`."""
+        found = None
         plan = plan_anew(self.followed, known, self.followed.friction)
-        if plan is None:
-            return None
-        track = plan_track(plan, path, self._settings)
-        row = nearest_row(track, target)
-        return None if row is None else (plan, track, row)
+        if plan is not None:
+            track = plan_track(plan, path, self._settings)
+            row = nearest_row(track, target)
+            if row is not None:
+                found = plan, track, row.number
+                if row.near:
+                    return found
+        onward = self._onward(known, target)
+        return found if onward is None else (onward, plan_track(onward, path, self._settings), 0)
 
     def _onward(self, known: Terrain, target: Floats) -> Plan | None:
         front, rear = target[WHEELS].tolist()

@@ -131,8 +131,8 @@ def after_slip(plan: Plan, need: float, found: float, *, front: bool) -> Decisio
     """What to do after a test of the grip in which wheels slipped at the friction `found`."""
     if found >= TESTED * need:
         return Decision()
-    least = plan.friction - (plan.tolerance.friction if plan.tolerance else 0.0)
-    stands = plan.tolerance is not None and found >= TESTED * least
+    tolerance = plan.tolerance
+    stands = tolerance is not None and found >= TESTED * (plan.friction - tolerance.friction)
     for usable in USABLE if found >= LEAST else ():
         new = plan_anew(plan, plan.terrain, usable * found)
         # What stands that little friction at rest has more to spare than a plan without tolerance.
