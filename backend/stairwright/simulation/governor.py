@@ -37,7 +37,13 @@ from stairwright.planning.poses.interpolation import reference
 from stairwright.planning.poses.pose_reference import Reference
 from stairwright.planning.timing.limits import WHEEL_SPEED_SHARE
 from stairwright.planning.timing.moving_robot import reach_of
-from stairwright.planning.timing.path_position import even_grid, evened, path_positions, slopes
+from stairwright.planning.timing.path_position import (
+    even_grid,
+    evened,
+    least_within,
+    path_positions,
+    slopes,
+)
 from stairwright.planning.timing.steady import retimed
 from stairwright.robot.description import Robot
 from stairwright.terrain.wheel_path import WheelPath
@@ -163,8 +169,7 @@ def _limited(
     speeds = np.minimum(speeds, settings.joint_speed / np.maximum(joint_rates, 1e-9))
     speeds = np.minimum(speeds, wheel_limit / np.maximum(wheel_rates, 1e-9))
     reach = max(1, round(LIMIT_REACH / (grid[1] - grid[0])))
-    padded = np.pad(speeds, reach, mode="edge")
-    speeds = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1).min(axis=1)
+    speeds = least_within(speeds, reach)
     # A limit on acceleration: v^2 grows by at most 2 a per metre, from rest and to rest.
     squares = np.minimum(speeds, 10.0) ** 2
     squares[0] = squares[-1] = 0.0

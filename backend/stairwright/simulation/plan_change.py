@@ -108,6 +108,8 @@ class PlanChange:
         """
         loop = self._loop
         if pairs and self._stands(face=face, along=along, up=up):
+            if not face:
+                self._higher = up
             loop.go_on()
             return
         off = np.array([along, 0.0] if face else [0.0, up])
@@ -139,10 +141,7 @@ class PlanChange:
         if face:
             # It is found from the face before, which may be off the other way.
             return abs(along) <= 2.0 * tolerance.place + _FOUND
-        stands = abs(up - self._higher) <= tolerance.height + _FOUND  # each step may be off
-        if stands:
-            self._higher = up
-        return stands
+        return abs(up - self._higher) <= tolerance.height + _FOUND  # each step may be off
 
     def _on_the_map(
         self, known: Terrain, path: WheelPath, target: Floats

@@ -114,6 +114,11 @@ def plan_onward(old: Plan, terrain: Terrain, here: StandingPose, progress: float
     return None
 
 
+def _loses_tolerance(old: Plan, new: Plan) -> bool:
+    """Where the old plan holds as well, it has more to spare than such a new one."""
+    return old.tolerance is not None and new.tolerance is None
+
+
 def _tolerances(old: Plan, friction: float) -> Iterator[Tolerance | None]:
     """What another plan is asked to stand, the first that can be had."""
     if old.tolerance is not None:
@@ -135,8 +140,7 @@ def after_slip(plan: Plan, need: float, found: float, *, front: bool) -> Decisio
     stands = tolerance is not None and found >= TESTED * (plan.friction - tolerance.friction)
     for usable in USABLE if found >= LEAST else ():
         new = plan_anew(plan, plan.terrain, usable * found)
-        # What stands that little friction at rest has more to spare than a plan without tolerance.
-        if new is not None and not (stands and new.tolerance is None):
+        if new is not None and not (stands and _loses_tolerance(plan, new)):
             return Decision(new)
     if stands or found >= ENOUGH * need:
         return Decision()
@@ -191,18 +195,18 @@ def after_weighing(plan: Plan, mass: float, place: Point, shift: Point) -> Decis
     robot = plan.robot_description
     found = laden(robot, mass, place) if mass else balanced_at(robot, shift)
     new = plan_anew(plan, plan.terrain, plan.friction, found)
-    if mass and new is None:
+    if new is not None and (mass or not _loses_tolerance(plan, new)):
+        return Decision(new)
+    if mass:
         return Decision(
             why=f"the robot weighs {found.mass:.1f} kg, {mass:.1f} kg more than the plan is for, "
             "and there is none for that"
         )
     lacking = KEPT - float(firm_com_margins(plan, shift).min())
-    # A plan that stands a tolerance has more to spare than another one without.
-    kept = not mass and lacking <= 0.0 and plan.tolerance is not None
-    if new is not None and not (kept and new.tolerance is None):
-        return Decision(new)
     if lacking <= 0.0:
         return Decision()
+    if new is not None:
+        return Decision(new)
     return Decision(
         why=f"the robot's mass centre is {1e3 * math.hypot(*shift):.0f} mm from where the plan has "
         f"it, so that it would lack {1e3 * lacking:.0f} mm of balance, and there is none for that"

@@ -22,7 +22,7 @@ from stairwright.terrain.wheel_path import wheel_path
 
 from .limits import LEAST_EASE, LimitName, Limits, Pace, limits_of
 from .moving_robot import MovingRobot, moving_robot, reach_of
-from .path_position import path_positions
+from .path_position import least_within, path_positions
 
 SLOWEST = 0.01  # m/s along the path, where a plan starts and ends
 _ROUNDS = 60  # of slowing down where a plan would not be certified; few need more than 8
@@ -148,10 +148,8 @@ def slow_down_nearby(problem: TimingProblem, reach: float) -> None:
         return
     lowest = np.full(len(squares), np.inf)
     lowest[inner] = squares[inner]
-    around = np.pad(lowest, reached, constant_values=np.inf)
-    lowest = np.lib.stride_tricks.sliding_window_view(around, 2 * reached + 1).min(axis=1)
     caps = problem.limits.caps
-    caps["impact"] = np.minimum(caps["impact"], lowest)
+    caps["impact"] = np.minimum(caps["impact"], least_within(lowest, reached))
 
 
 def slow_down(problem: TimingProblem, failures: Mapping[LimitName, Flags], squares: Floats) -> None:

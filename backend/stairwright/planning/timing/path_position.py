@@ -51,3 +51,10 @@ def evened(grid: Floats, values: Floats, reach: float) -> Floats:
     steps = 0.5 * (values[1:] + values[:-1]) * np.diff(grid)
     area = np.concatenate([[0.0], np.cumsum(steps)])
     return slopes(grid, grid, area, reach)
+
+
+def least_within(values: Floats, reach: int) -> Floats:
+    """Least of values (n,) up to `reach` samples before and after each."""
+    padded = np.pad(values, reach, mode="edge")
+    least: Floats = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1).min(axis=1)
+    return least
