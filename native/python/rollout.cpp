@@ -147,6 +147,8 @@ void bind_rollout(nb::module_& m) {
         .def("go_on", [](Rollout& r) { r.executor().go_on(); }, "The plan goes on after a test of the grip in which wheels slipped.")
         .def("adopt", [](Rollout& r, const PlanFollower& follower, double friction) { r.executor().adopt(follower, friction); },
              nb::arg("follower"), nb::arg("friction"), "Another plan from now on, made for `friction`.")
+        .def("tolerate", [](Rollout& r, double height, double place) { r.executor().tolerate(height, place); }, nb::arg("height"), nb::arg("place"),
+             "Errors of the map at which the robot does not wait: each tread by so much up, each face along [m].")
         .def("correct_map", &Rollout::correct_map, nb::arg("path"), "A map on which `map_error` is mended; another plan has to follow.")
         .def("carry", &Rollout::carry, nb::arg("robot"), nb::arg("grip_need"),
              "The robot as the weighing found it from now on, which tests the ground for that friction; another plan has to follow.")

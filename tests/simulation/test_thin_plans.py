@@ -150,12 +150,12 @@ def test_a_ramp_that_takes_almost_all_friction_is_climbed(timing):
 @pytest.mark.slow
 def test_the_longer_a_ramp_the_more_friction_it_must_leave():
     """A robot is a centimetre off per metre up it; one like this slid back from its end."""
-    plan = sw.plan(ramp(0.3 * 0.965, run=3.8), "anymal_wheels", 0.3)
+    long = ramp(0.3 * 0.965, run=3.8)
+    plan = sw.plan(long, "anymal_wheels", 0.3)
     needed = plan.problem.limit.needed
     assert plan.problem.limit.quantity == "friction"
     assert 0.3 < needed < 0.335
-    enough = sw.plan(ramp(0.3 * 0.965, run=3.8), "anymal_wheels", needed)
-    assert [sw.rollout(enough, seed=seed).outcome for seed in range(2)] == 2 * ["success"]
+    assert sw.rollout(sw.plan(long, "anymal_wheels", needed)).outcome == "success"
 
 
 @pytest.mark.slow

@@ -26,7 +26,6 @@ from .replanning import (
     tested_friction,
 )
 
-_FOUND = 0.006  # m to which errors of the map are found
 _FARTHER = 0.05  # m that a robot must have come before it goes on after another stop
 
 
@@ -50,7 +49,7 @@ class PlanChange:
         self._loop, self._plan, self._settings = loop, plan, settings
         self._known, self._path = plan.terrain, path  # as the robot has found it
         self._went_on = -math.inf  # progress at which it did so after a stop [m]
-        self._higher = 0.0  # the map's error in height that the plan stood last [m]
+        self._tolerate(plan)
 
     def decide(self) -> str:
         """Go on, with another plan or the old one; why the robot must stop, or nothing."""
@@ -107,11 +106,6 @@ class PlanChange:
         Wheels that a riser stopped before they were there by the old one cannot: the robot stops.
         """
         loop = self._loop
-        if pairs and self._stands(face=face, along=along, up=up):
-            if not face:
-                self._higher = up
-            loop.go_on()
-            return
         off = np.array([along, 0.0] if face else [0.0, up])
         front, rear = np.reshape(loop.places, (2, 2)).mean(axis=1)
         centres = self._path.centres(np.array([front, rear]))
@@ -128,20 +122,10 @@ class PlanChange:
             else:
                 loop.go_on()
             return
-        self._known, self._path, self._higher = known, path, 0.0
+        self._known, self._path = known, path
         loop.correct_map(path.native)
         plan, track, row = found
         self._follow(plan, track, row)
-
-    def _stands(self, *, face: bool, along: float, up: float) -> bool:
-        """Whether the plan was made to hold where the map is as wrong as that: see `Tolerance`."""
-        tolerance = self.followed.tolerance
-        if tolerance is None:
-            return False
-        if face:
-            # It is found from the face before, which may be off the other way.
-            return abs(along) <= 2.0 * tolerance.place + _FOUND
-        return abs(up - self._higher) <= tolerance.height + _FOUND  # each step may be off
 
     def _on_the_map(
         self, known: Terrain, path: WheelPath, target: Floats
@@ -173,3 +157,11 @@ class PlanChange:
         self.track = track or plan_track(plan, self._path, self._settings)
         line = follower(self.track, lead_of(plan, self._settings), row)
         self._loop.adopt(line, plan.friction)
+        self._tolerate(plan)
+
+    def _tolerate(self, plan: Plan) -> None:
+        """Where the map is wrong by no more than the plan was made to stand, nobody is asked."""
+        if plan.tolerance is not None:
+            self._loop.tolerate(plan.tolerance.height, plan.tolerance.place)
+        else:
+            self._loop.tolerate(-1.0, -1.0)

@@ -176,8 +176,10 @@ const REST = 250;
  */
 export function startSharing(take: (restored: Restored | null) => void): void {
   let timer: ReturnType<typeof setTimeout> | undefined;
+  let followed = location.hash;
   const typed = signal(0);
   addEventListener("hashchange", () => {
+    followed = location.hash;
     const text = stateInAddress();
     if (text && text !== encode(currentState())) take(restoreFromAddress("what was open stays"));
     given.value = inAddress();
@@ -193,7 +195,10 @@ export function startSharing(take: (restored: Restored | null) => void): void {
     const hash = parts.length > 0 ? `#${parts.join("&")}` : "";
     clearTimeout(timer);
     timer = setTimeout(() => {
-      if (hash !== location.hash) history.replaceState(null, "", hash || location.pathname);
+      // One that was pasted just now is about to be followed, not to be overwritten.
+      if (hash === location.hash || location.hash !== followed) return;
+      history.replaceState(null, "", hash || location.pathname);
+      followed = location.hash;
     }, REST);
   });
 }

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kCarries = 0.1;  // of the weight, on a pair of wheels that is to be on the ground
 constexpr double kStalled = 0.5;  // s without progress, from which on wheels push
-constexpr double kSamePlace = 0.15;  // m; an error of the map that was let pass is not told again so near
 
 }  // namespace
 
@@ -26,6 +25,14 @@ bool PlanExecutor::hangs(const control::Ahead& ahead) const {
     const auto& forces = follower_.target().forces;
     const auto loaded = [&](int pair) { return norm(forces[pair]) > kCarries * controller_.robot().mass() * kGravity; };
     return (ahead.hanging[kFront] && loaded(kFront)) || (ahead.hanging[kRear] && loaded(kRear));
+}
+
+void PlanExecutor::watch_map(const estimation::MapError& error) {
+    const bool ignored = std::abs(error.s - ignored_) <= MapTolerance::kSamePlace;
+    if (map_error_ || !(ignored || tolerance_.covers(error)))
+        map_error_ = error;  // the one after the other while the robot comes to rest
+    else
+        tolerance_.pass(error);
 }
 
 control::Torques PlanExecutor::without_motion(control::Torques torques) const {
@@ -54,10 +61,8 @@ const control::Reference& PlanExecutor::prepare(const control::Reference& drawn,
 const control::Reference& PlanExecutor::next_target(const Perceived& seen, bool moving, double time, double dt) {
     if (safe_stop_.why() != control::Stop::none) return stand_;
     moving = moving && (!seen.places || prepared()) && !waits_;
-    if (mends_map_ && moving && seen.map_error && !map_error_ && std::abs(seen.map_error->s - ignored_) > kSamePlace)
-        map_error_ = seen.map_error;
+    if (mends_map_ && moving && seen.map_error) watch_map(*seen.map_error);
     const bool halts = map_error_ && !waits_;
-    if (halts && seen.map_error) map_error_ = seen.map_error;  // what was found meanwhile
     if (halts && (map_error_->pairs == 0 || follower_.rate() <= 0.0)) waits_ = true;
     moving = moving && !waits_ && plan_change_.over();
     const bool on_plan = moving && !seen.ahead.any();
@@ -130,6 +135,7 @@ void PlanExecutor::correct_map(const WheelPath& path, Vec2 shift) {
     adapted_.value.com += shift, adapted_.value.trunk += shift;
     controller_.believe(path);
     leg_fit_.reset();
+    tolerance_.forget();
     map_error_.reset();
 }
 

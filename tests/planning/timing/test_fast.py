@@ -18,6 +18,7 @@ from stairwright.planning.timing.fast import (
     fastest,
     hastened,
     slow_down,
+    slow_down_at_drops,
     slow_down_nearby,
 )
 from stairwright.planning.timing.limits import Pace
@@ -180,6 +181,20 @@ def test_slowing_down_reaches_the_poses_next_to_one(steady: Plan) -> None:
     assert between.any()
     assert np.allclose(problem.limits.caps["balance"][between], 0.64 * squares[between])
     assert np.isinf(problem.limits.caps["balance"]).any()
+
+
+def test_where_an_edge_down_may_come_sooner_it_takes_twice_the_time() -> None:
+    down = sw.plan(stair(0.12, 0.4, 1, direction="down"), "a1_wheeled_x", diagnose=False)
+    problem = TimingProblem.of(down, 0.5)
+    path = wheel_path(down.terrain, down.robot_description.wheel.radius)
+    freely = fastest(problem)
+    slow_down_at_drops(problem, path, 1.0)
+    slowly = fastest(problem)
+    drop = path.normals(problem.motion.values[:, 0])
+    drops = (drop[:, 0] > 0.0) & (drop[:, 1] < 0.4)
+    assert drops.any()
+    assert (slowly[drops] <= 0.25 * freely[drops] * (1.0 + 1e-9)).all()
+    np.testing.assert_allclose(slowly[:20], freely[:20], rtol=1e-6)
 
 
 def test_with_a_tolerance_it_is_slow_wherever_faces_may_be(steady: Plan) -> None:

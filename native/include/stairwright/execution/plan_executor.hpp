@@ -14,6 +14,7 @@
 #include "stairwright/control/plan_follower.hpp"
 #include "stairwright/control/safe_stop.hpp"
 #include "stairwright/control/weighing.hpp"
+#include "stairwright/execution/map_tolerance.hpp"
 #include "stairwright/execution/perceived.hpp"
 
 namespace stairwright::execution {
@@ -39,6 +40,8 @@ class PlanExecutor {
     // waits for this after a weighing that found a load, and after a test of the grip in which wheels slipped.
     void go_on();
     void adopt(control::PlanFollower follower, double friction);
+    // Errors of the map at which the robot does not wait: each tread by so much up, each face along [m].
+    void tolerate(double height, double place) { tolerance_.set(height, place); }
     // Stop where it waits: there is no way on.
     void give_up();
     bool waits() const { return waits_; }
@@ -71,6 +74,7 @@ class PlanExecutor {
   private:
     // Whether wheels hang in the air that are to carry weight: not where the plan itself hardly loads them.
     bool hangs(const control::Ahead& ahead) const;
+    void watch_map(const estimation::MapError& error);
     void keep_legs_apart(const control::Reference& fitted, const std::array<Vec2, 2>& ground, double rear, double dt);
     // The plan's set point while the robot finds out what it has to know before it starts.
     const control::Reference& prepare(const control::Reference& drawn, const Perceived& seen, double dt);
@@ -88,6 +92,7 @@ class PlanExecutor {
     control::EarlyFace early_face_;
     control::LegsApart legs_apart_;
     std::optional<estimation::MapError> map_error_;
+    MapTolerance tolerance_;
     std::optional<double> creep_;   // found and not taken yet
     double ignored_ = -1e9;         // where an error of the map was let pass [m]
     bool mends_map_;
