@@ -25,6 +25,7 @@ import psutil
 import pytest
 from hypothesis import settings
 
+from stairwright.planning.threads import one_by_one
 from tests import warm_servers
 from tools.system import find_browser
 
@@ -59,6 +60,13 @@ TAB: dict[str, Any] = {
     "accept_downloads": True,
     "bypass_csp": True,
 }
+
+
+@pytest.fixture(autouse=True)
+def planning_threads() -> Iterator[None]:
+    """Tests that share the cores plan without threads: what these do ahead keeps others waiting."""
+    with one_by_one() if "PYTEST_XDIST_WORKER" in os.environ else contextlib.nullcontext():
+        yield
 
 
 processes: list[int] = []  # that share the tests of this one

@@ -15,6 +15,11 @@ from stairwright.planning.standing import StandingPose
 from stairwright.planning.threads import Abandoned, race, search_threads, still_wanted
 
 
+@pytest.fixture(autouse=True)
+def planning_threads() -> None:
+    """They are used here."""
+
+
 def test_answers_come_in_the_order_of_the_questions():
     second = threading.Event()
 
