@@ -94,3 +94,15 @@ def test_a_fast_robot_whose_front_wheels_drop_off_an_edge_too_soon_does_not_tip(
     }
     run = sw.rollout(plan, disturbance=world)
     assert run.success, run.reason
+
+
+@pytest.mark.slow
+def test_forces_keep_to_the_least_friction() -> None:
+    """Front wheels slipped on the second riser, which is 4 cm higher."""
+    asked = {"height": 0.02, "place": 0.005, "friction": 0.1}
+    plan = sw.plan(flight(0.1784, 0.5723, 3), "b2w", 0.508, tolerance=asked)
+    assert plan.feasible, plan.problem
+    assert plan.least_friction == pytest.approx(0.408)
+    world = {"step_height_error": [-0.02, 0.02, -0.02], "friction": -0.1}
+    run = sw.rollout(plan, disturbance=world)
+    assert run.success, run.reason

@@ -37,7 +37,7 @@ def player_plan(plan: Plan) -> str:
         "stairwright-player 1",
         f"# {robot.name} on {plan.terrain.name or 'a terrain'}; SI units and radians",
         f"plan {plan.id}",
-        _line("friction", plan.friction),
+        _line("friction", plan.least_friction),
         _line("facing", -1.0 if plan.facing == "backward" else 1.0),
         *_robot(robot),
         *_gains(robot),

@@ -213,6 +213,11 @@ class Plan(Model):
         return self.status == "feasible"
 
     @property
+    def least_friction(self) -> float:
+        """With which it still holds [1]: less than it was asked for by what its tolerance says."""
+        return self.friction - (self.tolerance.friction if self.tolerance else 0.0)
+
+    @property
     def executable(self) -> bool:
         """Whether it can be tried: a path that ends at an obstruction cannot."""
         return len(self.poses) >= 2 and (self.feasible or self.method != "path")

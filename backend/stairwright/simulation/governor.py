@@ -142,7 +142,7 @@ def plan_track(plan: Plan, path: WheelPath, settings: ControllerSettings) -> Tra
         plan = retimed(plan, settings.speed)
         settings = settings.model_copy(update={"speed": None})
     course = reference(plan, joint_rate=None)
-    return track(course, plan.robot_description, path, plan.friction, settings, fast=fast)
+    return track(course, plan.robot_description, path, plan.least_friction, settings, fast=fast)
 
 
 def lead_of(plan: Plan, settings: ControllerSettings) -> float:

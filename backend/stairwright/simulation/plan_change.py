@@ -156,7 +156,7 @@ class PlanChange:
         self.followed = plan
         self.track = track or plan_track(plan, self._path, self._settings)
         line = follower(self.track, lead_of(plan, self._settings), row)
-        self._loop.adopt(line, plan.friction)
+        self._loop.adopt(line, plan.least_friction)
         self._tolerate(plan)
 
     def _tolerate(self, plan: Plan) -> None:

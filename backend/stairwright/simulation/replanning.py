@@ -43,7 +43,7 @@ def tested_friction(line: Track, plan: Plan) -> float:
 
 def needed_friction(line: Track, plan: Plan) -> float:
     """The friction that the plan needs: that of its static forces, and some for the motion."""
-    return min(1.0, MOTION * float(line.rows[:, SHARE].max())) * plan.friction
+    return min(1.0, MOTION * float(line.rows[:, SHARE].max())) * plan.least_friction
 
 
 @dataclass(frozen=True)
@@ -136,8 +136,7 @@ def after_slip(plan: Plan, need: float, found: float, *, front: bool) -> Decisio
     """What to do after a test of the grip in which wheels slipped at the friction `found`."""
     if found >= TESTED * need:
         return Decision()
-    tolerance = plan.tolerance
-    stands = tolerance is not None and found >= TESTED * (plan.friction - tolerance.friction)
+    stands = plan.tolerance is not None and found >= TESTED * plan.least_friction
     for usable in USABLE if found >= LEAST else ():
         new = plan_anew(plan, plan.terrain, usable * found)
         if new is not None and not (stands and _loses_tolerance(plan, new)):

@@ -84,13 +84,14 @@ class Run:
             self.native = self._native(self.physics.model, every)
             self.change = PlanChange(self.native, plan, self.path, self.track, settings)
         else:
-            self.controller = Controller(robot, self.path, plan.friction, settings)
+            self.controller = Controller(robot, self.path, plan.least_friction, settings)
         self.recorder = Recorder(every, self.track, robot.wheel.radius, self.native)
         self.wall = self.time = 0.0
         self.physics.place(self._first_positions())
 
     def _native(self, model: Any, every: int) -> _core.Rollout:
-        controller = native_controller(self.robot, self.path, self.plan.friction, self.settings)
+        friction = self.plan.least_friction
+        controller = native_controller(self.robot, self.path, friction, self.settings)
         addresses = int(model._address), int(self.data._address)  # noqa: SLF001
         line = follower(self.track, lead_of(self.plan, self.settings))
         bandwidth = self.disturbance.bandwidth

@@ -205,7 +205,9 @@ def _forces(plan: Plan, motion: _Motion) -> tuple[Floats, Floats]:
         plan.terrain.vertices, centres, radius + WHEEL_GAP, np.full(len(centres), radius + TOUCH)
     )
     tangents = np.stack([normals[..., 1], -normals[..., 0]], axis=-1)
-    edges = np.stack([normals + side * plan.friction * tangents for side in (1.0, -1.0)], axis=2)
+    edges = np.stack(
+        [normals + side * plan.least_friction * tangents for side in (1.0, -1.0)], axis=2
+    )
     edges *= found[:, :, None, None]
     # By pose: pair, face and edge (n, 2, 6).
     edges = edges.reshape(n, 2, -1, 2)

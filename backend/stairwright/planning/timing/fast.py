@@ -66,7 +66,7 @@ class TimingProblem:
         progress = arrays.progress
         large = enlargement(robot)
         pace = Pace.of(aggressiveness).at_size(large)
-        margins = Margins.of(robot, plan.friction, plan.poses).measured()
+        margins = Margins.of(robot, plan.least_friction, plan.poses).measured()
 
         def along(values: Floats) -> Floats:
             return np.interp(motion.progress, progress, values)
@@ -76,7 +76,7 @@ class TimingProblem:
         ease = along(_ease(margins["clearance"][0], stray, large))
         legs, wheels = (1.0 - margins[kind][0] / margins[kind][1] for kind in _MOTORS)
         effort = np.stack([along(legs), along(wheels)], axis=1)
-        limits = limits_of(motion, robot, path, plan.friction, effort, pace, ease)
+        limits = limits_of(motion, robot, path, plan.least_friction, effort, pace, ease)
         poses = np.interp(progress, line.progress, path_positions(line))
         return cls(motion, limits, poses, legs)
 
