@@ -35,7 +35,8 @@ def rollout(
 
     Args:
         plan: A plan with at least two poses, or its document. An infeasible one may be tried.
-        friction: True Coulomb friction; the plan's by default. The controller knows its `least_friction`.
+        friction: True Coulomb friction; the plan's by default. The controller knows the least with
+            which the plan holds.
         controller: Settings by name, see `ControllerSettings`.
         seed: Of the sensor noise.
         progress: Called now and then with the share done, 0..1; may raise `Cancelled`.
