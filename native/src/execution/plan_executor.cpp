@@ -30,7 +30,7 @@ bool PlanExecutor::hangs(const control::Ahead& ahead) const {
 void PlanExecutor::watch_map(const estimation::MapError& error) {
     const bool ignored = std::abs(error.s - ignored_) <= MapTolerance::kSamePlace;
     if (map_error_ || !(ignored || tolerance_.covers(error)))
-        map_error_ = error;  // the one after the other while the robot comes to rest
+        map_error_ = error;  // while the robot comes to rest, what is found last
     else
         tolerance_.pass(error);
 }
