@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import os
+from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from multiprocessing import get_context
@@ -28,7 +29,8 @@ from stairwright.simulation.trials import wilson
 
 ROBOTS = ("a1_wheeled", "a1_wheeled_x", "go2w")
 FRICTION = 0.6
-TERRAINS: dict[str, list[tuple[float, float]]] = {  # rise, tread of each step [m]
+Points = list[tuple[float, float]]
+TERRAINS: dict[str, Points] = {  # rise, tread of each step [m]
     "one step of 0.20": [(0.20, 1.0)],
     "five steps of 0.15 on 0.30": [(0.15, 0.30)] * 5,
     "five steps of 0.18 on 0.28": [(0.18, 0.28)] * 5,
@@ -50,11 +52,27 @@ class Result:
 
 def terrain_of(name: str) -> dict[str, Any]:
     """A terrain document."""
-    points, x, z = [(-1.5, 0.0)], 0.0, 0.0
-    for rise, tread in TERRAINS[name]:
+    points = profile(TERRAINS[name], approach=1.5, platform=1.5)
+    return {"name": name, "points": points, "friction": FRICTION}
+
+
+def profile(steps: Points, approach: float, platform: float) -> Points:
+    """Corners [m] of steps (rise, tread), with so much level ground before and after them."""
+    points, x, z = [(-approach, 0.0)], 0.0, 0.0
+    for rise, tread in steps:
         points += [(x, z), (x, z + rise)]
         x, z = x + tread, z + rise
-    return {"name": name, "points": [*points, (x + 1.5, z)], "friction": FRICTION}
+    return [*points, (x + platform, z)]
+
+
+def corner(tolerance: Mapping[str, float], random: np.random.Generator) -> Disturbance:
+    """A world in which all is off by the whole tolerance, with signs at random."""
+    signs = random.choice([-1.0, 1.0], (2, 20))
+    return Disturbance(
+        step_height_error=(tolerance.get("height", 0.0) * signs[0]).tolist(),
+        face_place_error=(tolerance.get("place", 0.0) * signs[1]).tolist(),
+        friction=-tolerance.get("friction", 0.0),
+    )
 
 
 def run_case(case: tuple[str, str], tolerance: dict[str, float], runs: int) -> list[Result]:
@@ -71,12 +89,7 @@ def run_case(case: tuple[str, str], tolerance: dict[str, float], runs: int) -> l
         return [Result(robot, name, True, "", "", problems[0])]
     out = []
     for seed in range(runs):
-        signs = np.random.default_rng(seed).choice([-1.0, 1.0], (2, 20))
-        world = Disturbance(
-            step_height_error=(tolerance.get("height", 0.0) * signs[0]).tolist(),
-            face_place_error=(tolerance.get("place", 0.0) * signs[1]).tolist(),
-            friction=-tolerance.get("friction", 0.0),
-        )
+        world = corner(tolerance, np.random.default_rng(seed))
         for sensing in get_args(Sensing):
             for tolerant, plan in plans.items():
                 run = sw.rollout(

@@ -19,17 +19,16 @@ from multiprocessing import get_context
 from typing import get_args
 
 import numpy as np
+from random_robots import PRESETS
+from tolerance import Points, corner, profile
 
 import stairwright as sw
 from stairwright.planning.plan import Plan, PlanTiming
 from stairwright.simulation.disturbance import Disturbance
 from stairwright.simulation.trials import wilson
 
-ROBOTS = ("a1_wheeled", "a1_wheeled_x", "go2w", "b2w", "m20", "d1", "anymal_wheels")
 LARGE = 1.5  # times an A1's steps, for all others
 WORLDS = 4
-
-Points = list[tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -45,19 +44,16 @@ class Case:
     def drawn(cls, seed: int) -> Case:
         """One of them; robots take turns."""
         random = np.random.default_rng([17, seed])
-        robot = ROBOTS[seed % len(ROBOTS)]
+        robot = PRESETS[seed % len(PRESETS)]
         size = 1.0 if robot.startswith("a1") else LARGE
-        points, x, z = [(-2.0, 0.0)], 0.0, 0.0
-        for rise, tread in _steps(random, size):
-            points += [(x, z), (x, z + rise)]
-            x, z = x + tread, z + rise
+        points = profile(_steps(random, size), approach=2.0, platform=1.8)
         tolerance = {
             "height": float(random.choice([0.0, 0.005, 0.01, 0.02])),
             "place": float(random.choice([0.0, 0.005, 0.01, 0.02])),
             "friction": float(random.choice([0.0, 0.05, 0.1])),
         }
         friction = float(random.uniform(0.45, 0.9))
-        return cls(robot, [*points, (x + 1.8, z)], friction, tolerance)
+        return cls(robot, points, friction, tolerance)
 
     def plan(self, timing: PlanTiming) -> Plan:
         """With its tolerance."""
@@ -69,12 +65,7 @@ class Case:
     def worlds(self, seed: int) -> Iterator[Disturbance]:
         """Corners of what the plan stands."""
         for world in range(WORLDS):
-            signs = np.random.default_rng([seed, world]).choice([-1.0, 1.0], (2, 20))
-            yield Disturbance(
-                step_height_error=(self.tolerance["height"] * signs[0]).tolist(),
-                face_place_error=(self.tolerance["place"] * signs[1]).tolist(),
-                friction=-self.tolerance["friction"],
-            )
+            yield corner(self.tolerance, np.random.default_rng([seed, world]))
 
 
 def _steps(random: np.random.Generator, size: float) -> Points:

@@ -51,9 +51,8 @@ def done(api: httpx.Client, body: dict[str, Any]) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("how", "encoding"), [("bit", UNPACKED), ("zeros", PACKED), ("short", UNPACKED)]
-)
+@pytest.mark.parametrize("how", ["bit", "zeros", "short"])
+@pytest.mark.parametrize("encoding", [UNPACKED, PACKED], ids=["plain", "gzip"])
 def test_a_damaged_plan_is_missing_and_then_made_anew(
     server: Server, how: str, encoding: dict[str, str]
 ) -> None:

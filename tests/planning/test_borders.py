@@ -9,8 +9,8 @@ import stairwright as sw
 from stairwright.terrain.stairs import stair
 
 STEPS = [
-    ("a1_wheeled", 0.4, 0.66), ("a1_wheeled_x", 0.2, 0.88), ("d1", 0.4, 0.86), ("go2w", 0.6, 1.0),
-    ("m20", 0.6, 0.85),
+    ("a1_wheeled", 0.4, 0.66), ("a1_wheeled_x", 0.2, 0.7), ("a1_wheeled_x", 0.2, 0.88),
+    ("d1", 0.4, 0.78), ("d1", 0.4, 0.86), ("go2w", 0.6, 1.0), ("m20", 0.6, 0.85),
 ]  # fmt: skip
 FLIGHTS = [
     ("a1_wheeled", 0.6, 0.6, 0.22), ("a1_wheeled_x", 0.6, 0.9, 0.22),

@@ -63,7 +63,7 @@ def test_an_edge_that_a_light_wheel_nears_is_where_the_map_has_it(friction):
     bump = [(-1.3, 0.0), (0.0, 0.0), (0.0, 0.0806), (0.0694, 0.0806), (0.0694, 0.0), (1.4, 0.0)]
     plan = sw.plan({"points": bump}, "a1_wheeled", friction)
     assert plan.feasible
-    assert sw.rollout(plan).outcome == "success"
+    assert [sw.rollout(plan, seed=seed).outcome for seed in range(3)] == 3 * ["success"]
 
 
 @pytest.mark.slow
@@ -107,7 +107,7 @@ def test_a_wall_is_climbed_by_own_sensors(height, friction):
     plan = sw.plan(stair(height, 0.3, 1, approach=1.5, platform=3.0), "a1_wheeled", friction)
     nearest = [c for c in plan.certificate.checks if c.name.startswith("clearance")]
     assert min(check.value for check in nearest) > ROOM
-    assert sw.rollout(plan).outcome == "success"
+    assert {sw.rollout(plan, seed=seed).outcome for seed in (0, 1)} == {"success"}
 
 
 @pytest.mark.slow
@@ -155,7 +155,8 @@ def test_the_longer_a_ramp_the_more_friction_it_must_leave():
     needed = plan.problem.limit.needed
     assert plan.problem.limit.quantity == "friction"
     assert 0.3 < needed < 0.335
-    assert sw.rollout(sw.plan(long, "anymal_wheels", needed)).outcome == "success"
+    enough = sw.plan(long, "anymal_wheels", needed)
+    assert [sw.rollout(enough, seed=seed).outcome for seed in range(2)] == 2 * ["success"]
 
 
 @pytest.mark.slow
