@@ -165,6 +165,15 @@ std::optional<double> WheelPath::next_drop(double s) const {
     return std::nullopt;
 }
 
+double WheelPath::turn(double a, double b) const {
+    double rolled = 0.0;
+    for (std::size_t k = piece(a); k < pieces_.size() && pieces_[k].s < b; ++k) {
+        const Piece& one = pieces_[k];
+        if (one.arc) rolled += std::max(0.0, std::min(b, one.s + one.length) - std::max(a, one.s));
+    }
+    return rolled / radius_;
+}
+
 std::size_t WheelPath::corner_from(double s) const {
     return static_cast<std::size_t>(std::lower_bound(corners_.begin(), corners_.end(), s) - corners_.begin());
 }

@@ -108,3 +108,14 @@ def test_forces_keep_to_the_least_friction() -> None:
     world = {"step_height_error": [-0.02, 0.02, -0.02], "friction": -0.1}
     run = sw.rollout(plan, disturbance=world)
     assert run.success, run.reason
+
+
+@pytest.mark.slow
+def test_wheels_do_not_slip_off_an_edge_that_is_higher_than_drawn() -> None:
+    """By forces within the cone of the edge as it was drawn: in both worlds."""
+    plan = sw.plan(flight(0.218, 0.64, 4), "b2w", 0.575, tolerance={"height": 0.02})
+    assert plan.feasible, plan.problem
+    for first in (-0.02, 0.02):
+        world = {"step_height_error": [first, -first, 0.02, 0.02]}
+        run = sw.rollout(plan, disturbance=world)
+        assert run.success, run.reason

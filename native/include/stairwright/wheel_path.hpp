@@ -60,6 +60,8 @@ class WheelPath {
     // Whether the curve is round there: the wheel turns about an edge.
     bool on_arc(double s) const { return pieces_[piece(s)].arc; }
     Vec2 normal(double s) const { return at(s).normal; }
+    // By how much the normal turns about edges from arc length `a` to `b` [rad].
+    double turn(double a, double b) const;
     // Where the wheel touches the terrain.
     Vec2 contact(double s) const {
         const CurvePoint p = at(s);

@@ -1,5 +1,6 @@
 #include "stairwright/control/static_forces.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -13,10 +14,14 @@ namespace {
 // Shares of the friction and largest normal force of a wheel in weights, tried in turn until the forces hold the
 // robot: little friction first, but not at the price of pinching. Near the edge of what a share allows, wheels on
 // opposite faces may press far harder than they must, even push the robot down: more friction is worth that.
+// Forces that hold it wherever the next edge is, to within what a robot knows of it, come before all others.
 struct Attempt {
+    bool any_edge;
     double friction_share, load_limit;
 };
-constexpr Attempt kAttempts[] = {{0.6, 0.6}, {0.75, 0.6}, {0.9, 0.6}, {1.0, 0.6}, {1.0, 10.0}};
+constexpr Attempt kAttempts[] = {{true, 0.6, 0.6},  {true, 0.75, 0.6}, {true, 0.95, 0.6}, {false, 0.6, 0.6},
+                                 {false, 0.75, 0.6}, {false, 0.9, 0.6}, {false, 1.0, 0.6}, {false, 1.0, 10.0}};
+constexpr double kUnsure = 0.01;  // m along the curve, to which a robot knows where a wheel is on an edge or before it
 constexpr double kReached = 0.0002;  // m before a corner; plans change what wheels lean on this near to it
 constexpr double kPassed = 0.003;    // m past it, where a wheel is to climb and no longer stands on what it comes from
 constexpr double kHeld = 0.01;    // of the weight; forces that miss less than this hold it
@@ -82,6 +87,12 @@ std::span<const Lean> ways(const WheelPath& path, double s) {
     return all.first(1);
 }
 
+// Friction of the cone of forces that the ground can give wherever within kUnsure of `s` the wheel is.
+double sure_friction(const WheelPath& path, double s, double friction) {
+    const double turn = std::max(path.turn(s - kUnsure, s), path.turn(s, s + kUnsure));
+    return std::tan(std::max(0.0, std::atan(friction) - turn));
+}
+
 // The smallest forces of one attempt over all ways of touching the ground.
 struct Resting {
     bool held = false;
@@ -93,12 +104,16 @@ Resting resting(const WheelPath& path, const Pose& pose, double friction, const 
     const auto front = ways(path, pose.places[0]), rear = ways(path, pose.places[1]);
     Resting out;
     Trial trial;
+    std::array<double, 2> usable;
+    for (int pair = 0; pair < 2; ++pair) {
+        const double sure = attempt.any_edge ? sure_friction(path, pose.places[pair], friction) : friction;
+        usable[pair] = attempt.friction_share * sure;
+    }
     for (std::size_t way = 0; way < front.size() * rear.size(); ++way) {
         const std::array<Lean, 2> lean = {front[way % front.size()], rear[way / front.size()]};
         // What leans on both faces takes no friction: else one of them would do.
-        const double usable = attempt.friction_share * friction;
-        rest(path, pose, lean, {lean[0] == Lean::both && front.size() > 1 ? 0.0 : usable, lean[1] == Lean::both && rear.size() > 1 ? 0.0 : usable},
-             attempt.load_limit, trial);
+        const bool wedged[] = {lean[0] == Lean::both && front.size() > 1, lean[1] == Lean::both && rear.size() > 1};
+        rest(path, pose, lean, {wedged[0] ? 0.0 : usable[0], wedged[1] ? 0.0 : usable[1]}, attempt.load_limit, trial);
         const bool holds = trial.missed < (kHeld * pose.weight) * (kHeld * pose.weight);
         double size = 0.0;
         for (const double f : trial.forces) size += f * f;
@@ -121,10 +136,12 @@ Resting resting(const WheelPath& path, const Pose& pose, double friction, const 
 StaticForces static_forces(const WheelPath& path, double weight, double friction, std::array<double, 2> places, Vec2 com) {
     const Pose pose = {places, com, weight};
     Resting best;
+    bool any_edge = true;  // of the best
     for (const Attempt& attempt : kAttempts) {
+        if (best.held && any_edge && !attempt.any_edge) break;
         const Resting next = resting(path, pose, friction, attempt);
         if (best.held && !(next.held && next.value < kWorthMore * best.value)) break;
-        best = next;
+        best = next, any_edge = attempt.any_edge;
     }
     return best.forces;
 }
