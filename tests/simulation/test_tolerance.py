@@ -119,3 +119,12 @@ def test_wheels_do_not_slip_off_an_edge_that_is_higher_than_drawn() -> None:
         world = {"step_height_error": [first, -first, 0.02, 0.02]}
         run = sw.rollout(plan, disturbance=world)
         assert run.success, run.reason
+
+
+@pytest.mark.slow
+def test_a_flight_that_is_too_low_by_what_is_tolerated_at_each_step_is_climbed() -> None:
+    """Its last treads are 14 cm from where the map has them."""
+    plan = sw.plan(flight(0.14, 0.32, 7), "d1", 0.6, tolerance={"height": 0.02})
+    assert plan.feasible, plan.problem
+    run = sw.rollout(plan, disturbance={"step_height_error": [-0.02] * 7})
+    assert run.success, run.reason

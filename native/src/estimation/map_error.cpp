@@ -52,6 +52,7 @@ void Estimator::find_map_error() {
     const double off = dot(across(at), offset_[0]);
     found_.resize(path_.pieces().size());
     found_[at] = off;
+    if (!left.on_face) settled_ = off;
     for (const int rear : {2, 3}) recall(wheels_[rear]);  // whether they know of it is in the map error
     const double least = path_.on_arc(left.s) ? kLeastEdge : left.on_face ? kLeastFace : kLeastTread;
     if (std::abs(off) < least) return;
@@ -181,6 +182,7 @@ Vec2 Estimator::correct_map(WheelPath path, const MapError& found) {
     path_ = std::move(path);
     note_low_edges();
     for (int pair = 0; pair < found.pairs; ++pair) offset_[pair] = offset_[pair] - by;
+    settled_ -= by.z;
     for (int i = 0; i < 4; ++i) {
         WheelState& w = wheels_[i];
         w.s = path_.project(place_ + offset_[i / 2] + w.leg.wheel, 0.0, path_.length());

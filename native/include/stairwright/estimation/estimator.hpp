@@ -235,6 +235,7 @@ class Estimator {
     std::vector<LowEdge> low_edges_;
     std::vector<std::size_t> low_drops_;  // pieces of the curve, see low_edges.cpp
     std::vector<std::optional<double>> found_;  // of each piece, by front wheels: offset along of a face, up of a tread [m]
+    double settled_ = 0.0;  // what of the offset up front wheels found on the last tread [m]
     Estimate estimate_;
 };
 
