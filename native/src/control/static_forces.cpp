@@ -19,7 +19,7 @@ struct Attempt {
     bool any_edge;
     double friction_share, load_limit;
 };
-constexpr Attempt kAttempts[] = {{true, 0.6, 0.6},  {true, 0.75, 0.6}, {true, 0.95, 0.6}, {false, 0.6, 0.6},
+constexpr Attempt kAttempts[] = {{true, 0.6, 0.6},  {true, 0.75, 0.6}, {true, 0.85, 0.6}, {false, 0.6, 0.6},
                                  {false, 0.75, 0.6}, {false, 0.9, 0.6}, {false, 1.0, 0.6}, {false, 1.0, 10.0}};
 constexpr double kUnsure = 0.01;  // m along the curve, to which a robot knows where a wheel is on an edge or before it
 constexpr double kReached = 0.0002;  // m before a corner; plans change what wheels lean on this near to it
