@@ -77,6 +77,17 @@ def test_the_trunk_stays_where_the_legs_reach() -> None:
     assert out[TRUNK] == pytest.approx(PLACE, abs=1e-6)
 
 
+@pytest.mark.parametrize("up", [-0.01, 0.01])
+def test_a_thigh_that_points_up_turns_on(up: float) -> None:
+    """ANYmal's may turn all the way round; it must not turn back all the way."""
+    robot = sw.load_robot("anymal_wheels").with_knees(-1, 1)
+    row = planned_row(robot, 0.5)
+    for thigh in (-np.pi - 0.01, -np.pi + 0.01):
+        row[JOINTS] = 0.5, -1.5, thigh, 2.5
+        out = fitted(robot, row, np.array([[0.0, 0.0], [up, up]]))
+        assert np.abs(out[JOINTS] - row[JOINTS]).max() < 0.3
+
+
 def climbing(plan: sw.Plan) -> tuple[WheelPath, Floats]:
     """The path of a plan, and its rows in which front wheels go up an upright face."""
     path = wheel_path(plan.terrain, plan.robot_description.wheel.radius)

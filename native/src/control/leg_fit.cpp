@@ -31,7 +31,7 @@ Reference LegFit::fit(const Reference& planned, const std::array<Vec2, 2>& groun
         const double length = norm(reach);
         reach = (std::clamp(length, range.least, range.most) / length) * reach;
         const JointAngles q = joint_angles(leg, pitch, knee_offset(leg, reach), reach);
-        out.value.joints[2 * pair] = q.thigh, out.value.joints[2 * pair + 1] = q.calf;
+        out.value.joints[2 * pair] = nearest_turn(q.thigh, thigh), out.value.joints[2 * pair + 1] = q.calf;
     }
     return out;
 }
