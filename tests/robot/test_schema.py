@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 from functools import reduce
 
 import mujoco
@@ -158,3 +159,14 @@ def test_a_payload_is_part_of_the_body():
     apart = np.hypot(0.1 - own.com[0], 0.2 - own.com[2])
     shared = own.mass * 4.0 / body.mass * apart**2
     assert body.inertia[1] == pytest.approx(own.inertia[1] + shared)
+
+
+def test_thighs_that_turn_all_the_way_round_have_one_angle_for_each_posture():
+    """Half a turn from where the leg hangs half folded, not where a folded leg points up."""
+    folded_up = {-1.0: math.pi, 1.0: -math.pi}  # by which way the knee bends
+    for leg in load_robot("anymal_wheels").with_knees(-1.0, 1.0).native.legs:
+        turns = leg.thigh_range
+        assert turns.upper - turns.lower == pytest.approx(2.0 * math.pi)
+        assert turns.lower + 0.5 < folded_up[leg.knee] < turns.upper - 0.5
+    for leg, document in zip(load_robot("m20").native.legs, load_robot("m20").legs, strict=True):
+        assert (leg.thigh_range.lower, leg.thigh_range.upper) == document.limits.thigh

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from stairwright import _core
@@ -27,13 +29,24 @@ def _leg(leg: Leg) -> _core.Leg:
         _link(leg.thigh),
         _link(leg.calf),
         _core.Wheel(leg.wheel.radius, leg.wheel.mass, leg.wheel.inertia[1]),
-        _core.Range(*leg.limits.thigh),
+        _core.Range(*_thigh_range(leg)),
         _core.Range(*leg.limits.calf),
         _motor(leg.thigh_motor),
         _motor(leg.calf_motor),
         _motor(leg.wheel_motor),
         leg.knee,
     )
+
+
+def _thigh_range(leg: Leg) -> tuple[float, float]:
+    """Of thighs that turn all the way round the turn about a leg that hangs half folded: each
+    posture has one angle then, and is far from where that would jump.
+    """
+    low, high = leg.limits.thigh
+    if high - low <= 2.0 * math.pi:
+        return low, high
+    middle = min(max(-0.25 * math.pi * leg.knee, low + math.pi), high - math.pi)
+    return middle - math.pi, middle + math.pi
 
 
 def _link(link: LinkForm) -> _core.Link:
