@@ -52,6 +52,19 @@ def test_each_tolerance_has_an_id_of_its_own() -> None:
 
 
 @pytest.mark.slow
+def test_motors_that_are_too_weak_off_the_map_are_spared() -> None:
+    """With what the usual path leaves them, no margin to the ground helps."""
+    wall = {
+        "points": [[-2.0, 0], [0, 0], [0, 0.3212], [0.5836, 0.3212], [0.5836, 0], [3.8836, 0]],
+        "friction": 0.51,
+    }
+    plan = sw.plan(wall, "b2w", tolerance={"height": 0.01, "place": 0.02, "friction": 0.05})
+    assert plan.feasible, plan.problem
+    assert sw.certify(plan).passed
+    assert plan.weights == sw.plan(CURB, "b2w").weights
+
+
+@pytest.mark.slow
 def test_friction_alone_is_planned_for() -> None:
     usual = sw.plan(STAIRS, "a1_wheeled_x")
     firm = sw.plan(STAIRS, "a1_wheeled_x", tolerance={"friction": 0.2})

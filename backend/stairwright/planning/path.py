@@ -90,7 +90,7 @@ def plan_path(
     planner, found = ways[0]
     robot = planner.robot
     if isinstance(found, Solved) and tolerance:
-        outcome = within_tolerance(planner, found, tolerance)
+        outcome = within_tolerance(planner, found, tolerance, search_threads())
         if isinstance(outcome, Fallen):
             return document(robot, problem=tolerance_problem(outcome, tolerance))
         found = outcome

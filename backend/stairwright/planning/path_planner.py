@@ -46,6 +46,7 @@ NEAR = 0.005  # clearance of the trunk up to which more of it comes first
 CLEARER = 0.006  # more of that clearance
 STRAIGHTER = 3.4  # times the weight of smoothness
 STEADIER = 10.0  # times that of the CoM margin
+SPARING = 10.0  # times that of torque
 
 
 def thin_com_margin(robot: Robot) -> float:
@@ -215,6 +216,12 @@ class PathPlanner(PathProblem):
         """The same problem, in which the CoM margin weighs much more."""
         weights = self.weights.model_copy(update={"com_margin": STEADIER * self.weights.com_margin})
         return replace(self, weights=weights)
+
+    @cached_property
+    def sparing(self) -> PathPlanner:
+        """The same problem, in which torque weighs much more."""
+        weights = self.weights.model_copy(update={"torque": SPARING * self.weights.torque})
+        return replace(self, weights=weights, searches={})
 
     @cached_property
     def clearer(self) -> PathPlanner:

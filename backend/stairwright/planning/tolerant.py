@@ -2,12 +2,14 @@
 
 Everything is planned at the lowest friction. Where a finished path lacks something on a terrain of
 the set, the next search and smoothing are asked to keep that much more of it; the certificate
-alone decides.
+alone decides. Where that leads to none it is done once more from a path that spares the motors,
+whatever was lacking: a third of those that were refused stand their tolerance then.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,7 +21,7 @@ from stairwright.planning.extra_margins import NO_EXTRA, ExtraMargins
 from stairwright.planning.path_planner import PathPlanner
 from stairwright.planning.plan import Check
 from stairwright.planning.problem import Limit, Problem, ProblemKind
-from stairwright.planning.strategy import keeping_extra_margins
+from stairwright.planning.strategy import keeping_extra_margins, solve
 from stairwright.planning.tolerance import Tolerance
 
 _ROUNDS = 8  # of planning; most that succeed do within four
@@ -52,14 +54,31 @@ class Fallen:
     checks: Sequence[Check]
 
 
-def within_tolerance(planner: PathPlanner, first: Solved, tolerance: Tolerance) -> Solved | Fallen:
+def within_tolerance(
+    planner: PathPlanner, first: Solved, tolerance: Tolerance, pool: Executor
+) -> Solved | Fallen:
     """A path that stands `tolerance`, with the checks that say so in its certificate.
 
     Args:
         planner: The problem at the lowest friction.
         first: A path of it.
         tolerance: What it shall stand.
+        pool: Who makes attempts.
     """
+    outcome = _with_margins(planner, first, tolerance)
+    if isinstance(outcome, Solved):
+        return outcome
+    sparing = solve(planner.sparing, pool)
+    if isinstance(sparing, Blocked):
+        return outcome
+    other = _with_margins(planner.sparing, sparing, tolerance)
+    if isinstance(other, Solved):
+        return other
+    return min(outcome, other, key=lambda fallen: _lacking(fallen.checks))
+
+
+def _with_margins(planner: PathPlanner, first: Solved, tolerance: Tolerance) -> Solved | Fallen:
+    """The same, with margins alone to change."""
     found, extra, nearest, idle = first, NO_EXTRA, None, 0
     off = float(np.hypot(tolerance.height, tolerance.place))
     usual = ExtraMargins(trunk=off, links=0.5 * off, legs=off, reach=off)
