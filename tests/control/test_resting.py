@@ -76,13 +76,13 @@ def within_cone(forces, normal: tuple[float, float], friction: float = 0.6):
 
 
 @pytest.mark.parametrize("past", [0.008, 0.012])
-def test_near_an_edge_forces_lie_in_the_cones_of_a_centimetre_around(past: float) -> None:
+def test_round_an_edge_forces_leave_room_for_where_the_wheel_may_be(past: float) -> None:
     path = path_of((-1.0, 0.0), (0.0, 0.0), (0.0, 0.2), (1.0, 0.2))
     front, rear = float(path.corners[0]) + 0.15 + past, path.at_x(-0.3)  # the arc begins there
     force = resting(path, [(front, rear)], [(-0.2, 0.3)])[0, 0]
-    for normal in path.normals(np.array([front - 0.01, front, front + 0.01])):
+    for normal in path.normals(np.array([front - 0.003, front, front + 0.003])):
         along = abs(force @ np.array([normal[1], -normal[0]]))
-        assert along <= 0.75 * 0.6 * (force @ normal)
+        assert along < 0.4 * (force @ normal)
 
 
 def test_a_wheel_on_its_way_down_hangs_on_its_face_until_it_is_down() -> None:

@@ -21,7 +21,7 @@ struct Attempt {
 };
 constexpr Attempt kAttempts[] = {{true, 0.6, 0.6},  {true, 0.75, 0.6}, {true, 0.85, 0.6}, {false, 0.6, 0.6},
                                  {false, 0.75, 0.6}, {false, 0.9, 0.6}, {false, 1.0, 0.6}, {false, 1.0, 10.0}};
-constexpr double kUnsure = 0.01;  // m along the curve, to which a robot knows where a wheel is on an edge or before it
+constexpr double kUnsure = 0.12;  // rad that a robot takes a wheel to be farther round an edge, or less, than it is
 constexpr double kReached = 0.0002;  // m before a corner; plans change what wheels lean on this near to it
 constexpr double kPassed = 0.003;    // m past it, where a wheel is to climb and no longer stands on what it comes from
 constexpr double kHeld = 0.01;    // of the weight; forces that miss less than this hold it
@@ -89,7 +89,7 @@ std::span<const Lean> ways(const WheelPath& path, double s) {
 
 // Friction of the cone of forces that the ground can give wherever within kUnsure of `s` the wheel is.
 double sure_friction(const WheelPath& path, double s, double friction) {
-    const double turn = std::max(path.turn(s - kUnsure, s), path.turn(s, s + kUnsure));
+    const double way = kUnsure * path.radius(), turn = std::max(path.turn(s - way, s), path.turn(s, s + way));
     return std::tan(std::max(0.0, std::atan(friction) - turn));
 }
 
