@@ -21,7 +21,7 @@ struct Attempt {
 };
 constexpr Attempt kAttempts[] = {{true, 0.6, 0.6},  {true, 0.75, 0.6}, {true, 0.85, 0.6}, {false, 0.6, 0.6},
                                  {false, 0.75, 0.6}, {false, 0.9, 0.6}, {false, 1.0, 0.6}, {false, 1.0, 10.0}};
-constexpr double kUnsure = 0.12;  // rad that a robot takes a wheel to be farther round an edge, or less, than it is
+constexpr double kUnsure = 0.06;  // rad that a robot takes a wheel to be farther round an edge, or less, than it is
 constexpr double kReached = 0.0002;  // m before a corner; plans change what wheels lean on this near to it
 constexpr double kPassed = 0.003;    // m past it, where a wheel is to climb and no longer stands on what it comes from
 constexpr double kHeld = 0.01;    // of the weight; forces that miss less than this hold it
