@@ -199,7 +199,7 @@ def test_a_straight_leg_feels_the_wall_that_its_wheel_climbs() -> None:
 
 
 def test_ideal_knowledge_of_a_wrong_place_does_not_climb(plan: Plan) -> None:
-    run = rollout(plan, controller={"sensing": "ideal"}, disturbance={"x_offset": 0.05})
+    run = rollout(plan, controller={"sensing": "ideal"}, disturbance={"x_offset": 0.03})
     assert run.outcome != "success"
 
 
